@@ -17,7 +17,7 @@ struct BootstrapInput {
   double delta_limit = 0.0;
   JointParameters start;                      ///< the fit to the full ensemble
   std::vector<double> threshold_shares = {};  ///< further starts: the threshold of `start` times these
-  double scatter_floor = 0.0;                 ///< of experiment_errors(), for redrawn residuals
+  double scatter_floor = 0.0;                 ///< scatter floor of experiment_errors(), for redrawn residuals
   std::vector<double> zeroed_below = {};      ///< see FitOptions
 };
 
@@ -30,11 +30,11 @@ struct BootstrapResult {
 /// Draws packings with replacement and refits. Replicate r depends on (seed, stream, r) alone, not on threads.
 BootstrapResult bootstrap(const BootstrapInput& input, int replicates, std::uint64_t seed, std::uint64_t stream);
 
-/// For fewer samples than can be drawn from: noise of the size of the residuals is added to the fit, which is then
-/// fitted again, weighted by the errors that the new curve shows: errors told from the curve itself scatter, and with
-/// them the fit. The shape of the noise over Delta is that of sigma, and one normal random number serves as many
-/// neighbouring points as residuals are correlated over. With given errors of the normal force the noise is at least as
-/// large as these. Says nothing about samples that were not measured.
+/// Bootstrap for fewer samples than can be drawn from: noise of the size of the residuals is added to the fit, and the
+/// law is fitted again. The new fit is weighted by the errors that the new curve shows, because errors told from the
+/// curve itself scatter, and with them the fit. The shape of the noise over Delta is that of sigma, and one normal
+/// random number serves as many neighbouring points as residuals are correlated over. With given errors of the normal
+/// force the noise is at least as large as these. The result says nothing about samples that were not measured.
 BootstrapResult residual_bootstrap(const BootstrapInput& input, const std::vector<GivenError>& given, int replicates,
                                    std::uint64_t seed, std::uint64_t stream);
 

@@ -95,7 +95,7 @@ void check(const ConsolidationCurves& c) {
   const bool whole =
       std::all_of(c.fraction.begin(), c.fraction.end(), [&](const auto& f) { return f.size() == c.pressure.size(); });
   if (!rising || !whole || c.fraction.empty())
-    throw BadInput("consolidation: pressures must rise, and every sample have a solid fraction at each");
+    throw InputError("consolidation: pressures must rise, and every sample have a solid fraction at each");
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ struct ConsolidationFit {
 
 /// The slope is that of the steepest stretch of the mean curve with at least kSlopePoints points over at least a factor
 /// kSlopeSpan in pressure; of samples each on its own over the same stretch. alpha and Phi_max by least squares over
-/// the points from its end on, at least kApproachPoints. Throws BadInput where curves and pressures do not fit
+/// the points from its end on, at least kApproachPoints. Throws InputError where curves and pressures do not fit
 /// together.
 ConsolidationFit fit_consolidation(const ConsolidationCurves& curves);
 

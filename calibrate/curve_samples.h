@@ -53,7 +53,7 @@ CurveMeans means_of(const CurveSamples& samples, std::span<const int> multiplici
 /// largest mean.
 std::vector<double> floored_deviations(const CurveMeans& means, double scatter_floor);
 
-/// Which runs and points enter.
+/// The runs and points that enter a curve.
 struct CurveSelection {
   double delta_low = 0.0;
   double delta_high = std::numeric_limits<double>::infinity();

@@ -17,7 +17,7 @@ constexpr RandomPurpose kParameterDraws{50};
 Eigen::MatrixXd centred(const std::vector<std::vector<double>>& rows) {
   Eigen::MatrixXd m(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(rows.front().size()));
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    if (rows[r].size() != rows.front().size()) throw BadInput("draws of unequal lengths");
+    if (rows[r].size() != rows.front().size()) throw InputError("draws of unequal lengths");
     for (std::size_t c = 0; c < rows[r].size(); ++c)
       m(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = rows[r][c];
   }
@@ -29,7 +29,7 @@ Eigen::MatrixXd centred(const std::vector<std::vector<double>>& rows) {
 EffectComponents effect_components(const std::vector<std::vector<double>>& parameters,
                                    const std::vector<std::vector<double>>& effects, std::size_t most, double share) {
   if (parameters.size() < 3 || effects.size() != parameters.size())
-    throw BadInput("components of a scatter need three draws or more");
+    throw InputError("components of a scatter need three draws or more");
   const Eigen::MatrixXd x = centred(parameters);
   const Eigen::MatrixXd y = centred(effects);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(y, Eigen::ComputeThinU);
@@ -56,13 +56,13 @@ std::vector<std::vector<double>> normal_draws(const std::vector<double>& mean, c
   const auto n = static_cast<Eigen::Index>(mean.size());
   if (covariance.size() != mean.size() * mean.size() ||
       !std::all_of(covariance.begin(), covariance.end(), [](double c) { return std::isfinite(c); }))
-    throw BadInput("the covariance of the parameters is not known");
+    throw InputError("the covariance of the parameters is not known");
   const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> c(covariance.data(), n,
                                                                                                    n);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(c);
   constexpr double kRounding = 1e-9;  // of the largest eigenvalue: below zero by no more than that is zero
   if (axes.eigenvalues().minCoeff() < -kRounding * axes.eigenvalues().maxCoeff())
-    throw BadInput("the covariance of the parameters is not positive");
+    throw InputError("the covariance of the parameters is not positive");
   const Eigen::MatrixXd root = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
   std::vector<std::vector<double>> out;
   for (std::int64_t r = 0; r < count; ++r) {

@@ -68,7 +68,7 @@ class StateProblem {
     return fit_least_squares(problem, {start}, options);
   }
 
-  /// From a Hertz-like guess: onsets a little below the loosest bearing point, K from the densest.
+  /// Start values from a Hertz-like guess: onsets a little below the loosest bearing point, K from the densest.
   [[nodiscard]] std::vector<double> start() const {
     constexpr double kExponent = 1.75;
     std::vector<double> p(exponent_at() + 1 + data_.groups.size(), 0.0);
@@ -110,8 +110,8 @@ double residual_at(const StateSample& s, const std::vector<double>& residual, do
   return residual[i - 1] + t * (residual[i] - residual[i - 1]);
 }
 
-/// Of ln K of single samples about `fit`, which has a K of each group: their residuals are a change of onset and one of
-/// ln K, to first order.
+/// ln K of single samples about the fit `p`, which has a K of each group. The residuals of a sample are taken as a
+/// change of its onset and one of ln K, to first order.
 std::vector<double> log_moduli_of_samples(const StateSamples& data, const StateProblem& own,
                                           const std::vector<double>& p) {
   std::vector<double> out;
@@ -138,10 +138,10 @@ std::vector<double> log_moduli_of_samples(const StateSamples& data, const StateP
 
 /// Scatter of ln K between groups.
 struct Collapse {
-  /// Of a scatter as large as this, in units of that of samples within groups (F test of one way, exact for normal
-  /// scatter); 1 where there is nothing to compare.
+  /// Probability of a scatter as large as this, in units of that of samples within groups (F test of one way, exact for
+  /// normal scatter); 1 where there is nothing to compare.
   double probability = 1.0;
-  double deviation = 0.0;  ///< between groups, that of samples within them taken off
+  double deviation = 0.0;  ///< deviation between groups, without that of samples within them
 
   /// Whether one K for all groups is refused.
   [[nodiscard]] bool refused() const { return probability < 0.05; }
@@ -172,13 +172,13 @@ Collapse collapse_of(const StateSamples& data, const std::vector<double>& log_mo
           std::sqrt(std::max(0.0, scatter * scatter - of_means))};
 }
 
-/// Of what a number can be.
+/// Bounds of what a number can be.
 struct StateBounds {
   double low = 0.0;
   double high = 0.0;
 };
 
-/// `more`: another deviation, of what replicates do not know. Within the bounds of what it is.
+/// `more`: another deviation, of what replicates do not know. The interval stays within the bounds.
 StateEstimate estimated(double value, const std::vector<double>& replicates, int degrees, const StateBounds& bounds,
                         double more = 0.0) {
   if (degrees < 1 || replicates.size() < 2) return {value, kInfinity, -kInfinity, kInfinity};
@@ -273,7 +273,7 @@ void describe_scatter(const StateSamples& data, const StateProblem& problem, Sta
 
 /// K may be off by this factor to either side; beyond, curves do not determine it.
 constexpr double kWidestFactor = 100.0;
-/// And beyond this one it is said that they hardly do.
+/// Factor to either side beyond which the message says that curves hardly determine K.
 constexpr double kWideFactor = 3.0;
 /// Points that must be left when every number has taken one.
 constexpr int kLeastFreedom = 3;
@@ -317,7 +317,7 @@ std::string message_of(const StateFit& fit) {
 
 StateFit fit_equation_of_state(const std::vector<StateCurve>& curves, const StateFitOptions& options) {
   if (options.replicates < 40)
-    throw BadInput(fmt::format("equation of state: {} replicates; 40 or more are needed", options.replicates));
+    throw InputError(fmt::format("equation of state: {} replicates; 40 or more are needed", options.replicates));
   const StateSamples data = read_state_curves(curves);
   StateFit out;
   for (const auto& g : data.groups) out.groups.push_back({g.name, g.span, g.samples, g.points, {}, 0.0});

@@ -40,20 +40,21 @@ struct StateFit {
   LeastSquaresFit fit;  ///< parameters ln K, n, phi_J of the groups
   StateEstimate modulus;
   StateEstimate exponent;
-  std::vector<StateGroup> groups;  ///< by span, then name
+  std::vector<StateGroup> groups;  ///< groups by span, then name
   double pressure_deviation =
       0.0;  ///< rms of ln(p/p_fit) within samples (each at its own onset): how well the form holds
-  double sample_deviation = 0.0;  ///< of the onsets of samples within their groups
-  /// Of the intervals: samples less groups; where one K for all is refused, groups less one if that is fewer.
+  double sample_deviation = 0.0;  ///< standard deviation of the onsets of samples within their groups
+  /// Degrees of freedom of the intervals: samples less groups; where one K for all is refused, groups less one if that
+  /// is fewer.
   int degrees = 0;
-  double modulus_scatter = 0.0;  ///< standard deviation over mean of own_modulus
-  double collapse_probability =
-      0.0;  ///< of a scatter between groups as large as this if K is the same for all; below 0.05 it hardly is
-  bool one_modulus = true;                      ///< whether one K for all groups is not refused by that
+  double modulus_scatter = 0.0;       ///< standard deviation over mean of own_modulus
+  double collapse_probability = 0.0;  ///< probability of a scatter between groups as large as this if K is the same for
+                                      ///< all; below 0.05 it hardly is
+  bool one_modulus = true;            ///< whether one K for all groups is not refused
   std::vector<std::vector<double>> replicates;  ///< ln K, n, phi_J of the groups
   int left_out = 0;                             ///< points without pressure
 
-  /// Null when it has none of this name.
+  /// The group of this name; null without one.
   [[nodiscard]] const StateGroup* find(const std::string& name) const {
     for (const StateGroup& g : groups)
       if (g.name == name) return &g;
@@ -72,7 +73,7 @@ struct StateFit {
 /// refused (probability below 0.05), groups are the units: replicates give every group a K of its own, drawn with the
 /// deviation of ln K between groups, intervals have G - 1 degrees (or N - G), and that of K is of the K of another
 /// packing of this kind: it holds the deviation between packings beside the error of their mean.
-/// Throws BadInput for curves that read_state_curves refuses and options out of range. Not usable with the reason: no
+/// Throws InputError for curves that read_state_curves refuses and options out of range. Not usable with the reason: no
 /// convergence, fewer than three points more than numbers, n at the end of what is tried. An interval of K that is
 /// wider than a factor of a hundred to either side (K is not determined) or of three, and errors that are infinite with
 /// one sample in every group, are in the message.

@@ -34,12 +34,12 @@ class ExcessProblem {
       : groups_(groups), fines_(place(states, groups.fines)), coarse_(place(states, groups.coarse)) {
     constexpr std::size_t kLeast = 3;
     if (groups.mixtures.size() < kLeast)
-      throw BadInput(
+      throw InputError(
           fmt::format("excess pores: {} mixtures; at least three are needed for w_inf and xi", groups.mixtures.size()));
     low_ = high_ = groups.mixtures.front().ratio;
     for (const auto& m : groups.mixtures) {
       if (!(m.ratio > 0.0) || !std::isfinite(m.ratio))
-        throw BadInput(fmt::format("excess pores: {}: V_f/V_c = {}; must be above 0", m.name, m.ratio));
+        throw InputError(fmt::format("excess pores: {}: V_f/V_c = {}; must be above 0", m.name, m.ratio));
       places_.push_back(place(states, m.name));
       low_ = std::min(low_, m.ratio);
       high_ = std::max(high_, m.ratio);
@@ -92,7 +92,7 @@ class ExcessProblem {
  private:
   static std::size_t place(const StateFit& states, const std::string& name) {
     const StateGroup* at = states.find(name);
-    if (at == nullptr) throw BadInput("excess pores: nothing was fitted to \"" + name + "\"");
+    if (at == nullptr) throw InputError("excess pores: nothing was fitted to \"" + name + "\"");
     return 2 + static_cast<std::size_t>(at - states.groups.data());
   }
 
@@ -113,7 +113,7 @@ Estimate student_estimate(double value, const std::vector<double>& replicates, i
   return {value, error, std::max(least, value - half), value + half};
 }
 
-/// Of the logarithm of a number, as that of the number.
+/// Estimate of a number from that of its logarithm.
 Estimate exponential(const Estimate& log) {
   const double value = std::exp(log.value);
   return {value, value * log.standard_error, std::exp(log.low), std::exp(log.high)};

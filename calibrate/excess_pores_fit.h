@@ -44,17 +44,18 @@ struct ExcessPoresFit {
   Estimate many;        ///< w_inf
   Estimate decay;       ///< xi
   std::vector<MixturePores> mixtures;
-  std::vector<ExcessPoresBand> band;  ///< from 0 to beyond the largest ratio
+  std::vector<ExcessPoresBand> band;  ///< the form from 0 to beyond the largest ratio
   double deviation = 0.0;             ///< root mean square of W/V_c about the form
-  double widening = 1.0;  ///< of the intervals of w_inf and xi: sqrt(chi^2 over degrees of freedom) where above 1
+  double widening = 1.0;  ///< factor on intervals of w_inf and xi: sqrt(chi^2 over degrees of freedom) where above 1
 };
 
 /// W/V_c = w_inf + (e_c - w_inf) exp(-(V_f/V_c)/xi), with W/V_c = [(1 - phi_J)/phi_J (V_f + V_c) - e_J V_f]/V_c of
 /// every mixture: least squares for w_inf >= 0 and ln xi, weighted by the errors of W/V_c (their correlation through
 /// e_J is left aside). Intervals are Student's about the fit, from refits to the replicates of `states`, widened where
 /// the form misses the mixtures by more than their errors. With one sample of each group all weigh the same, and errors
-/// are infinite. Throws BadInput for groups that `states` does not have, fewer than three mixtures, ratios that are not
-/// above 0. Not usable, with the reason: a mixture that leaves no excess pores, xi that the mixtures do not determine.
+/// are infinite. Throws InputError for groups that `states` does not have, fewer than three mixtures, ratios that are
+/// not above 0. Not usable, with the reason: a mixture that leaves no excess pores, xi that the mixtures do not
+/// determine.
 ExcessPoresFit fit_excess_pores(const StateFit& states, const MixtureGroups& groups);
 
 }  // namespace softgrain

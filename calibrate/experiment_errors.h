@@ -10,7 +10,7 @@ namespace softgrain {
 /// Standard error of one value of a curve, given from outside.
 struct GivenError {
   double delta = 0.0;
-  double error = 0.0;  ///< in the unit of the curve (dimensionless)
+  double error = 0.0;  ///< standard error in the unit of the curve (dimensionless)
 };
 
 /// Error per single sample at each Delta, the largest of: the scatter between samples (mean square over five

@@ -16,7 +16,7 @@ namespace softgrain {
 
 namespace {
 
-constexpr std::size_t kMostPoints = 120;  ///< of a single sample; the fit costs their square
+constexpr std::size_t kMostPoints = 120;  ///< points of a single sample; the fit costs their square
 constexpr std::size_t kMostCommon = 60;   ///< common overlaps of several samples
 constexpr double kSame = 1e-7;            ///< overlaps that differ by less are the same
 

@@ -26,7 +26,7 @@ CurveMeans mean_curve(const ForceCurves& curves);
 
 struct ExperimentFit {
   LawCard card;
-  std::vector<ForceCurves> curves;  ///< as they were fitted: without the offsets that were found
+  std::vector<ForceCurves> curves;  ///< curves as they were fitted, without the offsets that were found
   std::vector<FitReport> reports;
   std::vector<std::string> remarks;
 };

@@ -21,7 +21,7 @@ using Pair = std::array<double, 2>;  ///< ln mu_f, ln chi
 /// Half width of the first 3 x 3, and of the last, in logarithms.
 constexpr double kFirstWidth = 0.69;
 constexpr double kLastWidth = 0.15;
-constexpr double kClosing = 0.22;  ///< of the width from one round to the next
+constexpr double kClosing = 0.22;  ///< width of the next round over that of this one
 constexpr int kMostRounds = 8;
 /// Samples may lie so many widths of the last surface away from its middle.
 constexpr double kReach = 5.0;
@@ -100,11 +100,11 @@ class FrictionSurface {
 };
 
 void require_rows(const FaceFrictionData& data) {
-  if (data.samples.empty()) throw BadInput("face friction: no sample was measured");
+  if (data.samples.empty()) throw InputError("face friction: no sample was measured");
   for (const auto& row : data.samples)
     if (row.size() != data.weight.size() || row.size() < 2)
-      throw BadInput(fmt::format("face friction: {} values and {} weights; at least two of both are needed", row.size(),
-                                 data.weight.size()));
+      throw InputError(fmt::format("face friction: {} values and {} weights; at least two of both are needed",
+                                   row.size(), data.weight.size()));
 }
 
 std::vector<double> mean_row(const FaceFrictionData& data) {
@@ -129,7 +129,7 @@ double deviation_of(const FaceFrictionFit& fit, const std::vector<double>& weigh
   return std::sqrt(squares / all);
 }
 
-/// From the logarithms of the samples' own fits, about that of their mean curve.
+/// Estimate from the logarithms of the samples' own fits, about that of their mean curve.
 Estimate of_samples(double log_value, const std::vector<double>& logs) {
   const double value = std::exp(log_value);
   if (logs.size() < 2) return {value, kInfinity, 0.0, kInfinity};

@@ -12,7 +12,7 @@ namespace softgrain {
 
 namespace {
 
-constexpr std::size_t kLeastReadings = 3;  ///< without force, to tell their scatter
+constexpr std::size_t kLeastReadings = 3;  ///< fewest readings without force that tell their scatter
 constexpr std::size_t kLeastPoints = 6;    ///< a, b, delta, the offset, and something to judge them by
 constexpr std::size_t kMostLookedAt = 100;
 

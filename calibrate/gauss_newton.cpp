@@ -31,8 +31,8 @@ bool evaluate_jacobian(const LeastSquaresProblem& problem, const Vector& p, Vect
   return jacobian_at(problem, p, jacobian) && all_finite(jacobian);
 }
 
-/// On a bound (to rounding) with the descent direction pointing out of it. What the residuals do not feel at all is not
-/// held by its bound, but undetermined.
+/// Parameters on a bound (to rounding) with the descent direction pointing out of it. A parameter without effect on the
+/// residuals is not held by its bound, but undetermined.
 std::vector<bool> active_bounds(const LeastSquaresProblem& problem, const Vector& p, const Vector& r,
                                 const Vector& jacobian) {
   std::vector<bool> active(p.size(), false);

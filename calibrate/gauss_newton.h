@@ -12,7 +12,7 @@ namespace softgrain {
 struct Linearisation {
   bool defined = false;
   double residual_sum_of_squares = 0.0;
-  std::vector<bool> at_bound;  ///< on a bound, with S falling outwards
+  std::vector<bool> at_bound;  ///< whether the parameter is on a bound, with S falling outwards
   int rank = 0;
   bool rank_deficient = false;
   std::vector<double> step;        ///< Gauss-Newton step -(J^T J)^+ J^T r, zero for parameters at a bound

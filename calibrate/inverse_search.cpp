@@ -335,8 +335,8 @@ InverseAnswer answer(const std::vector<InverseEvaluation>& done, const InverseTa
   const std::vector<double> errors = total_errors(done, t, {});
   const Prepared p = prepare(done, t, {}, t.force, errors);
   if (p.points.size() < ResponseSurface::coefficients(d))
-    throw NotUsable(fmt::format("search: {} of {} evaluations gave forces at every overlap, {} are needed",
-                                p.points.size(), done.size(), ResponseSurface::coefficients(d)));
+    throw UnusableResult(fmt::format("search: {} of {} evaluations gave forces at every overlap, {} are needed",
+                                     p.points.size(), done.size(), ResponseSurface::coefficients(d)));
   const Place at = locate(p);
   const ResponseSurface surface(p.points, p.values, at.weights);
   InverseAnswer out;

@@ -21,7 +21,7 @@ struct InverseTarget {
 
 /// One point of the box that was simulated.
 struct InverseEvaluation {
-  std::vector<double> u;  ///< in [0, 1]^d
+  std::vector<double> u;  ///< coordinates in [0, 1]^d
   std::size_t packings = 0;
   std::vector<double> force;  ///< packings x delta, row-major; NaN where a packing gave none
 
@@ -43,18 +43,18 @@ struct InverseAnswer {
   std::vector<double> u;    ///< best point
   std::vector<double> low;  ///< 95 % interval of each coordinate
   std::vector<double> high;
-  std::vector<double> standard_error;  ///< from the curvature of the surface at the best point
+  std::vector<double> standard_error;  ///< standard errors from the curvature of the surface at the best point
   std::vector<bool> open;              ///< the interval reaches an end of the range: it is not closed by the target
   std::vector<double> correlation;     ///< d x d of the replicates
-  std::vector<double> predicted;       ///< by the surface at the best point
-  double misfit = 0.0;                 ///< of the surface at the best point, per Delta
+  std::vector<double> predicted;       ///< curve by the surface at the best point
+  double misfit = 0.0;                 ///< chi^2 of the surface at the best point, per Delta
   double lack_of_fit = 0.0;  ///< rms distance of means near the best point from the surface, over their errors
   int replicates = 0;
 };
 
 /// The answer and its interval: `replicates` draws, widened for the small number of packings (Student), and every
-/// evaluated point that is as good as the best one (chi^2 within 3.84). Throws NotUsable when fewer evaluations are
-/// usable than the surface has coefficients.
+/// evaluated point that is as good as the best one (chi^2 within 3.84). Throws UnusableResult when fewer evaluations
+/// are usable than the surface has coefficients.
 InverseAnswer answer(const std::vector<InverseEvaluation>& done, const InverseTarget& target, std::uint64_t seed,
                      int replicates);
 

@@ -7,7 +7,7 @@ namespace softgrain {
 
 namespace {
 
-/// For a given threshold and exponent A is linear: the best A and the remaining sum of squares.
+/// The best A and the remaining sum of squares at a given threshold and exponent, where A is linear.
 std::pair<double, double> best_scale(const FitCurve& curve, JointParameters p, std::size_t j, double exponent) {
   p.exponent[j] = exponent;
   p.scale[j] = 1.0;

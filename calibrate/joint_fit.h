@@ -10,7 +10,7 @@ namespace softgrain {
 
 struct JointFit {
   JointParameters parameters;
-  LeastSquaresFit fit;          ///< over [delta, A_j, b_j of each present curve]; covariance in units of sigma
+  LeastSquaresFit fit;          ///< fit over [delta, A_j, b_j of each present curve]; covariance in units of sigma
   bool delta_at_zero = false;   ///< the threshold ran to its lower bound
   bool delta_at_limit = false;  ///< the threshold ran to its upper bound
   std::array<bool, kLawCurves> exponent_at_bound{};
@@ -22,8 +22,8 @@ struct JointFit {
 /// exact, and no start can miss it. `delta_limit` bounds delta from above; 0 fixes delta = 0, the plain power law.
 JointFit fit_joint(const FitCurves& curves, double delta_limit);
 
-/// The same from a known neighbour: starts in its interval and walks on while delta runs into the interval's end.
-/// What the bootstrap uses.
+/// Joint fit from a known neighbour: it starts in the interval of `from` and walks on while delta runs into the
+/// interval's end. The bootstrap uses it.
 JointFit refit_joint(const FitCurves& curves, double delta_limit, const JointParameters& from);
 
 /// Cluster-robust covariance of law_parameters(), packings being the clusters: H^-1 [G/(G-1) sum_g s_g s_g^T] H^-1, s_g

@@ -25,16 +25,16 @@ constexpr double kSumTie = 1e-9;
 constexpr std::size_t kSpreadStarts = 16;
 
 void require_consistent(const LeastSquaresProblem& problem, const std::vector<std::vector<double>>& starts) {
-  if (starts.empty() || starts.front().empty()) throw BadInput("fit: no start values given");
-  if (!problem.evaluate || problem.residuals == 0) throw BadInput("fit: no residuals given");
+  if (starts.empty() || starts.front().empty()) throw InputError("fit: no start values given");
+  if (!problem.evaluate || problem.residuals == 0) throw InputError("fit: no residuals given");
   for (const auto& start : starts) {
-    if (start.size() != starts.front().size()) throw BadInput("fit: starts have different numbers of parameters");
+    if (start.size() != starts.front().size()) throw InputError("fit: starts have different numbers of parameters");
     if (!problem.bounds.empty() && problem.bounds.size() != start.size())
-      throw BadInput("fit: one pair of bounds per parameter is needed");
+      throw InputError("fit: one pair of bounds per parameter is needed");
     for (std::size_t j = 0; j < problem.bounds.size(); ++j)
       if (!(problem.bounds[j].low <= start[j] && start[j] <= problem.bounds[j].high))
-        throw BadInput(fmt::format("fit: start value {} of parameter {} lies outside its bounds [{}, {}]", start[j], j,
-                                   problem.bounds[j].low, problem.bounds[j].high));
+        throw InputError(fmt::format("fit: start value {} of parameter {} lies outside its bounds [{}, {}]", start[j],
+                                     j, problem.bounds[j].low, problem.bounds[j].high));
   }
 }
 

@@ -32,7 +32,7 @@ struct LeastSquaresProblem {
 };
 
 struct LeastSquaresOptions {
-  int max_iterations = 5000;  ///< of each trust-region run
+  int max_iterations = 5000;  ///< largest number of iterations of each trust-region run
   bool thorough = true;       ///< try every strategy and keep the best; false: the first one alone
   bool scale_covariance =
       true;  ///< covariance times S/(degrees of freedom); false when residuals are in units of known errors
@@ -57,14 +57,14 @@ struct LeastSquaresFit {
   std::vector<double> covariance;           ///< n x n row-major; rows of parameters at a bound are zero
   std::vector<double> standard_deviations;  ///< infinite where the data do not determine the parameter
   std::vector<bool> at_bound;               ///< S would fall further outside the bound
-  int rank = 0;                             ///< of the Jacobian over parameters that are not at a bound
+  int rank = 0;                             ///< rank of the Jacobian over parameters that are not at a bound
   bool rank_deficient = false;
   double residual_sum_of_squares = std::numeric_limits<double>::infinity();
   double residual_standard_deviation = 0.0;  ///< sqrt(S / degrees of freedom)
   std::ptrdiff_t degrees_of_freedom = 0;     ///< residuals - parameters
-  int iterations = 0;                        ///< of all strategies and starts together
+  int iterations = 0;                        ///< iterations of all strategies and starts together
   double step_left = 0.0;                    ///< largest Gauss-Newton step left, in standard deviations
-  std::string strategy;                      ///< which one gave the best result
+  std::string strategy;                      ///< strategy that gave the best result
   std::size_t start = 0;                     ///< index of the start that gave the best result
 
   [[nodiscard]] bool usable() const { return end == FitEnd::converged && !rank_deficient; }
@@ -72,7 +72,7 @@ struct LeastSquaresFit {
 
 /// Runs every strategy from every start, polishes each end point and keeps the one with the smallest S. While that one
 /// is not usable (and `thorough` holds) further starts are spread around the given ones, a decade to either side.
-/// Throws BadInput when starts, bounds and residuals do not fit together; a fit that goes wrong is reported, not
+/// Throws InputError when starts, bounds and residuals do not fit together; a fit that goes wrong is reported, not
 /// thrown.
 LeastSquaresFit fit_least_squares(const LeastSquaresProblem& problem, const std::vector<std::vector<double>>& starts,
                                   const LeastSquaresOptions& options = {});

@@ -46,14 +46,14 @@ void require_same(const Measurements& first, const Measurements& other, const st
   const auto b = conditions(other);
   for (std::size_t k = 0; k < a.size(); ++k)
     if (a[k].value != b[k].value && !(std::isnan(a[k].value) && std::isnan(b[k].value)))
-      throw BadInput(fmt::format("cannot merge {} and {}: {} = {} and {}", first_name, other_name, a[k].name,
-                                 a[k].value, b[k].value));
+      throw InputError(fmt::format("cannot merge {} and {}: {} = {} and {}", first_name, other_name, a[k].name,
+                                   a[k].value, b[k].value));
   if (rotates(first) && rotates(other) && (first.turn != other.turn || first.turn_speed != other.turn_speed))
-    throw BadInput(fmt::format("cannot merge {} and {}: their rotations are a {} at {} m/s and a {} at {} m/s",
-                               first_name, other_name, to_string(first.turn), first.turn_speed, to_string(other.turn),
-                               other.turn_speed));
+    throw InputError(fmt::format("cannot merge {} and {}: their rotations are a {} at {} m/s and a {} at {} m/s",
+                                 first_name, other_name, to_string(first.turn), first.turn_speed, to_string(other.turn),
+                                 other.turn_speed));
   if (!same_sizes(first.spec, other.spec))
-    throw BadInput(fmt::format("cannot merge {} and {}: the sizes of the grains differ", first_name, other_name));
+    throw InputError(fmt::format("cannot merge {} and {}: the sizes of the grains differ", first_name, other_name));
 }
 
 /// A packing is the same when its radii are (every grain was grown to a random neighbour: no two packings agree by
@@ -62,20 +62,20 @@ using Measured = std::map<std::tuple<std::vector<double>, PairKind, std::string>
 
 void require_new(const PackingRun& run, const Measurements& part, const std::string& name, Measured& seen) {
   if (run.packing < 0 || run.packing >= static_cast<std::int64_t>(part.packings.size()))
-    throw BadInput(
+    throw InputError(
         fmt::format("{}: a run refers to packing {}, the file holds {}", name, run.packing, part.packings.size()));
   const PackingInfo& packing = part.packings[static_cast<std::size_t>(run.packing)];
   if (packing.radii.empty()) return;
   const auto [at, fresh] = seen.try_emplace({packing.radii, run.kind, run.relaxation}, name);
   if (!fresh)
-    throw BadInput(fmt::format("cannot merge {} and {}: packing {} ({}, {}) was measured in both", at->second, name,
-                               packing.seed, to_string(run.kind), run.relaxation));
+    throw InputError(fmt::format("cannot merge {} and {}: packing {} ({}, {}) was measured in both", at->second, name,
+                                 packing.seed, to_string(run.kind), run.relaxation));
 }
 
 }  // namespace
 
 Measurements merge_measurements(const std::vector<Measurements>& parts, const std::vector<std::string>& names) {
-  if (parts.empty() || parts.size() != names.size()) throw BadInput("no measurements given");
+  if (parts.empty() || parts.size() != names.size()) throw InputError("no measurements given");
   Measurements all;
   all.spec = parts.front().spec;
   all.shell_turns = parts.front().shell_turns;

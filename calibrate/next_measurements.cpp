@@ -33,12 +33,12 @@ struct NextMeasurements::Joint {
 namespace {
 
 void require_rows(const std::vector<std::vector<double>>& predicted, const std::vector<Measurable>& measurables) {
-  if (predicted.size() < 3) throw BadInput("a plan needs three draws or more");
+  if (predicted.size() < 3) throw InputError("a plan needs three draws or more");
   for (const std::vector<double>& row : predicted)
-    if (row.size() != predicted.front().size()) throw BadInput("predictions of the draws have unequal lengths");
+    if (row.size() != predicted.front().size()) throw InputError("predictions of the draws have unequal lengths");
   for (const Measurable& m : measurables) {
-    if (m.drawn.size() != predicted.size()) throw BadInput("a measurable has not one value per draw");
-    if (!(m.scatter > 0.0) || !(m.cost > 0.0)) throw BadInput("scatter and cost of a measurable must be above 0");
+    if (m.drawn.size() != predicted.size()) throw InputError("a measurable has not one value per draw");
+    if (!(m.scatter > 0.0) || !(m.cost > 0.0)) throw InputError("scatter and cost of a measurable must be above 0");
   }
 }
 
@@ -63,7 +63,7 @@ NextMeasurements::NextMeasurements(const std::vector<std::vector<double>>& predi
   joint.predicted = numbers;
   for (const Measurable& m : measurables) joint.scatter.push_back(m.scatter);
   joint.before = joint.variance();
-  if (!(joint.before > 0.0)) throw BadInput("the prediction is the same with every draw: there is nothing to plan");
+  if (!(joint.before > 0.0)) throw InputError("the prediction is the same with every draw: there is nothing to plan");
 }
 
 NextMeasurements::~NextMeasurements() = default;

@@ -12,21 +12,22 @@ namespace softgrain {
 struct Measurable {
   std::vector<double> drawn;  ///< what it comes to with each draw of the law; logarithms of forces
   double scatter = 0.0;       ///< standard deviation between single measurements, in the same units
-  double cost = 0.0;          ///< of one measurement, above 0
+  double cost = 0.0;          ///< cost of one measurement, above 0
 };
 
 /// One step of a plan.
 struct PlannedBlock {
   std::size_t measurable = 0;
   std::int64_t measurements = 0;
-  double cost = 0.0;   ///< of this block
+  double cost = 0.0;   ///< cost of this block
   double share = 1.0;  ///< standard deviation of the prediction after it over that before the plan
 };
 
-/// Of a prediction with several numbers: the sum of their variances is what a plan lessens.
+/// Effect of further measurements on the variance of a prediction. For a prediction with several numbers a plan lessens
+/// the sum of their variances.
 class NextMeasurements {
  public:
-  /// `predicted`: one row per draw. Draws of the law are taken as a sample of a normal distribution. Throws BadInput
+  /// `predicted`: one row per draw. Draws of the law are taken as a sample of a normal distribution. Throws InputError
   /// for fewer than three draws, rows of unequal lengths, a scatter or cost that is not above 0, and where predictions
   /// do not differ from draw to draw.
   NextMeasurements(const std::vector<std::vector<double>>& predicted, const std::vector<Measurable>& measurables);

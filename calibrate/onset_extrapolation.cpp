@@ -168,12 +168,12 @@ bool wanted(const StateGroup& g, const OnsetOptions& options) {
 }
 
 void require_input(const StateFit& fit, double span, const OnsetOptions& options) {
-  if (!fit.usable) throw BadInput("onsets: the equation of state could not be fitted: " + fit.message);
-  if (fit.degrees < 1) throw BadInput("onsets: without two samples in a group nobody knows their errors");
+  if (!fit.usable) throw InputError("onsets: the equation of state could not be fitted: " + fit.message);
+  if (fit.degrees < 1) throw InputError("onsets: without two samples in a group nobody knows their errors");
   if (!(span >= 1.0) || !std::isfinite(span))
-    throw BadInput(fmt::format("onsets: span {}; it must be 1 or more", span));
+    throw InputError(fmt::format("onsets: span {}; it must be 1 or more", span));
   for (const auto& name : options.groups)
-    if (fit.find(name) == nullptr) throw BadInput(fmt::format("onsets: no group {}", name));
+    if (fit.find(name) == nullptr) throw InputError(fmt::format("onsets: no group {}", name));
 }
 
 }  // namespace
@@ -213,7 +213,7 @@ OnsetExtrapolation extrapolate_onset(const StateFit& fit, double span, const Ons
     return std::unique(all.begin(), all.end()) - all.begin();  // groups are ordered by span
   }();
   if (spans < 2)
-    throw BadInput(fmt::format("onsets: groups of {} span(s); two or more are needed for an extrapolation", spans));
+    throw InputError(fmt::format("onsets: groups of {} span(s); two or more are needed for an extrapolation", spans));
   OnsetExtrapolation out;
   out.span = span;
   out.largest_span = at.span.back();

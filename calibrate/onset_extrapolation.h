@@ -28,16 +28,17 @@ struct OnsetFormFit {
   std::string message = "not run";
   std::vector<double> parameters;  ///< ln c, b; phi_inf, a, b; ln c, b, w; gap
   double chi2 = 0.0;               ///< sum of squared residuals in units of the errors
-  double probability = 1.0;  ///< of one as large (F test, errors known with the degrees of the fit); 1 without freedom
-  StateEstimate onset;       ///< at the span asked for
+  /// Probability of a chi2 as large (F test, errors known with the degrees of the fit); 1 without freedom.
+  double probability = 1.0;
+  StateEstimate onset;  ///< onset at the span asked for
 };
 
 struct OnsetExtrapolation {
   bool usable = false;
   std::string message = "not run";
-  double span = 1.0;                ///< asked for
-  double largest_span = 1.0;        ///< fitted
-  std::vector<OnsetFormFit> forms;  ///< in the order of OnsetForm
+  double span = 1.0;                ///< span asked for
+  double largest_span = 1.0;        ///< largest span that is fitted
+  std::vector<OnsetFormFit> forms;  ///< forms in the order of OnsetForm
   /// Middle of the forms that the data allow; the interval reaches from the lowest to the highest of theirs, so it
   /// holds the difference of the forms too.
   StateEstimate onset;
@@ -47,7 +48,7 @@ struct OnsetExtrapolation {
 
 struct OnsetOptions {
   double largest_span = 0.0;        ///< groups above are left out; 0: none. For a check on spans that are known.
-  std::vector<std::string> groups;  ///< of these alone (one preparation); empty: all
+  std::vector<std::string> groups;  ///< groups that are used (one preparation); empty: all
   double exponent = 0.0;            ///< b of the power law P(r) ~ r^-b that all groups have; 0: none, and no rods
   double refused_below = 0.01;      ///< probability below which a form is not used
 };
@@ -55,9 +56,9 @@ struct OnsetOptions {
 /// Fits all forms to the onsets of the groups, each with the weight of its error, and to every replicate of the fit.
 /// Replicates are drawn away from the estimate by Student's over the normal 97.5 % quantile, as intervals of the fit
 /// are. A form needs as many groups of different span as it has parameters, and is refused where its chi^2 is too
-/// improbable; the saturating one only together with the void power that it contains. Throws BadInput for a fit that is
-/// not usable or has no errors, groups that are unknown or fewer than two of different span, a span that is not finite
-/// or below 1. Not usable: all forms are refused.
+/// improbable; the saturating one only together with the void power that it contains. Throws InputError for a fit that
+/// is not usable or has no errors, groups that are unknown or fewer than two of different span, a span that is not
+/// finite or below 1. Not usable: all forms are refused.
 OnsetExtrapolation extrapolate_onset(const StateFit& fit, double span, const OnsetOptions& options = {});
 
 }  // namespace softgrain

@@ -40,7 +40,8 @@ void ResidualDraws::prepare(std::size_t j) {
     }
 }
 
-/// As the measured samples were: by the mean of what lies below the threshold, so that its error is in the intervals.
+/// Sets drawn samples to zero as the measured ones were: by the mean of what lies below the threshold, so that its
+/// error is in the intervals.
 void ResidualDraws::set_to_zero(CurveSamples& drawn) const {
   const std::size_t n = drawn.delta.size();
   for (std::size_t i = 0; i < drawn.packings && i < input_.zeroed_below.size(); ++i) {

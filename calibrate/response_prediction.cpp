@@ -19,7 +19,7 @@ constexpr std::size_t kWays = 2;  ///< stays, goes on
 
 /// The groups that take part, by span, and their samples.
 struct Group {
-  std::size_t number;  ///< in the fit
+  std::size_t number;  ///< number of the group in the fit
   std::vector<const ResponseCurve*> samples;
 };
 
@@ -37,14 +37,14 @@ std::vector<Group> groups_of(const StateFit& fit, const std::vector<ResponseCurv
 }
 
 void require_curves(const StateFit& fit, const std::vector<ResponseCurve>& curves) {
-  if (curves.empty()) throw BadInput("responses: no curves");
+  if (curves.empty()) throw InputError("responses: no curves");
   const std::vector<double>& volume = curves.front().volume;
   for (const ResponseCurve& c : curves) {
-    if (fit.find(c.group) == nullptr) throw BadInput("responses: no group " + c.group);
+    if (fit.find(c.group) == nullptr) throw InputError("responses: no group " + c.group);
     bool same = c.volume.size() == volume.size() && c.pressure.size() == volume.size() &&
                 c.ratio.size() == volume.size() && c.deviator.size() == volume.size();
     for (std::size_t k = 0; same && k < volume.size(); ++k) same = std::abs(c.volume[k] / volume[k] - 1.0) < 1e-4;
-    if (!same) throw BadInput("responses: samples of " + c.group + " have other points than " + curves.front().group);
+    if (!same) throw InputError("responses: samples of " + c.group + " have other points than " + curves.front().group);
   }
 }
 
@@ -105,7 +105,7 @@ Features line_at(const std::vector<double>& onsets, const std::vector<Features>&
 /// What is collected over replicates, for one form of onset and one way.
 struct Collected {
   std::vector<double> solid_fraction;
-  std::vector<std::vector<double>> pressure, axial, lateral, deviator;  ///< at every point
+  std::vector<std::vector<double>> pressure, axial, lateral, deviator;  ///< values at every point
 };
 
 StateEstimate over(const std::vector<Collected>& all, auto&& column) {
@@ -219,7 +219,7 @@ double fitted_onset(StateForm form, double modulus, double exponent, const State
     up += (1.0 - u) * (form == StateForm::porosity ? curve.phi[i] - u : 1.0 / curve.phi[i] - 1.0);
     down += (1.0 - u) * (1.0 - u);
   }
-  if (!(down > 0.0)) throw BadInput("onset: no point bears");
+  if (!(down > 0.0)) throw InputError("onset: no point bears");
   return form == StateForm::porosity ? up / down : 1.0 / (1.0 + up / down);
 }
 

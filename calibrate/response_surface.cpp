@@ -40,7 +40,7 @@ ResponseSurface::ResponseSurface(const std::vector<std::vector<double>>& points,
                                  const std::vector<std::vector<double>>& values, const std::vector<double>& weights)
     : dimensions_(points.empty() ? 0 : points.front().size()), quantities_(values.empty() ? 0 : values.front().size()) {
   if (points.size() != values.size() || points.size() != weights.size() || dimensions_ == 0)
-    throw BadInput("response surface: points, values and weights do not go together");
+    throw InputError("response surface: points, values and weights do not go together");
   const std::size_t n = coefficients(dimensions_);
   std::vector<double> normal(n * n, 0.0);
   coefficient_.assign(n * quantities_, 0.0);
@@ -53,7 +53,7 @@ ResponseSurface::ResponseSurface(const std::vector<std::vector<double>>& points,
       for (std::size_t j = 0; j < quantities_; ++j) coefficient_[a * quantities_ + j] += wa * values[i][j];
     }
   }
-  if (!(normal[0] > 0.0)) throw BadInput("response surface: no point to fit it to");
+  if (!(normal[0] > 0.0)) throw InputError("response surface: no point to fit it to");
   for (std::size_t a = 1; a < n; ++a) normal[a * n + a] += kRidge * normal[0];
   solve(normal, coefficient_, n, quantities_);
 }

@@ -12,7 +12,7 @@ class ResponseSurface {
  public:
   /// `points` in [0, 1]^d, `values` one row of quantities per point, `weights` one per point (0: left out). With fewer
   /// points of weight than coefficients, or points that lie badly, a small ridge keeps the surface flat where nothing
-  /// is known. Throws BadInput when sizes do not agree or no point has weight.
+  /// is known. Throws InputError when sizes do not agree or no point has weight.
   ResponseSurface(const std::vector<std::vector<double>>& points, const std::vector<std::vector<double>>& values,
                   const std::vector<double>& weights);
 

@@ -26,7 +26,7 @@ double shorter(const std::vector<SizePiece>& pieces, const std::vector<double>& 
 }  // namespace
 
 std::vector<double> chords_of(const Grading& sizes, std::size_t count) {
-  if (count < 2) throw BadInput("rods: two or more are needed");
+  if (count < 2) throw InputError("rods: two or more are needed");
   const std::vector<SizePiece>& pieces = sizes.pieces();
   std::vector<double> hits;  // by lines, of the spheres of each piece
   double all = 0.0;
@@ -56,7 +56,7 @@ std::vector<double> chords_of(const Grading& sizes, std::size_t count) {
 }
 
 double rod_packing(const std::vector<double>& chords, double gap) {
-  if (chords.empty() || !(gap > 0.0)) throw BadInput("rods: none, or a gap that is not above 0");
+  if (chords.empty() || !(gap > 0.0)) throw InputError("rods: none, or a gap that is not above 0");
   std::priority_queue<double> gaps;
   gaps.push(gap * chords.front());
   double space = gaps.top();

@@ -77,18 +77,18 @@ constexpr double kDearTie = 3.84;
 /// One bin as the fit sees it.
 struct Datum {
   double k = 0.0;
-  double log_intensity = 0.0;  ///< without the bias of a logarithm of a mean
+  double log_intensity = 0.0;  ///< logarithm of the intensity, without the bias of the logarithm of a mean
   double deviation = 1.0;
 };
 
 void require_valid(const ScatteringFitOptions& o) {
   if (!(o.k_low >= 0.0) || !(o.k_high > o.k_low))
-    throw BadInput(fmt::format("scattering fit: range of k [{}, {}] must rise from 0 or above", o.k_low, o.k_high));
+    throw InputError(fmt::format("scattering fit: range of k [{}, {}] must rise from 0 or above", o.k_low, o.k_high));
   if (!(o.disk > 0.0) || !(o.cell_length >= 0.0))
-    throw BadInput("scattering fit: disk must be above 0 and cell_length 0 or above");
+    throw InputError("scattering fit: disk must be above 0 and cell_length 0 or above");
   if (!(o.solid_fraction >= 0.0) || !(o.lower_length_min > 0.0) || !(o.lower_length_max > o.lower_length_min) ||
       !(o.background_max > 0.0))
-    throw BadInput(
+    throw InputError(
         "scattering fit: solid_fraction must be 0 or above, lower lengths must rise from above 0, background_max be "
         "above 0");
 }
@@ -248,7 +248,7 @@ std::vector<double> covariance_of(const LeastSquaresFit& found, const std::array
   return whole;
 }
 
-/// Which parameters the data would have elsewhere.
+/// Names and values of the numbers that ended at a bound; the data would have them elsewhere.
 std::string bounded_text(const LeastSquaresFit& found, const ScatteringFitOptions& o) {
   std::string text;
   const auto add = [&](std::size_t q, const std::string& name, double value) {
@@ -301,7 +301,7 @@ std::string judge(const LeastSquaresFit& found, const ScatteringFit& fit, const 
   return text;
 }
 
-/// With an amplitude that is tied or free, as the options say.
+/// Fits with an amplitude that is tied or free, as the options say.
 void fit_data(const std::vector<Datum>& data, const ScatteringFitOptions& options, ScatteringFit& fit) {
   const Parameters parameters(options.solid_fraction);
   const LeastSquaresFit found = solve(parameters, data, options);

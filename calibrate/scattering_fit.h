@@ -63,7 +63,7 @@ struct ScatteringFit {
   ScatteringEstimate length;
   ScatteringEstimate background;
   ScatteringEstimate lower_length;  ///< l, where the amplitude is tied to it; else zero
-  std::string bounded;              ///< which numbers ended at a bound, and are taken as known in the errors of others
+  std::string bounded;              ///< numbers that ended at a bound; the errors of others take them as known
   double tie_cost = 0.0;            ///< above 0: the amplitude is free, since tying it to Phi would cost so much chi^2
   std::vector<double> covariance;   ///< 4 x 4 row-major of (ln A, dF, ln xi, c)
   double k_low = 0.0;               ///< first and last k that were fitted
@@ -88,7 +88,7 @@ double independent_intensity(const std::vector<double>& diameters, double cell_a
 /// more chi^2 than chance explains (3.84), the amplitude is free after all (`tie_cost`). Not usable, with
 /// the reason: fewer than 8 bins in the range, an intensity that is not positive and finite, no convergence, parameters
 /// that the data do not determine, dF outside (0, 2], xi below the disks or beyond half the cell, an interval of dF
-/// wider than 2, chi^2 per degree above 10. Throws BadInput for options out of range.
+/// wider than 2, chi^2 per degree above 10. Throws InputError for options out of range.
 ScatteringFit fit_scattering(const std::vector<ScatteringCurve>& curves, const ScatteringFitOptions& options = {});
 
 /// Bins of several curves on the same edges put together, each with its modes: the mean intensity of an ensemble.

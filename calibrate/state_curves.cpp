@@ -17,18 +17,18 @@ constexpr std::size_t kFewestPoints = 4;
 
 void require_curve(const StateCurve& c, std::size_t k) {
   if (c.phi.size() != c.pressure.size() || (!c.weight.empty() && c.weight.size() != c.phi.size()))
-    throw BadInput(fmt::format("equation of state: curve {} has {} solid fractions, {} pressures and {} weights", k,
-                               c.phi.size(), c.pressure.size(), c.weight.size()));
+    throw InputError(fmt::format("equation of state: curve {} has {} solid fractions, {} pressures and {} weights", k,
+                                 c.phi.size(), c.pressure.size(), c.weight.size()));
   if (!(c.span >= 1.0) || !std::isfinite(c.span))
-    throw BadInput(fmt::format("equation of state: curve {} has a span of {}; it must be 1 or more", k, c.span));
+    throw InputError(fmt::format("equation of state: curve {} has a span of {}; it must be 1 or more", k, c.span));
   for (std::size_t i = 0; i < c.phi.size(); ++i) {
     if (!(c.phi[i] > 0.0 && c.phi[i] < 1.0) || !std::isfinite(c.pressure[i]))
-      throw BadInput(fmt::format(
+      throw InputError(fmt::format(
           "equation of state: curve {}, point {}: solid fraction {} and p/E {}; a fraction between 0 and 1 and a "
           "number are needed",
           k, i, c.phi[i], c.pressure[i]));
     if (!c.weight.empty() && !(c.weight[i] >= 0.0 && std::isfinite(c.weight[i])))
-      throw BadInput(
+      throw InputError(
           fmt::format("equation of state: curve {}, point {}: weight {}; it must be 0 or more", k, i, c.weight[i]));
   }
 }
@@ -36,7 +36,7 @@ void require_curve(const StateCurve& c, std::size_t k) {
 }  // namespace
 
 StateSamples read_state_curves(const std::vector<StateCurve>& curves) {
-  if (curves.empty()) throw BadInput("equation of state: no curves");
+  if (curves.empty()) throw InputError("equation of state: no curves");
   StateSamples out;
   std::map<std::pair<double, std::string>, std::size_t> index;
   std::map<std::string, double> span;
@@ -44,8 +44,8 @@ StateSamples read_state_curves(const std::vector<StateCurve>& curves) {
     require_curve(curves[k], k);
     const auto [at, fresh] = span.insert({curves[k].group, curves[k].span});
     if (at->second != curves[k].span)
-      throw BadInput(fmt::format("equation of state: group {} has spans of {} and {}", curves[k].group, at->second,
-                                 curves[k].span));
+      throw InputError(fmt::format("equation of state: group {} has spans of {} and {}", curves[k].group, at->second,
+                                   curves[k].span));
     index[{curves[k].span, curves[k].group}] = 0;
   }
   for (auto& [key, g] : index) {
@@ -59,10 +59,10 @@ StateSamples read_state_curves(const std::vector<StateCurve>& curves) {
       if (c.pressure[i] > 0.0) order.push_back(i);
     out.left_out += static_cast<int>(c.phi.size() - order.size());
     if (order.empty())
-      throw BadInput(
+      throw InputError(
           fmt::format("equation of state: curve {} (group {}) never bears: no point above the onset", k, c.group));
     if (order.size() < kFewestPoints)
-      throw BadInput(
+      throw InputError(
           fmt::format("equation of state: curve {} (group {}) has {} points with pressure; {} or more are needed", k,
                       c.group, order.size(), kFewestPoints));
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return c.pressure[a] < c.pressure[b]; });
@@ -83,7 +83,7 @@ StateSamples read_state_curves(const std::vector<StateCurve>& curves) {
   return out;
 }
 
-/// With u = (p/K)^(1/n): porosity phi = phi_J + (1 - phi_J) u; pores e = e_J (1 - u).
+/// Slopes of phi with u = (p/K)^(1/n): porosity phi = phi_J + (1 - phi_J) u; pores e = e_J (1 - u).
 PhiSlopes phi_slopes(StateForm form, double log_modulus, double exponent, double onset, double pressure) {
   const double z = (std::log(pressure) - log_modulus) / exponent;
   const double u = std::exp(z);

@@ -14,7 +14,7 @@ struct StateCurve {
   double span = 1.0;             ///< largest over smallest radius, >= 1
   std::vector<double> phi;       ///< solid fraction, overlaps counted twice
   std::vector<double> pressure;  ///< p/E at it
-  std::vector<double> weight;    ///< of the squared residual; empty: all 1
+  std::vector<double> weight;    ///< weight of the squared residual; empty: all 1
 };
 
 /// phi at which a packing with onset phi_J bears p/E = pressure.
@@ -44,14 +44,14 @@ struct StateSamples {
     int samples = 0;
     int points = 0;
   };
-  std::vector<StateSample> samples;  ///< in the order of the curves
-  std::vector<Group> groups;         ///< by span, then name
+  std::vector<StateSample> samples;  ///< samples in the order of the curves
+  std::vector<Group> groups;         ///< groups by span, then name
   std::size_t points = 0;
   int left_out = 0;  ///< points without pressure
 };
 
-/// Throws BadInput for fewer than 4 points with pressure in a curve or none ("never bears"), phi outside (0, 1), values
-/// that are not finite, spans below 1 or two of them in one group, weights below 0.
+/// Throws InputError for fewer than 4 points with pressure in a curve or none ("never bears"), phi outside (0, 1),
+/// values that are not finite, spans below 1 or two of them in one group, weights below 0.
 StateSamples read_state_curves(const std::vector<StateCurve>& curves);
 
 }  // namespace softgrain

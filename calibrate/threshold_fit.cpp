@@ -24,14 +24,15 @@ constexpr double kTolerableShare = 0.025;
 
 void require_valid(const FitOptions& o) {
   if (!(o.initial_angle_deg > 0.0) || !(o.secant_angle_deg.value_or(1.0) > 0.0))
-    throw BadInput("fit: angles must be above 0 degrees");
+    throw InputError("fit: angles must be above 0 degrees");
   if (!(o.delta_high > o.delta_low) || o.delta_low < 0.0)
-    throw BadInput(fmt::format("fit: range of Delta [{}, {}] must rise from 0 or above", o.delta_low, o.delta_high));
-  if (!(o.noise_floor >= 0.0)) throw BadInput(fmt::format("fit: noise_floor = {}: must be 0 or above", o.noise_floor));
+    throw InputError(fmt::format("fit: range of Delta [{}, {}] must rise from 0 or above", o.delta_low, o.delta_high));
+  if (!(o.noise_floor >= 0.0))
+    throw InputError(fmt::format("fit: noise_floor = {}: must be 0 or above", o.noise_floor));
   if (!(o.scatter_floor > 0.0 && o.scatter_floor <= 1.0))
-    throw BadInput(fmt::format("fit: scatter_floor = {}: must lie in (0, 1]", o.scatter_floor));
-  if (o.min_packings < 2) throw BadInput(fmt::format("fit: min_packings = {}: must be 2 or above", o.min_packings));
-  if (o.replicates < 0) throw BadInput(fmt::format("fit: replicates = {}: must be 0 or above", o.replicates));
+    throw InputError(fmt::format("fit: scatter_floor = {}: must lie in (0, 1]", o.scatter_floor));
+  if (o.min_packings < 2) throw InputError(fmt::format("fit: min_packings = {}: must be 2 or above", o.min_packings));
+  if (o.replicates < 0) throw InputError(fmt::format("fit: replicates = {}: must be 0 or above", o.replicates));
 }
 
 RunList select_runs(const Measurements& data, PairKind kind, const std::string& relaxation) {
@@ -215,12 +216,12 @@ std::string chosen_relaxation(const Measurements& data, const FitOptions& option
   for (const PackingRun& run : data.runs) present.insert(run.relaxation);
   std::string names;
   for (const std::string& name : present) names += (names.empty() ? "\"" : ", \"") + name + "\"";
-  if (present.empty()) throw BadInput("fit: the measurements hold no runs");
+  if (present.empty()) throw InputError("fit: the measurements hold no runs");
   if (options.relaxation.empty() && present.size() > 1)
-    throw BadInput("fit: relaxation is not given and the measurements hold " + names + "; choose one");
+    throw InputError("fit: relaxation is not given and the measurements hold " + names + "; choose one");
   if (options.relaxation.empty()) return *present.begin();
   if (present.count(options.relaxation) == 0)
-    throw BadInput(fmt::format("fit: relaxation = \"{}\": the measurements hold {}", options.relaxation, names));
+    throw InputError(fmt::format("fit: relaxation = \"{}\": the measurements hold {}", options.relaxation, names));
   return options.relaxation;
 }
 

@@ -23,24 +23,24 @@
 namespace softgrain {
 
 struct FitOptions {
-  std::string relaxation;  ///< which relaxation's runs; empty: the only one present
+  std::string relaxation;  ///< relaxation whose runs are fitted; empty: the only one present
   double delta_low = 0.0;  ///< fitted range of Delta
   double delta_high = std::numeric_limits<double>::infinity();
   double initial_angle_deg = 0.05;         ///< largest |angle| of the initial slope [degree]
   std::optional<double> secant_angle_deg;  ///< angle of the secant [degree]; empty: as default_secant_angle() says
   double noise_floor = 1e-6;               ///< means below this (dimensionless) count as zero force
   double scatter_floor = 0.02;             ///< smallest weight-giving deviation, as a share of the pooled deviation
-  int min_packings = 5;                    ///< for an interval; the published protocol asks for at least seven
-  int replicates = 1000;                   ///< of the bootstrap; 0: none (the law is then marked underdetermined)
+  int min_packings = 5;   ///< fewest packings for an interval; the published protocol asks for at least seven
+  int replicates = 1000;  ///< replicates of the bootstrap; 0: none (the law is then marked underdetermined)
   std::uint64_t seed = 0;
   /// Measured outside, in few samples or one: errors of single values by experiment_errors() instead of the scatter
   /// alone, and with fewer than min_packings samples intervals from residuals.
   bool experiment = false;
-  std::vector<GivenError> given_errors;  ///< of the normal force over E Rs^2, when the experiment states them
-  /// Of each sample the Delta below which its readings made the zero of the force (0: not so); a redrawn sample is set
-  /// to zero again.
+  std::vector<GivenError> given_errors;  ///< errors of the normal force over E Rs^2, when the experiment states them
+  /// Delta of each sample below which its readings made the zero of the force (0: not so); a redrawn sample is set to
+  /// zero again.
   std::vector<double> zeroed_below{};
-  bool subtract_offset = true;  ///< of an experiment: constant forces without contact (force_offset.h) are taken off
+  bool subtract_offset = true;  ///< experiment: whether constant forces without contact (force_offset.h) are taken off
 };
 
 /// The angle of the secant that a law takes for kt [degree]: at 1 degree soft particles on a plane have the published
@@ -54,12 +54,11 @@ struct FitReport {
   int replicates_failed = 0;    ///< resamples whose fit did not converge or was rank-deficient; not among `replicates`
   int replicates_at_bound = 0;  ///< among `replicates`, with an exponent or the upper end of delta at its bound
   int normal_left_out = 0;      ///< normal points that were measured but not converged
-  int tangential_left_out = 0;  ///< the same for tangential points
-  int iterations = 0;           ///< of the optimiser over all intervals of delta
+  int tangential_left_out = 0;  ///< tangential points that were measured but not converged
+  int iterations = 0;           ///< iterations of the optimiser over all intervals of delta
   bool from_residuals = false;  ///< replicates are of residuals, not of packings
-  std::size_t drawn_packings =
-      0;                    ///< that replicates of packings were drawn from; widens intervals where these are few
-  std::string fit_message;  ///< why the optimiser ended
+  std::size_t drawn_packings = 0;  ///< packings that replicates were drawn from; widens intervals where these are few
+  std::string fit_message;         ///< why the optimiser ended
 };
 
 /// Fits one pair kind. status of the law:
@@ -68,10 +67,10 @@ struct FitReport {
 ///   such data).
 /// `quality` is the chi^2 tail probability of the packing means above threshold. Means at neighbouring Delta come from
 /// the same packings and move together, so it is a guide, not a test of level; 0 without degrees of freedom or scatter.
-/// Throws BadInput for options out of range or an ambiguous relaxation.
+/// Throws InputError for options out of range or an ambiguous relaxation.
 FitReport fit_pair_law(const Measurements& data, PairKind kind, const FitOptions& options = {});
 
-/// Fits every pair kind present. Throws BadInput when nothing matches the relaxation asked for.
+/// Fits every pair kind present. Throws InputError when nothing matches the relaxation asked for.
 LawCard calibrate(const Measurements& data, const FitOptions& options = {}, std::vector<FitReport>* reports = nullptr);
 
 /// Bands on an even grid up to the end of the fitted range, for the curves that were fitted; nothing without
@@ -89,7 +88,7 @@ struct Band {
 /// a, b and delta are nearly degenerate: judge a law by this band, not by their intervals.
 std::vector<Band> law_band(const FitReport& report, LawCurve curve, std::span<const double> deltas);
 
-/// The relaxation that options and data agree on. Throws BadInput.
+/// The relaxation that options and data agree on. Throws InputError.
 std::string chosen_relaxation(const Measurements& data, const FitOptions& options);
 
 }  // namespace softgrain

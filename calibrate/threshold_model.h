@@ -57,7 +57,7 @@ std::array<double, 3> law_gradient(const JointParameters& p, std::size_t curve, 
 /// Weighted residuals of all curves, exact Jacobian, bounds; delta in [0, infinity). Keeps a reference to `curves`.
 LeastSquaresProblem joint_problem(const FitCurves& curves, const JointParameters& shape);
 
-/// Which curves are present, and their references D_j.
+/// Parameters that hold which curves are present, and their references D_j.
 JointParameters joint_shape(const FitCurves& curves);
 
 /// Weight of a mean in the fit: sqrt(n)/sigma.

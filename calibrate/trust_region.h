@@ -19,7 +19,7 @@ struct TrustRegionStrategy {
   bool dogleg = false;            ///< else Levenberg-Marquardt
   bool subspace = false;          ///< dogleg over the plane of both directions, not the path alone
   bool non_monotonic = false;     ///< S may rise for a few steps
-  double initial_radius = 1.0e4;  ///< in units of the scaled parameters
+  double initial_radius = 1.0e4;  ///< initial radius in units of the scaled parameters
 };
 
 /// The strategies in the order in which they are tried.

@@ -18,9 +18,10 @@ template <int D>
 struct NeighbourState {
   std::vector<Vec<D>> reference;  ///< positions at the last rebuild; empty: list must be built
   std::vector<double> skin;       ///< per body [m]: a pair's margin is the sum of both, each may move its own share
-  Matrix<D> reference_edges{};    ///< of the cell, likewise
+  Matrix<D> reference_edges{};    ///< edges of the cell at the last rebuild
   std::int64_t rebuilds = 0;
-  std::int64_t hasty = 0;  ///< rebuilds one pass after the one before: some body crosses its whole margin in a step
+  std::int64_t short_lived =
+      0;  ///< rebuilds one pass after the one before: some body crosses its whole margin in a step
   std::int64_t passes_at_build = 0;  ///< loop passes when the list was made
   // Follow from the margins (note_skin), not part of a saved state.
   std::vector<double> inverse_skin2;  ///< [1/m^2]

@@ -32,7 +32,7 @@ std::vector<Vec3> body_centres(const MacroSystem& macro) {
   return centre;
 }
 
-/// From the image of the other centre that is near.
+/// Vector to `x` from the nearest image of `other`.
 Vec3 between(const MacroSystem& macro, const Vec3& x, const Vec3& other) {
   const Cell<3>& cell = macro.system.cell;
   return x - other - cell.image_shift(cell.image_near(x, other));

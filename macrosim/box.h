@@ -43,7 +43,8 @@ void strain_box(System3& system, const Box& box, const Vec3& strain);
 /// opposite planes over the area they close; of a periodic cell contact_stress().
 Vec3 box_stress(const System3& system, const Box& box);
 
-/// From the contacts inside: sum over contacts of force times branch over the volume [Pa]; equal in equilibrium.
+/// Stress from the contacts inside: sum over contacts of force times branch over the volume [Pa]. In equilibrium it
+/// equals the stress on the box.
 Vec3 contact_stress(const System3& system, const Box& box);
 
 }  // namespace softgrain

@@ -26,33 +26,33 @@ double solid_volume(const std::vector<MacroBody>& bodies) {
   return sum;
 }
 
-double dressed_volume(const std::vector<MacroBody>& bodies, double mantle) {
+double thickened_volume(const std::vector<MacroBody>& bodies, double thickness) {
   double sum = 0.0;
-  for (const MacroBody& b : bodies) sum += kSphereVolume * cube(b.soft ? b.r : b.r + mantle);
+  for (const MacroBody& b : bodies) sum += kSphereVolume * cube(b.soft ? b.r : b.r + thickness);
   return sum;
 }
 
 /// Thickness with which dressed bodies fill their share of the room.
-double mantle_of(const std::vector<MacroBody>& bodies, double room) {
-  const double wanted = kDressedFraction * room;
+double thickness_of(const std::vector<MacroBody>& bodies, double room) {
+  const double wanted = kThickenedFraction * room;
   double high = std::cbrt(room);
   double low = 0.0;
-  if (dressed_volume(bodies, 0.0) > wanted) {  // coarse grains are denser by themselves: they lose a little
+  if (thickened_volume(bodies, 0.0) > wanted) {  // coarse grains are denser by themselves: they lose a little
     double smallest = HUGE_VAL;
     for (const MacroBody& b : bodies)
       if (!b.soft) smallest = std::min(smallest, b.r);
     low = -0.1 * smallest;
     high = 0.0;
   }
-  if (!(dressed_volume(bodies, low) < wanted))
-    throw BadInput(fmt::format(
+  if (!(thickened_volume(bodies, low) < wanted))
+    throw InputError(fmt::format(
         "cells: coarse bodies and soft particles fill {:.3g} of the room, too much for places of their own: "
         "fewer soft particles, more fines, or a packing from a file",
-        dressed_volume(bodies, 0.0) / room));
+        thickened_volume(bodies, 0.0) / room));
   for (int k = 0; k < 200; ++k) {
     const double middle = 0.5 * (low + high);
     if (middle == low || middle == high) break;
-    (dressed_volume(bodies, middle) < wanted ? low : high) = middle;
+    (thickened_volume(bodies, middle) < wanted ? low : high) = middle;
   }
   return 0.5 * (low + high);
 }
@@ -94,13 +94,13 @@ MacroPacking make_cell_packing(const MacroSpec& spec, std::uint64_t seed, std::u
                           ? (coarse + fines) / matter.solid_fraction
                           : room_at_pressure(fines_law_of(matter.card, spec.youngs_modulus), fines, coarse,
                                              spec.start_pressure * spec.youngs_modulus);
-  const double mantle = mantle_of(bodies, room);
+  const double thickness = thickness_of(bodies, room);
   for (MacroBody& b : bodies)
-    if (!b.soft) b.r += mantle;
+    if (!b.soft) b.r += thickness;
   std::stable_sort(bodies.begin(), bodies.end(), [](const MacroBody& a, const MacroBody& b) { return a.r > b.r; });
   MacroPacking packing = pack_bodies(spec, std::move(bodies), seed, sample, watch);
   for (MacroBody& b : packing.bodies)
-    if (!b.soft) b.r -= mantle;
+    if (!b.soft) b.r -= thickness;
   packing.springs.clear();
   scale_room(packing, room);
   return packing;
@@ -110,7 +110,7 @@ CellSpecimen make_cells(const MacroSpec& spec, const MacroPacking& packing) {
   const CellMatter& matter = *spec.cells;
   require_same_grains(matter.card, spec);
   const double coarse = solid_volume(packing.bodies);
-  if (!(coarse > 0.0)) throw BadInput("cells: no solid grains are there, whose cells fines could fill");
+  if (!(coarse > 0.0)) throw InputError("cells: no solid grains are there, whose cells fines could fill");
   std::vector<Sphere<3>> sites;
   CoarseBodies bodies;
   for (const MacroBody& b : packing.bodies) {
@@ -121,7 +121,7 @@ CellSpecimen make_cells(const MacroSpec& spec, const MacroPacking& packing) {
   const CellRoom room = room_of(spec, packing);
   std::vector<std::array<std::int32_t, 3>> periods(sites.size());
   room.bring_home(sites, periods);
-  if (!room.holds(sites)) throw BadInput("cells: a body lies outside its box");
+  if (!room.holds(sites)) throw InputError("cells: a body lies outside its box");
   const RadicalCells cells = room.cells_of(sites);
   const FinesLaw fines = fines_law_of(matter.card, spec.youngs_modulus);
   const double volume = fines_volume(matter, coarse);
@@ -154,7 +154,7 @@ std::string start_remark(const MacroSpec& spec, const CellStart& start) {
 
 void require_same_grains(const CellCard& card, const MacroSpec& spec) {
   if (card.poisson_ratio != spec.poisson_ratio || card.grain_friction != spec.friction)
-    throw BadInput(fmt::format(
+    throw InputError(fmt::format(
         "cell law: it was measured with nu = {}, mu = {} and serves no grains of nu = {}, mu = {}: measure a "
         "card for them",
         card.poisson_ratio, card.grain_friction, spec.poisson_ratio, spec.friction));
@@ -193,7 +193,7 @@ CellState read_cell_state(const h5::Group& group) {
   const std::size_t n = sites.size() / 4;
   if (box.size() != 6 || sites.size() != 4 * n || content.size() != 2 * n || periods.size() != 3 * n ||
       faces.size() % 6 != 0 || springs.size() != faces.size() / 6 * 7)
-    throw FileTrouble("cells: arrays of wrong length");
+    throw IoError("cells: arrays of wrong length");
   CellState out;
   out.low = {{box[0], box[1], box[2]}};
   out.high = {{box[3], box[4], box[5]}};

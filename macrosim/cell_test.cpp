@@ -23,11 +23,11 @@ CellRelaxation options_of(const MacroSpec& spec, const MacroStage& stage) {
   return options;
 }
 
-/// At the end: where the law was taken beyond what it was fitted to.
+/// Notes at the end of a test how many cells were beyond the range that the law was fitted to.
 void note_range(const MacroSpec& spec, MacroCurve& c) {
   const double beyond = std::accumulate(c.law_beyond.begin(), c.law_beyond.end(), 0.0);
   if (!(beyond > 0.0)) return;
-  const double asked = std::accumulate(c.law_asked.begin(), c.law_asked.end(), 0.0);
+  const double asked = std::accumulate(c.law_evaluations.begin(), c.law_evaluations.end(), 0.0);
   const double largest = *std::max_element(c.law_largest.begin(), c.law_largest.end());
   c.note += fmt::format(
       "{}{:.2g} % of the cells at recorded points are beyond p/E = {:.3g}, up to which the law was "
@@ -58,8 +58,8 @@ struct CellTest {
         point = cells.press(mean ? Vec3{{1.0, 1.0, 1.0}} : stretch, box_control(spec, stage, *stress),
                             options_of(spec, stage));
       }
-    } catch (const BadInput& e) {  // a room that has become too small: no fault of the scene
-      throw NotUsable(e.what());
+    } catch (const InputError& e) {  // a room that has become too small: no fault of the scene
+      throw UnusableResult(e.what());
     }
     add_cost(state, point);
     state.curve.cost.seconds += watch.seconds();
@@ -99,7 +99,7 @@ struct CellTest {
       beyond += r.pressure > end ? 1.0 : 0.0;
       largest = std::max(largest, r.pressure / end);
     }
-    c.law_asked.push_back(static_cast<double>(cells.sites().size()));
+    c.law_evaluations.push_back(static_cast<double>(cells.sites().size()));
     c.law_beyond.push_back(beyond);
     c.law_largest.push_back(largest);
   }

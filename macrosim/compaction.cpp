@@ -34,7 +34,7 @@ DampedOptions options_under(double pressure, const HardBodies& hard, const Macro
 }
 
 [[noreturn]] void not_jammed(const MacroSpec& spec, HardBodies& hard, const RelaxationResult& rest) {
-  throw NotUsable(fmt::format(
+  throw UnusableResult(fmt::format(
       "{}: relaxation {} after {} passes; reached: walls at {:.3g} E, bodies fill {:.4f} of the box, largest net force "
       "(but for one body in 2000) {:.3g} of the mean contact force",
       not_jammed_text(spec), to_string(rest.end), rest.passes, hard.pressure() / spec.youngs_modulus, hard.fraction(),
@@ -135,8 +135,8 @@ void shrink(MacroPacking& packing, const MacroSpec& spec, const PreparationWatch
     }
     const double now = hard.fraction();
     if (!(now < 1.0))
-      throw NotUsable(fmt::format("{}: bodies fill {:.4f} of the box, whose walls bear {:.3g} E", not_jammed_text(spec),
-                                  now, mean / spec.youngs_modulus));
+      throw UnusableResult(fmt::format("{}: bodies fill {:.4f} of the box, whose walls bear {:.3g} E",
+                                       not_jammed_text(spec), now, mean / spec.youngs_modulus));
     if (watch) watch(std::min(0.8, 0.8 * std::log(now / start) / std::log(0.62 / std::min(start, 0.6))));
   }
   hard.take_over(packing);

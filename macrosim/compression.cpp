@@ -39,7 +39,7 @@ void record_bodies(const MacroSystem& macro, MacroCurve& c) {
 LawUse watch_bodies(CompressionState& state) {
   MacroCurve& c = state.curve;
   const ContactWatch<3> seen = watch_contacts(state.macro.system);
-  if (seen.behind_planes > 0) throw NotUsable(behind_wall_text(c.engine, seen.behind, c.strain.back()));
+  if (seen.behind_planes > 0) throw UnusableResult(behind_wall_text(c.engine, seen.behind, c.strain.back()));
   record_law_use(c, seen.laws);
   return c.grains > 0 || c.soft == 0 ? LawUse{} : seen.laws;
 }
@@ -88,8 +88,8 @@ RelaxationResult counted_step(CompressionState& state, const MacroSpec& spec, co
   RelaxationResult rest;
   try {
     rest = step_of(macro, spec, stage, strain, stress);
-  } catch (const BadInput& e) {  // a cell that has become too small: no fault of the scene
-    throw NotUsable(e.what());
+  } catch (const InputError& e) {  // a cell that has become too small: no fault of the scene
+    throw UnusableResult(e.what());
   }
   const Cost& now = macro.system.cost;
   state.curve.cost +=
@@ -115,7 +115,7 @@ struct ContactTest {
     note_law_use(state.curve, last, state.curve.strain.back());
   }
   static bool ended(CompressionState& state) {
-    return !state.curve.usable && watch_contacts(state.macro.system).laws.refused > 0;
+    return !state.curve.usable && watch_contacts(state.macro.system).laws.rejected > 0;
   }
 };
 

@@ -15,9 +15,9 @@ namespace softgrain {
 struct CompressionState {
   MacroSystem macro;
   MacroCurve curve;             ///< what was recorded so far; curve.strain.size() says where to go on
-  std::int64_t increments = 0;  ///< done since, on the way to the next point
-  IncrementRest worst{};        ///< of these, the one that ended farthest from rest
-  bool over = false;            ///< ended before its last point
+  std::int64_t increments = 0;  ///< number of increments done since the last recorded point
+  IncrementRest worst{};        ///< relaxation that ended farthest from rest among these increments
+  bool over = false;            ///< whether the test ended before its last point
 };
 
 /// Adds to the curve what else somebody wants of a point that was recorded.
@@ -29,7 +29,7 @@ using PointRecord = std::function<void(const MacroSystem&, MacroCurve&)>;
 /// and from contacts, coordination, fabric, residual, and the forces between bodies of the last point.
 /// Increments that did not converge make the curve not usable, with a note, whether a point follows them or further
 /// increments; so does a law asked beyond its range that does
-/// not allow it, and a stress that cannot be reached, and the test ends there. Throws NotUsable (lost grain) and
+/// not allow it, and a stress that cannot be reached, and the test ends there. Throws UnusableResult (lost grain) and
 /// Interrupted.
 void compress(CompressionState& state, const MacroSpec& spec, const RunControl<CompressionState>& control = {},
               const PointRecord& also = {});

@@ -42,8 +42,8 @@ void note_relaxation(MacroCurve& c, const RelaxationResult& rest, double strain,
 
 void require_finite(const RelaxationResult& rest, const MacroCurve& c) {
   if (std::isfinite(rest.residual)) return;
-  throw NotUsable(fmt::format("macro run '{}': relaxation diverged beyond strain {:.6f}", c.engine,
-                              c.strain.empty() ? 0.0 : c.strain.back()));
+  throw UnusableResult(fmt::format("macro run '{}': relaxation diverged beyond strain {:.6f}", c.engine,
+                                   c.strain.empty() ? 0.0 : c.strain.back()));
 }
 
 void note_unrest(MacroCurve& c, const IncrementRest& worst, const MacroStage& stage) {
@@ -92,9 +92,9 @@ std::string no_unloading_text(const MacroSpec& spec, const std::string& law) {
 
 void record_law_use(MacroCurve& c, const LawUse& use) {
   if (c.grains > 0 || c.soft == 0) return;
-  c.law_asked.push_back(static_cast<double>(use.asked));
+  c.law_evaluations.push_back(static_cast<double>(use.evaluations));
   c.law_beyond.push_back(static_cast<double>(use.beyond));
-  c.law_largest.push_back(use.largest);
+  c.law_largest.push_back(use.max_range_ratio);
 }
 
 void note_law_use(MacroCurve& c, const LawUse& last, double strain) {
@@ -102,11 +102,11 @@ void note_law_use(MacroCurve& c, const LawUse& last, double strain) {
   const auto total = [](const std::vector<double>& v) {
     return static_cast<std::int64_t>(std::accumulate(v.begin(), v.end(), 0.0));
   };
-  all.asked = total(c.law_asked);
+  all.evaluations = total(c.law_evaluations);
   all.beyond = total(c.law_beyond);
   const std::string text = law_use_text(all);
   if (text.empty()) return;
-  if (last.refused > 0) {
+  if (last.rejected > 0) {
     c.usable = false;
     c.note = text + " (strain " + std::to_string(strain) + ")";
   } else if (c.note.empty()) {

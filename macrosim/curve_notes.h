@@ -23,20 +23,21 @@ struct IncrementRest {
 void note_relaxation(MacroCurve& curve, const RelaxationResult& rest, double strain, double tolerance,
                      const std::string& of = "");
 
-/// Throws NotUsable for a relaxation whose forces are no longer finite: there is no state to go on from.
+/// Throws UnusableResult for a relaxation whose forces are no longer finite: there is no state to go on from.
 void require_finite(const RelaxationResult& rest, const MacroCurve& curve);
 
-/// After a point was recorded: the relaxation of the increments up to it that ended farthest from rest. Its residual is
-/// recorded (MacroCurve::residual_largest), and one that did not converge makes the curve not usable: points that
-/// follow it start from a state that was not at rest. The note is about the worst one of the whole test.
+/// Records the residual of the increment up to the last recorded point that ended farthest from rest
+/// (MacroCurve::residual_largest). To be called after the point was recorded. A relaxation that did not converge makes
+/// the curve not usable: points that follow it start from a state that was not at rest. The note is about the worst one
+/// of the whole test.
 void note_unrest(MacroCurve& curve, const IncrementRest& worst, const MacroStage& stage);
 
 /// A stage whose stress the packing does not bear makes the curve not usable: what was asked along axes that go by
 /// stress, what there is, and where. After note_relaxation().
 void note_out_of_reach(MacroCurve& curve, const MacroStage& stage, const Vec3& asked);
 
-/// At the end of a test: stages that hold axes at the stress with which they began, where that was none. Their sides
-/// are free, which is another test than in a sample that bore something.
+/// Notes at the end of a test which stages hold axes at the stress with which they began although it was zero. Their
+/// sides are free, which is another test than in a sample under stress.
 void note_free_sides(MacroCurve& curve, const std::vector<MacroStage>& stages);
 
 /// What is to be said of a law without unloading branch in a test that unloads; empty where nothing is unloaded.
@@ -45,8 +46,8 @@ std::string no_unloading_text(const MacroSpec& spec, const std::string& law);
 /// Records how far laws were asked at a point; nothing for twins, which have no fitted law, and without soft particles.
 void record_law_use(MacroCurve& curve, const LawUse& use);
 
-/// Over all recorded points, at the end of a test; what happens beyond the range is that of `last`. A use that the law
-/// refuses makes the curve not usable.
+/// Notes at the end of a test how laws were used over all recorded points. What happens beyond the range is taken from
+/// `last`. A use that the law refuses makes the curve not usable.
 void note_law_use(MacroCurve& curve, const LawUse& last, double strain);
 
 /// "macro run 'law': the centre of body 7 is behind a wall at strain 0.05"

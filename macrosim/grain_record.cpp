@@ -51,7 +51,7 @@ double rattling_share(const MacroSystem& macro, const Contacts& contacts, int ne
   return static_cast<double>(loose.size()) / static_cast<double>(p.grains);
 }
 
-/// Of the sum of force times branch, in the order of Bearers.
+/// Shares of the sum of force times branch over all contacts, in the order of Bearers.
 std::array<double, 3> shares(const MacroSystem& macro, const Contacts& contacts, double coarse) {
   const auto& p = macro.system.particles;
   std::array<double, 3> sum{};

@@ -11,9 +11,9 @@ namespace softgrain {
 enum class Bearers { coarse_coarse, coarse_fine, fine_fine };
 
 template <>
-inline constexpr auto words<Bearers> = word_list<Bearers>({{Bearers::coarse_coarse, "coarse-coarse"},
-                                                           {Bearers::coarse_fine, "coarse-fine"},
-                                                           {Bearers::fine_fine, "fine-fine"}});
+inline constexpr auto enum_names<Bearers> = enum_name_list<Bearers>({{Bearers::coarse_coarse, "coarse-coarse"},
+                                                                     {Bearers::coarse_fine, "coarse-fine"},
+                                                                     {Bearers::fine_fine, "fine-fine"}});
 
 inline constexpr const char* kSolidFraction = "solid_fraction";
 inline constexpr const char* kRattlers = "rattlers";

@@ -18,9 +18,9 @@ struct HardBodies {
   static AnyLaw law(const MacroSpec& spec, double friction, double restitution);
 
   [[nodiscard]] Vec3 size() const { return box_high(system, box) - box_low(system, box); }
-  [[nodiscard]] double pressure();        ///< mean of all axes, of the last pass [Pa]
-  [[nodiscard]] double fraction() const;  ///< of the box that bodies fill
-  /// Places of bodies, springs and the box go to the packing, what it took is added to its cost.
+  [[nodiscard]] double pressure();        ///< mean stress of all axes in the last pass [Pa]
+  [[nodiscard]] double fraction() const;  ///< share of the box that bodies fill
+  /// Copies the places of bodies, the springs and the box to the packing, and adds the cost.
   void take_over(MacroPacking& packing) const;
 
  private:

@@ -55,7 +55,7 @@ std::vector<MacroBody> draw_power_laws(const MacroSpec& spec, double soft_share,
 
 namespace {
 
-/// From this many on.
+/// Least number of bodies that are ordered in space.
 constexpr std::size_t kOrderedBodies = 2000;
 
 /// Bodies that will meet lie near each other in memory: compaction moves them less than their order does.
@@ -136,10 +136,10 @@ void read_springs(const h5::Group& group, MacroPacking& packing) {
   const auto pairs = group.integers("spring_bodies");
   const auto values = group.doubles("springs");
   const auto bodies = static_cast<std::int64_t>(packing.bodies.size());
-  if (2 * values.size() != 3 * pairs.size()) throw FileTrouble("macro packing: springs of wrong length");
+  if (2 * values.size() != 3 * pairs.size()) throw IoError("macro packing: springs of wrong length");
   for (std::size_t k = 0; 2 * k < pairs.size(); ++k) {
     if (pairs[2 * k] < 0 || pairs[2 * k] >= bodies || pairs[2 * k + 1] < 0 || pairs[2 * k + 1] >= bodies)
-      throw FileTrouble("macro packing: a spring of bodies that are not there");
+      throw IoError("macro packing: a spring of bodies that are not there");
     packing.springs.push_back({static_cast<std::int32_t>(pairs[2 * k]),
                                static_cast<std::int32_t>(pairs[2 * k + 1]),
                                {{values[3 * k], values[3 * k + 1], values[3 * k + 2]}}});
@@ -170,7 +170,7 @@ MacroPacking read_macro_packing(const h5::Group& group) {
   const auto corners = group.doubles("box");
   const auto rows = group.doubles("bodies");
   const auto soft = group.integers("soft");
-  if (corners.size() != 6 || rows.size() != 4 * soft.size()) throw FileTrouble("macro packing: arrays of wrong length");
+  if (corners.size() != 6 || rows.size() != 4 * soft.size()) throw IoError("macro packing: arrays of wrong length");
   MacroPacking packing{{{corners[0], corners[1], corners[2]}}, {{corners[3], corners[4], corners[5]}}, {}};
   for (std::size_t k = 0; k < soft.size(); ++k)
     packing.bodies.push_back({{{rows[4 * k], rows[4 * k + 1], rows[4 * k + 2]}}, rows[4 * k + 3], soft[k] != 0});

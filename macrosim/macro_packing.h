@@ -31,11 +31,11 @@ struct MacroPacking {
   Vec3 low{};  ///< corners of the box [m]
   Vec3 high{};
   std::vector<MacroBody> bodies;
-  Cost cost{};                        ///< of its preparation
-  std::vector<BodySpring> springs{};  ///< of a preparation with friction, in the order of i, then j
+  Cost cost{};                        ///< cost of the preparation
+  std::vector<BodySpring> springs{};  ///< springs of a preparation with friction, sorted by i, then j
 
   [[nodiscard]] Vec3 size() const { return high - low; }
-  [[nodiscard]] double body_volume() const;     ///< of solid grains and shells [m^3]
+  [[nodiscard]] double body_volume() const;     ///< volume of solid grains and shells [m^3]
   [[nodiscard]] double solid_fraction() const;  ///< body_volume() over the volume of the box
   [[nodiscard]] double soft_volume_share() const;
   [[nodiscard]] std::int64_t soft_count() const;
@@ -55,13 +55,13 @@ inline std::string sizes_text(const MacroSpec& spec) {
 /// Told the share of a preparation that is done.
 using PreparationWatch = std::function<void(double share)>;
 
-/// Drawn bodies, random non-overlapping start, isotropic compaction of all bodies as hard grains by
-/// spec.protocol until the wall pressure is start_pressure * E; with preparation "lammps" no compaction. Throws
-/// BadInput when the shares cannot be met, NotUsable when it does not jam.
+/// Draws bodies, places them at random without overlap, and compacts them isotropically as hard grains by spec.protocol
+/// until the wall pressure is start_pressure * E; with preparation "lammps" there is no compaction. Throws InputError
+/// when the shares cannot be met, UnusableResult when it does not jam.
 MacroPacking make_macro_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample,
                                 const PreparationWatch& watch = {});
 
-/// The same of bodies without places, largest first.
+/// Places and compacts the given bodies, which come largest first and without places, as make_macro_packing() does.
 MacroPacking pack_bodies(const MacroSpec& spec, std::vector<MacroBody> bodies, std::uint64_t seed, std::uint64_t sample,
                          const PreparationWatch& watch = {});
 

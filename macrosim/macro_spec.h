@@ -19,43 +19,44 @@ enum class Construction {
 };
 
 template <>
-inline constexpr auto words<Construction> = word_list<Construction>({{Construction::mixed, "mixed"},
-                                                                     {Construction::voids, "voids"}});
+inline constexpr auto enum_names<Construction> = enum_name_list<Construction>({{Construction::mixed, "mixed"},
+                                                                               {Construction::voids, "voids"}});
 
 /// Who runs a test.
 enum class MacroEngine { softgrain, lammps };
 
 template <>
-inline constexpr auto words<MacroEngine> = word_list<MacroEngine>({{MacroEngine::softgrain, "softgrain"},
-                                                                   {MacroEngine::lammps, "lammps"}});
+inline constexpr auto enum_names<MacroEngine> = enum_name_list<MacroEngine>({{MacroEngine::softgrain, "softgrain"},
+                                                                             {MacroEngine::lammps, "lammps"}});
 
 /// How bodies come into touch; protocol_of() says what each does.
 enum class Preparation {
   frictionless,  ///< relaxed without friction under a pressure that falls to the one asked for
   fast,          ///< shrunk at a high rate with the friction of the test, then relaxed: loose
-  slow,          ///< the same at a low rate
+  slow,          ///< shrunk at a low rate with the friction of the test, then relaxed
   dense,         ///< fines grow in the voids of a jammed pack of the coarse bodies, then all are freed
   lammps         ///< we place bodies loosely, and LAMMPS compacts them
 };
 
 template <>
-inline constexpr auto words<Preparation> = word_list<Preparation>({{Preparation::frictionless, "frictionless"},
-                                                                   {Preparation::fast, "fast"},
-                                                                   {Preparation::slow, "slow"},
-                                                                   {Preparation::dense, "dense"},
-                                                                   {Preparation::lammps, "lammps"},
-                                                                   {Preparation::frictionless, "softgrain"}});
+inline constexpr auto enum_names<Preparation> = enum_name_list<Preparation>({{Preparation::frictionless,
+                                                                              "frictionless"},
+                                                                             {Preparation::fast, "fast"},
+                                                                             {Preparation::slow, "slow"},
+                                                                             {Preparation::dense, "dense"},
+                                                                             {Preparation::lammps, "lammps"},
+                                                                             {Preparation::frictionless, "softgrain"}});
 
 /// All that defines a preparation beside the bodies and the pressure at its end.
 struct PreparationProtocol {
-  double start_fraction = 0.30;      ///< of the box that bodies fill at random places; looser where they find none
-  double inertial_number = 0.0;      ///< rate of the strain of the sides times d sqrt(density/pressure); 0: no motion
+  double start_fraction = 0.30;      ///< share of the box that bodies fill at random places; lower where they find none
+  double inertial_number = 0.0;      ///< strain rate of the sides times d sqrt(density/pressure); 0: no motion
   double friction = 0.0;             ///< mu of all contacts
-  double restitution = 0.3;          ///< of the motion
-  double coarse_share = 1.0;         ///< of the volume, by the largest bodies, that jams first; fines grow between
-  double first_pressure = 128.0;     ///< of the relaxation, times that of its end; falls to it
-  double tolerance = 3e-2;           ///< at the end: largest net force over mean contact force; a third for stress
-  std::int64_t max_passes = 200000;  ///< of a relaxation
+  double restitution = 0.3;          ///< coefficient of restitution during the motion
+  double coarse_share = 1.0;         ///< volume share of the largest bodies, which jam first; fines grow between them
+  double first_pressure = 128.0;     ///< first pressure of the relaxation over its last one, to which it falls
+  double tolerance = 3e-2;           ///< largest net force over mean contact force at the end; a third for stress
+  std::int64_t max_passes = 200000;  ///< largest number of passes of a relaxation
 };
 
 /// What an axis does in a stage.
@@ -69,8 +70,8 @@ struct AxisDrive {
 struct MacroStage {
   StageRecord record;
   std::array<AxisDrive, 3> axis{};
-  bool logarithmic = false;  ///< strains are
-  bool alike = false;        ///< all axes strain alike; by stress: that of their mean
+  bool logarithmic = false;  ///< whether strains are logarithmic
+  bool isotropic = false;    ///< whether all axes strain alike; by stress: by the mean of their stresses
   std::int64_t steps = 30;   ///< recorded points
   std::int64_t increments_per_step = 2;
   double tolerance = 1e-2;  ///< largest net force over mean contact force; a third for stress, of the largest asked
@@ -82,8 +83,8 @@ struct MacroStage {
 /// all contacts. Soft particles then are cells of fines alone.
 struct CellMatter {
   CellCard card;
-  double share = 0.0;           ///< of the solid volume of bodies and fines together
-  double solid_fraction = 0.0;  ///< of the box at the start; 0: where the mixture of the card bears the start pressure
+  double share = 0.0;           ///< share of the fines in the solid volume of bodies and fines together
+  double solid_fraction = 0.0;  ///< solid fraction at the start; 0: at the start pressure by the mixture of the card
   bool at_density = false;      ///< pressure at the start follows from the density; else excess pores from the pressure
 };
 
@@ -94,17 +95,17 @@ enum class TwinRelaxation {
 };
 
 template <>
-inline constexpr auto words<TwinRelaxation> =
-    word_list<TwinRelaxation>({{TwinRelaxation::slow_dynamics, "slow-dynamics"}, {TwinRelaxation::damped, "damped"}});
+inline constexpr auto enum_names<TwinRelaxation> = enum_name_list<TwinRelaxation>(
+    {{TwinRelaxation::slow_dynamics, "slow-dynamics"}, {TwinRelaxation::damped, "damped"}});
 
 /// The motion of twins. Lengths and times in those of the soft particles, as in their measurement.
 struct TwinMotion {
   TwinRelaxation relaxation = TwinRelaxation::slow_dynamics;
-  double speed = 1.4142e-4;    ///< of neighbours of the largest radius towards each other, over sqrt(E/rho)
+  double speed = 1.4142e-4;    ///< speed of neighbours of the largest radius towards each other, over sqrt(E/rho)
   double step_factor = 4.0;    ///< time step over that of the published protocol
-  double settle_time = 240.0;  ///< after each increment, over R sqrt(rho/E), R = soft_radius_max: the limit of the
-                               ///< scene, whatever the largest soft particle that was drawn
-  double restitution = 0.5;    ///< of the grains
+  double settle_time = 240.0;  ///< time to settle after each increment, over R sqrt(rho/E), R = soft_radius_max: the
+                               ///< limit of the scene, whatever the largest soft particle that was drawn
+  double restitution = 0.5;    ///< coefficient of restitution of the grains
 };
 
 /// Solid grains and soft particles of any sizes in a box of six planes or a periodic cell, compressed [SP 1.9]. SI
@@ -114,37 +115,39 @@ struct MacroSpec {
   Construction construction = Construction::mixed;
   std::int64_t bodies = 200;  ///< mixed: solid grains + soft particles; voids: solid grains
   Preparation preparation = Preparation::frictionless;
-  PreparationProtocol protocol;        ///< of it, see protocol_of()
-  double soft_share = 0.45;            ///< of the volume of all bodies, soft ones by their shell
-  double exponent = 3.5;               ///< b of the radii of both kinds
-  double solid_radius_max = 0.016;     ///< [m]
+  PreparationProtocol protocol;        ///< details of the preparation, see protocol_of()
+  double soft_share = 0.45;            ///< share of soft particles, by their shell, in the volume of all bodies
+  double exponent = 3.5;               ///< power-law exponent b of the radii of both kinds
+  double solid_radius_max = 0.016;     ///< largest radius of the solid grains [m]
   double solid_polydispersity = 2.0;   ///< rmax/rmin of the solid grains
-  double soft_radius_max = 0.016;      ///< [m]
-  double soft_polydispersity = 1.5;    ///< of the shells; voids: smaller holes stay empty
+  double soft_radius_max = 0.016;      ///< largest radius of the soft particles [m]
+  double soft_polydispersity = 1.5;    ///< rmax/rmin of the shells; voids: smaller holes stay empty
   std::optional<Grading> solid_sizes;  ///< radii of another law, whose ends stand in the two numbers above
   std::optional<Grading> soft_sizes;
-  std::optional<CellMatter> cells;  ///< between the bodies, in place of contacts
-  std::string packing_text;         ///< of a file that says where all bodies are; empty: they are drawn and prepared
-  double solid_fill = 0.0;  ///< voids: share of the box that solid grains fill before soft ones come; 0: by soft_share
+  std::optional<CellMatter> cells;  ///< fines in cells between the bodies, in place of contacts
+  std::string packing_text;  ///< text of a file that says where all bodies are; empty: they are drawn and prepared
+  double solid_fill = 0.0;   ///< voids: share of the box that solid grains fill before soft ones come; 0: by soft_share
   double youngs_modulus = 5.0e5;  ///< E of solid grains, walls and of what is inside the soft particles [Pa]
   double poisson_ratio = 0.3;
   double friction = 0.3;  ///< mu of solid contacts; stands in for mu_soft
   double wall_friction = 0.0;
   double density = 2500.0;
-  double start_pressure = 1.0e-5;  ///< of the preparation, over E
+  double start_pressure = 1.0e-5;  ///< pressure at the end of the preparation, over E
   MacroTest test = MacroTest::oedometric;
-  std::vector<double> splits;  ///< of grains into coarse and fine, over the largest radius: who bears what is recorded
-  std::vector<MacroStage> stages;          ///< of test "stages"; the numbers below are those of the other tests
-  std::array<double, 2> modulus_stress{};  ///< of the stages that do not name their own, see StageRecord [Pa]
-  double strain_end = 0.15;                ///< nominal; of shear: logarithmic
-  double preload = 0.0;                    ///< shear: isotropic nominal strain before
-  std::int64_t preload_steps = 4;          ///< recorded points of it
+  std::vector<double> splits;  ///< radii that split grains into coarse and fine, over the largest radius: shares of the
+                               ///< load are recorded
+  std::vector<MacroStage> stages;  ///< stages of the test "stages"; the numbers below are those of the other tests
+  std::array<double, 2> modulus_stress{};  ///< stresses between which the modulus of a stage is taken that does not
+                                           ///< name its own, see StageRecord [Pa]
+  double strain_end = 0.15;                ///< nominal strain at the end; shear: logarithmic
+  double preload = 0.0;                    ///< shear: isotropic nominal strain before the shear
+  std::int64_t preload_steps = 4;          ///< number of recorded points of the preload
   std::int64_t steps = 30;                 ///< recorded points
   std::int64_t increments_per_step = 2;    ///< relaxed strain increments per recorded point
   double tolerance = 1e-2;                 ///< largest net force over mean contact force at recorded points
   double force_floor = 1.0e-4;  ///< the mean contact force never counts for less than this, over E R^2 (R the largest
                                 ///< radius): else loose states before the first stress would be relaxed for ever
-  std::int64_t max_passes = 20000;  ///< per relaxation
+  std::int64_t max_passes = 20000;  ///< largest number of passes per relaxation
   TwinMotion twin;
   bool kt_secant = true;  ///< tangential law: the secant of the card, as published, instead of the initial slope
 };

@@ -126,7 +126,7 @@ LawSet twin_laws(const Material& grain, const MacroSpec& spec, double restitutio
 MacroSystem make_twin(const MacroSpec& spec, const MacroPacking& packing, const std::vector<ShellPacking>& contents,
                       std::uint64_t seed, std::uint64_t sample, bool shelled) {
   if (contents.empty() && packing.soft_count() > 0)
-    throw BadInput("resolved twin: no packing to fill the soft particles with");
+    throw InputError("resolved twin: no packing to fill the soft particles with");
   MacroSystem out;
   System3& s = out.system;
   s.materials = {solid_material(spec, "grain"), solid_material(spec, "wall")};

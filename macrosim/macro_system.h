@@ -16,14 +16,14 @@ namespace softgrain {
 struct MacroSystem {
   System3 system;
   Box box;
-  std::int64_t inner_grains = 0;  ///< resolved inside soft particles
-  /// Per slot: number of the body in its packing, for grains inside a soft particle and its shell that of the soft
-  /// particle; walls, where there are any, follow after the bodies, in the order of the box.
+  std::int64_t inner_grains = 0;  ///< number of grains resolved inside soft particles
+  /// Number of the body in its packing, per slot. Grains inside a soft particle and its shell have the number of the
+  /// soft particle; walls, where there are any, follow after the bodies, in the order of the box.
   std::vector<std::int32_t> body;
   std::int32_t bodies = 0;
-  double largest_radius = 0.0;  ///< of the bodies [m]: the scale of the force floor, the same for all engines
+  double largest_radius = 0.0;  ///< largest radius of the bodies [m]: scale of the force floor for all engines
 
-  /// Of twins, which can move by dynamics: their laws while they rest, and with the dashpots of contacts.
+  /// Laws of a twin that can move by dynamics: without the dashpots of contacts, while it rests, and with them.
   struct Dashpots {
     LawSet off;
     LawSet on;

@@ -31,13 +31,13 @@ class PlacedSpheres {
   struct Level {
     double largest = 0.0;
     double cells_per_length = 0.0;  ///< [1/m]
-    std::int64_t cells = 1;         ///< per edge
+    std::int64_t cells = 1;         ///< number of cells per edge
     std::vector<std::int32_t> first;
   };
   struct Placed {
     Vec3 x{};
     double r = 0.0;
-    std::int32_t next = -1;  ///< of the same cell
+    std::int32_t next = -1;  ///< next sphere in the same cell; -1: none
   };
 
   [[nodiscard]] bool collides(const Level& level, const Vec3& x, double r) const;

@@ -55,7 +55,7 @@ void require_room_for_images(const std::vector<MacroBody>& bodies) {
   const double edge = std::cbrt(volume / kPackedShare);
   if (edge >= kShortestPeriod * largest) return;
   const double enough = static_cast<double>(bodies.size()) * cube(kShortestPeriod * largest / edge);
-  throw BadInput(fmt::format(
+  throw InputError(fmt::format(
       "{} bodies are too few for a periodic cell: packed, its edge is about {:.3g} m, and images of the largest "
       "(radius {:.3g} m) must be two diameters apart: about {:.2g} have room",
       bodies.size(), edge, largest, 1.1 * enough));
@@ -71,7 +71,7 @@ MacroPacking place_loosely(std::vector<MacroBody> bodies, std::uint64_t seed, st
     const double edge = std::cbrt(volume / fraction);
     if (place(bodies, edge, boundary, random)) return {{}, {{edge, edge, edge}}, std::move(bodies)};
   }
-  throw NotUsable("macro: could not place all bodies without overlap");
+  throw UnusableResult("macro: could not place all bodies without overlap");
 }
 
 PreparationProtocol protocol_of(Preparation preparation, double friction) {
@@ -104,7 +104,7 @@ void compact_to_fraction(const MacroSpec& spec, MacroPacking& packing, double fr
     options.force_floor = 1e-2 * pressure * size[0] * size[1] / static_cast<double>(packing.bodies.size());
     DampedRelaxation<3>(options).relax(hard.system);
     if (hard.pressure() > pressure)
-      throw BadInput(fmt::format(
+      throw InputError(fmt::format(
           "macro: the solid grains jam at a solid fraction of {:.6f}, before solid_fill = {:.6f}", now, fraction));
   }
   hard.take_over(packing);

@@ -19,8 +19,9 @@ inline constexpr RandomPurpose kMacroFines{9};
 /// Inverse cumulative distribution of P(r) ~ r^-b on [rmax/polydispersity, rmax] at u in (0, 1).
 double power_law_radius(double exponent, double rmax, double polydispersity, double u);
 
-/// At random places of a cube that they fill to `fraction`, largest first, without overlap, periodic ones across its
-/// faces too; when so few bodies that walls are near find no place, in a larger one. Throws NotUsable.
+/// Places bodies at random in a cube that they fill to `fraction`, largest first, without overlap. In a periodic cell
+/// they do not overlap across its faces either. Where so few bodies that walls are near find no place, the cube is
+/// larger. Throws UnusableResult.
 MacroPacking place_loosely(std::vector<MacroBody> bodies, std::uint64_t seed, std::uint64_t sample,
                            double fraction = 0.30, Boundary boundary = Boundary::walls);
 
@@ -31,7 +32,7 @@ inline constexpr double kShortestPeriod = 4.1;
 /// preparations reach.
 inline constexpr double kPackedShare = 0.75;
 
-/// Images of a body must stay two diameters of the largest one apart. Throws BadInput when the bodies of a periodic
+/// Images of a body must stay two diameters of the largest one apart. Throws InputError when the bodies of a periodic
 /// cell are so few that they would not once they are packed.
 void require_room_for_images(const std::vector<MacroBody>& bodies);
 
@@ -55,15 +56,15 @@ std::string not_jammed_text(const MacroSpec& spec);
 AnyLaw hard_law(const MacroSpec& spec);
 
 /// Isotropic compaction of all bodies as hard grains by spec.protocol until the wall pressure is start_pressure * E.
-/// What it took is added to packing.cost. Throws NotUsable, saying what was reached, when it does not jam.
+/// What it took is added to packing.cost. Throws UnusableResult, saying what was reached, when it does not jam.
 void bring_into_touch(const MacroSpec& spec, MacroPacking& packing, const PreparationWatch& watch = {});
 
-/// The whole of "dense": bodies are given largest first, without places. Throws NotUsable.
+/// The whole of "dense": bodies are given largest first, without places. Throws UnusableResult.
 MacroPacking pack_densely(const MacroSpec& spec, std::vector<MacroBody> bodies, std::uint64_t seed,
                           std::uint64_t sample, const PreparationWatch& watch = {});
 
 /// Compaction in steps without friction, only up to a share of the box filled with bodies, below jamming. Throws
-/// BadInput when they jam before.
+/// InputError when they jam before.
 void compact_to_fraction(const MacroSpec& spec, MacroPacking& packing, double fraction);
 
 }  // namespace softgrain

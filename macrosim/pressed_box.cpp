@@ -14,7 +14,7 @@ Vec3 by_axis(const Vec3& a, const Vec3& b) { return {{a[0] * b[0], a[1] * b[1], 
 }  // namespace
 
 void PressedBox::make_alike(Vec3& a) const {
-  if (!control_.alike) return;
+  if (!control_.isotropic) return;
   const double mean = (a[0] + a[1] + a[2]) / 3.0;
   a = {{mean, mean, mean}};
 }

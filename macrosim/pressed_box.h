@@ -47,14 +47,14 @@ class PressedBox : public RelaxingFrame<3> {
   BoxControl control_;
   std::function<void(const RelaxationResult&)> watch_;
   double inverse_mass_ = 0.0;
-  Vec3 force_{};     ///< per logarithmic strain [N m]
-  Vec3 velocity_{};  ///< of the strains
-  Vec3 strained_{};  ///< since the beginning
+  Vec3 force_{};     ///< force per logarithmic strain [N m]
+  Vec3 velocity_{};  ///< rates of the strains
+  Vec3 strained_{};  ///< strains since the beginning
   ContactVirial<3> virial_;
   Vec3 resisted_{};
   std::int64_t resisted_at_ = -1;  ///< loop passes when it was worked out
-  std::vector<Vec3> carried_;      ///< velocities of the bodies with it
-  std::vector<Vec3> placed_;       ///< where they were carried to, of a periodic cell
+  std::vector<Vec3> carried_;      ///< velocities of the bodies with the box
+  std::vector<Vec3> placed_;       ///< places to which the bodies were carried, in a periodic cell
 };
 
 }  // namespace softgrain

@@ -11,7 +11,7 @@ namespace softgrain {
 constexpr double kLoosePressing = 0.1;
 constexpr double kPressureFall = 0.7;
 
-/// Of the stress on the box, relative. `last`: under the pressure asked for.
+/// Relative tolerance of the stress on the box. `last`: under the pressure asked for.
 inline double pressing_stress_tolerance(const MacroSpec& spec, bool last) {
   return last ? spec.protocol.tolerance / 3.0 : kLoosePressing;
 }

@@ -8,7 +8,7 @@ namespace softgrain {
 
 namespace {
 
-/// Of box and bodies, bit by bit.
+/// Hash of box and bodies, bit by bit.
 std::string hash_of(const MacroPacking& packing) {
   std::string bytes;
   const auto add = [&bytes](const auto& value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
@@ -45,7 +45,7 @@ BoxControl box_control(const MacroSpec& spec, const MacroStage& stage, const Vec
   BoxControl control;
   for (std::size_t k = 0; k < 3; ++k) control.by_stress[k] = stage.axis[k].by_stress;
   control.stress = stress;
-  control.alike = stage.alike;
+  control.isotropic = stage.isotropic;
   control.tolerance = stage.tolerance / 3.0;
   control.least_stress = least_stress(spec);
   control.farthest = kFarthestStrain;
@@ -53,11 +53,11 @@ BoxControl box_control(const MacroSpec& spec, const MacroStage& stage, const Vec
 }
 
 std::optional<BoxControl> mean_first(const MacroSpec& spec, const MacroStage& stage, const Vec3& stress) {
-  if (stage.alike || !stage.axis[0].by_stress || !stage.axis[1].by_stress || !stage.axis[2].by_stress)
+  if (stage.isotropic || !stage.axis[0].by_stress || !stage.axis[1].by_stress || !stage.axis[2].by_stress)
     return std::nullopt;
   const double mean = (stress[0] + stress[1] + stress[2]) / 3.0;
   BoxControl control = box_control(spec, stage, {{mean, mean, mean}});
-  control.alike = true;
+  control.isotropic = true;
   control.tolerance *= kRoughly;
   return control;
 }

@@ -40,8 +40,8 @@ inline constexpr double kRoughly = 10.0;
 ///   LawUse watch(State&): how far laws are asked; refused: the test ends;
 ///   void note_use(State&, const LawUse& last): at its end, what is to be said of that;
 ///   bool ended(State&): a test that goes on had ended so.
-/// A stress that the packing cannot bear ends the test: what comes after would start from nowhere. Throws NotUsable
-/// where forces are no longer finite.
+/// A stress that the packing cannot bear ends the test: what comes after would start from nowhere. Throws
+/// UnusableResult where forces are no longer finite.
 template <class State, class Engine>
 void run_stages(State& state, const MacroSpec& spec, const Engine& engine, const RunControl<State>& control) {
   constexpr const char* kDoing = "straining; all up to here is saved";
@@ -84,12 +84,12 @@ void run_stages(State& state, const MacroSpec& spec, const Engine& engine, const
       state.over = true;
     }
     const bool last = point + 1 == points || state.over;
-    if (last || use.refused > 0) {
+    if (last || use.rejected > 0) {
       engine.note_use(state, use);
       note_free_sides(state.curve, stages);
     }
     keeper.at_point(state, static_cast<double>(point + 1) / static_cast<double>(points), kDoing);
-    if (use.refused > 0 || state.over) return;
+    if (use.rejected > 0 || state.over) return;
   }
 }
 

@@ -14,7 +14,7 @@ std::vector<MacroStage> stages_of(const MacroSpec& spec);
 /// Number of points that a test records, the unstrained one included.
 std::int64_t recorded_points(const MacroSpec& spec);
 
-/// Of them, those of the isotropic part of a test "shear".
+/// Number of recorded points in the isotropic part of a test "shear".
 std::int64_t preload_points(const MacroSpec& spec);
 
 /// A recorded point, number 1 to `steps` of its stage; the first one of all is number 0 of the first stage.
@@ -50,8 +50,8 @@ inline double least_stress(const MacroSpec& spec) { return spec.start_pressure *
 /// The mean contact force never counts for less in a test [N]; `largest_radius` of the bodies [m].
 double test_force_floor(const MacroSpec& spec, double largest_radius);
 
-/// The same test with strains that differ in their twelfth digit. Paths of grains are chaotic: where contacts slide and
-/// open, two such runs part, and no run is surer than that.
+/// A test whose strains differ from those of `spec` in their twelfth digit. Paths of grains are chaotic: where contacts
+/// slide and open, two such runs part, and no run is more certain than that.
 MacroSpec slightly_changed(MacroSpec spec);
 
 }  // namespace softgrain

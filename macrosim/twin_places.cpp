@@ -15,7 +15,7 @@ void add_forces(const SoftForces& f, const std::string& engine, MacroCurve& curv
     curve.more[places_column(engine, kPlacesPartners[k])].push_back(values[k]);
 }
 
-/// As MacroCurve::places has it.
+/// Row of MacroCurve::places for a packing.
 std::vector<double> row_of(const MacroPacking& p) {
   std::vector<double> row;
   const auto add = [&](const Vec3& x) {

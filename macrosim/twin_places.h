@@ -18,7 +18,7 @@ struct SoftForces {
   double soft = 0.0;
 };
 
-/// Of a law run or of a twin, whole bodies against each other.
+/// Normal forces on the soft particles of a law run or of a twin, between whole bodies.
 SoftForces soft_forces(const MacroSystem& macro, const MacroPacking& packing);
 
 /// The packing with every body where the shelled twin has it, in the twin's box.

@@ -14,13 +14,13 @@ namespace softgrain {
 namespace {
 
 constexpr RandomPurpose kFilledShell{10};
-constexpr int kDraws = 16;  ///< of grains; the one whose volume comes nearest is taken
+constexpr int kDraws = 16;  ///< number of draws of grains; the one whose volume comes nearest is taken
 
 double volume_of(const std::vector<double>& radii) {
   return std::accumulate(radii.begin(), radii.end(), 0.0, [](double sum, double r) { return sum + cube(r); });
 }
 
-/// Radii over that of the shell, of about this volume over that of the shell.
+/// Draws radii over that of the shell whose volume is about `volume`, also over that of the shell.
 std::vector<double> draw_grains(const SoftParticleSpec& spec, double volume, RandomStream& random) {
   const Grading sizes =
       sizes_or_power_law(spec.sizes, spec.exponent, spec.rmax_over_shell * spec.shell_radius, spec.polydispersity);

@@ -8,7 +8,7 @@
 namespace softgrain {
 
 struct ShellFilling {
-  double inner_radius = 0.1;      ///< of the soft particles, over that of their shell
+  double inner_radius = 0.1;      ///< radius of the soft particles over that of their shell
   double soft_over_grains = 0.0;  ///< volume of the soft particles over that of the grains
   double onset = 0.0;  ///< overlap with each neighbour, over inner_radius, at which soft particles begin to bear
 };

@@ -48,7 +48,7 @@ class SlowTurn {
  public:
   SlowTurn(const MeasurementPlan& plan, const Protocol& protocol) : plan_(plan), protocol_(protocol) {}
 
-  /// From a relaxed state, which stands at `angle` [degree].
+  /// Begins a turn from a relaxed state, which stands at `angle` [degree].
   void begin(const SoftExperiment& relaxed, double angle) {
     state_ = relaxed;
     stop_motion(state_.system.particles);
@@ -56,7 +56,7 @@ class SlowTurn {
     stretches_ = 0;
   }
 
-  /// As far towards an angle as full stretches go.
+  /// Turns towards an angle as far as full stretches go.
   void go_towards(double angle) {
     for (const std::int64_t wanted = full_stretches(angle); stretches_ < wanted; ++stretches_)
       turn(state_, std::copysign(plan_.rotation_step_deg, angle - origin_));
@@ -75,7 +75,7 @@ class SlowTurn {
   }
 
  private:
-  static constexpr double kSameAngle = 1e-6;  ///< of a stretch
+  static constexpr double kSameAngle = 1e-6;  ///< share of a stretch below which angles count as the same
 
   [[nodiscard]] std::int64_t full_stretches(double angle) const {
     return static_cast<std::int64_t>(std::floor(std::abs(angle - origin_) / plan_.rotation_step_deg + kSameAngle));

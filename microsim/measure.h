@@ -13,7 +13,7 @@
 
 namespace softgrain {
 
-/// Which states are recorded.
+/// The states that are recorded.
 struct MeasurementPlan {
   std::vector<double> deltas;             ///< ascending, Delta = hn/Rs
   std::vector<double> tangential_deltas;  ///< subset of deltas at which the first body is rotated
@@ -23,7 +23,7 @@ struct MeasurementPlan {
                                     ///< begin
   bool shell_turns = true;          ///< whether the first shell turns with its grains
   bool cumulative = false;  ///< each angle goes on from the relaxed state of the one before of its sign: another path
-  double turn_speed = 0.0;  ///< of the rim of the shell [m/s]; 0: usual_turn_speed()
+  double turn_speed = 0.0;  ///< speed of the rim of the shell [m/s]; 0: usual_turn_speed()
 };
 
 /// Everything a measurement needs to go on.
@@ -39,14 +39,14 @@ struct MeasurementState {
 /// secant at 1 degree by 4 % at most, and makes the slope over 0.05 degree 4 to 11 % steeper.
 double usual_turn_speed(const SoftParticleSpec& spec);
 
-/// That of a plan: what it says, or the usual one [m/s].
+/// Turn speed of a plan: the one that it gives, or the usual one [m/s].
 double turn_speed(const MeasurementPlan& plan, const SoftParticleSpec& spec);
 
 /// Is shown the relaxed state at overlap number `point` of the plan, as recorded, before any rotation.
 using PointPicture = std::function<void(const SoftExperiment&, std::size_t point)>;
 
 /// Goes through the plan from where `state` stands. A point is a recorded overlap with its tangential points; between
-/// two of them the state is saved before rotations. Throws NotUsable (lost grain...) and Interrupted.
+/// two of them the state is saved before rotations. Throws UnusableResult (lost grain...) and Interrupted.
 void measure(MeasurementState& state, const MeasurementPlan& plan, const Protocol& protocol,
              const RunControl<MeasurementState>& control = {}, const PointPicture& picture = {});
 

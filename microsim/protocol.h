@@ -16,43 +16,43 @@ namespace softgrain {
 enum class Relaxation { least_work, slow_dynamics, damped, published };
 
 template <>
-inline constexpr auto words<Relaxation> = word_list<Relaxation>({{Relaxation::least_work, "least-work"},
-                                                                 {Relaxation::slow_dynamics, "slow-dynamics"},
-                                                                 {Relaxation::damped, "damped"},
-                                                                 {Relaxation::published, "published"}});
+inline constexpr auto enum_names<Relaxation> = enum_name_list<Relaxation>({{Relaxation::least_work, "least-work"},
+                                                                           {Relaxation::slow_dynamics, "slow-dynamics"},
+                                                                           {Relaxation::damped, "damped"},
+                                                                           {Relaxation::published, "published"}});
 
 struct PublishedOptions {
   double approach_speed = 0.0;  ///< [m/s]; 0: 0.002 m/s at the published Rs, rho, E, scaled with sqrt(E/rho) otherwise
   double stop_interval = 0.0;   ///< [s]; 0: 0.3 s at the published Rs, rho, E, scaled with Rs sqrt(rho/E) otherwise
   int stops = 6;                ///< stops of all motion, each after one interval; one more interval follows
-  double step_fraction = kPublishedStep;  ///< dt over sqrt(m_min/k), k at 5 % overlap of the smallest grain
-  double crowded_fraction =
-      kCrowdedFraction;  ///< and dt never above this times sqrt(m/K), K the sum of all contact stiffnesses of a grain
+  double step_fraction = kPublishedStep;              ///< dt over sqrt(m_min/k), k at 5 % overlap of the smallest grain
+  double crowded_fraction = kMultiContactedFraction;  ///< largest dt over sqrt(m/K), K the sum of all
+                                                      ///< contact stiffnesses of a grain
   double tolerance = 1e-2;  ///< a point is called converged below this (largest net force over mean contact force)
 };
 
 struct DampedProtocolOptions {
-  double increment = 0.005;         ///< of Delta between two relaxations
-  double tolerance = 1e-3;          ///< at a recorded point
-  double tolerance_between = 0.3;   ///< at increments between recorded points
-  double tolerance_rotated = 1e-4;  ///< at recorded points after a rotation
-  std::int64_t max_passes = 20000;  ///< per relaxation
+  double increment = 0.005;         ///< largest change of Delta between two relaxations
+  double tolerance = 1e-3;          ///< tolerance at a recorded point
+  double tolerance_between = 0.3;   ///< tolerance at increments between recorded points
+  double tolerance_rotated = 1e-4;  ///< tolerance at recorded points after a rotation
+  std::int64_t max_passes = 20000;  ///< largest number of passes per relaxation
 };
 
 /// Settling and rearranging under the least-work protocol happen in real time, measured in natural times Rs
 /// sqrt(rho/E).
 struct LeastWorkProtocolOptions {
-  double increment = 0.0025;           ///< of Delta between two equilibria
-  double tolerance_between = 0.1;      ///< at increments between recorded points
-  double tolerance = 1e-2;             ///< at a recorded point
-  std::int64_t increment_passes = 80;  ///< without equilibrium after these: left to dynamics; 0: all are
-  double approach_speed = 0.0;         ///< of such an increment [m/s]; 0: as for the published protocol
-  double step_factor = 4.0;    ///< time step of dynamics over that of the published protocol (masses raised to match)
-  double settle_time = 120.0;  ///< of dynamics before a normal force is recorded; 0: none
-  double path_settle_time = 120.0;    ///< the part of it after which rotations and further increments start
-  double settle_time_rotated = 24.0;  ///< of dynamics after a rotation
+  double increment = 0.0025;           ///< largest change of Delta between two equilibria
+  double tolerance_between = 0.1;      ///< tolerance at increments between recorded points
+  double tolerance = 1e-2;             ///< tolerance at a recorded point
+  std::int64_t increment_passes = 80;  ///< passes of an increment before it is left to dynamics; 0: all are
+  double approach_speed = 0.0;  ///< speed of approach of such an increment [m/s]; 0: as for the published protocol
+  double step_factor = 4.0;     ///< time step of dynamics over that of the published protocol (masses raised to match)
+  double settle_time = 120.0;   ///< time of dynamics before a normal force is recorded; 0: none
+  double path_settle_time = 120.0;    ///< part of settle_time after which rotations and further increments start
+  double settle_time_rotated = 24.0;  ///< time of dynamics after a rotation
   double step_factor_rotated = 2.0;
-  std::int64_t max_passes = 20000;  ///< of the last relaxation of a recorded point
+  std::int64_t max_passes = 20000;  ///< largest number of passes of the last relaxation of a recorded point
 };
 
 /// Time step of a slow turn over that of the published protocol; against 2 no secant moves by more than 1 %.
@@ -65,11 +65,11 @@ double force_floor(const SoftParticleSpec& spec);
 /// [m/s].
 double published_speed(const SoftParticleSpec& spec);
 
-/// Between two stops of the published protocol at these Rs, rho and E [s].
+/// Time between two stops of the published protocol at these Rs, rho and E [s].
 double published_interval(const SoftParticleSpec& spec);
 
 struct SettleResult {
-  Vec3 force{};  ///< on the second body, x along the normal [N]
+  Vec3 force{};  ///< force on the second body, x along the normal [N]
   double residual = 0.0;
   double max_overlap = 0.0;
   bool converged = false;

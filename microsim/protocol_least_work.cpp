@@ -12,8 +12,8 @@ namespace softgrain {
 
 namespace {
 
-/// After an increment without equilibrium the next ones go straight to dynamics, in one stretch: 1, 2, 4... up to
-/// these.
+/// Largest number of increments that dynamics takes in one stretch. Such a stretch follows an increment without
+/// equilibrium; its length is 1, 2, 4... up to this.
 constexpr int kLongestDetour = 8;
 
 class LeastWorkProtocol : public Protocol {

@@ -15,13 +15,13 @@ namespace softgrain {
 
 namespace {
 
-constexpr double kFirstFill = 0.25;       ///< of the shell that the spheres take up when they are placed
-constexpr double kGrowth = 0.01;          ///< of the radii in a step
+constexpr double kFirstFill = 0.25;       ///< share of the shell that the spheres fill when they are placed
+constexpr double kGrowth = 0.01;          ///< relative growth of the radii in a step
 constexpr double kLeastGrowth = 0.001;    ///< smaller steps gain nothing
-constexpr double kOverlap = 1e-3;         ///< over the smaller radius: what still counts as free of overlap
-constexpr std::int64_t kPasses = 200;     ///< between two looks at the overlaps
-constexpr int kLooks = 100;               ///< after which the spheres count as jammed
-constexpr std::int64_t kTrials = 100000;  ///< per sphere
+constexpr double kOverlap = 1e-3;         ///< overlap over the smaller radius that still counts as none
+constexpr std::int64_t kPasses = 200;     ///< passes between two looks at the overlaps
+constexpr int kLooks = 100;               ///< number of looks after which the spheres count as jammed
+constexpr std::int64_t kTrials = 100000;  ///< trials per sphere
 
 /// Spheres of modulus 1 in a shell of radius 1 that stands still.
 class GrowingSpheres {
@@ -72,7 +72,7 @@ class GrowingSpheres {
   }
 
  private:
-  /// Over the smaller radius.
+  /// Largest overlap, over the smaller radius.
   [[nodiscard]] double largest_overlap() const {
     double most = 0.0;
     const auto& sphere = system_.particles.sphere;
@@ -109,7 +109,7 @@ std::optional<ShellPacking> placed(const std::vector<double>& radius, double sha
 CompactedShell compact_in_shell(const std::vector<double>& radius, RandomStream& random) {
   double volume = 0.0;
   for (const double r : radius) volume += cube(r);
-  if (radius.empty() || !(radius.front() < 1.0)) throw BadInput("packing: no spheres that a shell could hold");
+  if (radius.empty() || !(radius.front() < 1.0)) throw InputError("packing: no spheres that a shell could hold");
   double share = std::min(1.0, std::cbrt(kFirstFill / volume));
   std::optional<ShellPacking> start;
   for (; !(start = placed(radius, share, random)); share *= 0.9) {

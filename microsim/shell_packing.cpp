@@ -51,7 +51,7 @@ void PlacedGrains::add(const Vec3& x, double r) {
   }
   for (int a = low[0]; a <= high[0]; ++a)
     for (int b = low[1]; b <= high[1]; ++b)
-      for (int c = low[2]; c <= high[2]; ++c) lists_[index(a, b, c)].push_back(grain);
+      for (int c = low[2]; c <= high[2]; ++c) log_lists_[index(a, b, c)].push_back(grain);
 }
 
 bool PlacedGrains::has_room(const Vec3& x, double r) const {
@@ -174,7 +174,7 @@ std::optional<Vec3> VoidPlacement::place(const PlacedGrains& grains, double r, s
 
 namespace {
 
-/// As many as have the volume of beta shells.
+/// Number of grains that together have the volume of beta shells.
 std::size_t drawn_grains(const SoftParticleSpec& spec) {
   const double each = spec.sizes->mean_volume() / std::pow(spec.shell_radius, 3);
   return static_cast<std::size_t>(std::max(1.0, std::round(spec.beta / each)));
@@ -225,7 +225,7 @@ ShellPacking generate_shell_packing(const SoftParticleSpec& spec, std::uint64_t 
     if (x) grains.add(*x, r);
   }
   if (packing.radius.empty())
-    throw BadInput("packing: no grain could be placed in the shell; raise 'trials' or lower 'rmax_over_shell'");
+    throw InputError("packing: no grain could be placed in the shell; raise 'trials' or lower 'rmax_over_shell'");
   grow_to_contact(packing);
   return packing;
 }

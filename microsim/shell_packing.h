@@ -16,7 +16,7 @@ namespace softgrain {
 class PlacedGrains {
  public:
   explicit PlacedGrains(ShellPacking& packing)
-      : packing_(packing), lists_(static_cast<std::size_t>(kCells * kCells * kCells)) {}
+      : packing_(packing), log_lists_(static_cast<std::size_t>(kCells * kCells * kCells)) {}
 
   void add(const Vec3& x, double r);
 
@@ -32,20 +32,21 @@ class PlacedGrains {
   static int cell(double x);
   static std::size_t index(int a, int b, int c) { return static_cast<std::size_t>((a * kCells + b) * kCells + c); }
   [[nodiscard]] const std::vector<std::int32_t>& near(const Vec3& x) const {
-    return lists_[index(cell(x[0]), cell(x[1]), cell(x[2]))];
+    return log_lists_[index(cell(x[0]), cell(x[1]), cell(x[2]))];
   }
 
   ShellPacking& packing_;
-  std::vector<std::vector<std::int32_t>> lists_;  ///< per voxel: grains that a later grain centred in it may overlap
+  std::vector<std::vector<std::int32_t>>
+      log_lists_;  ///< per voxel: grains that a later grain centred in it may overlap
 };
 
 /// The published way: up to `trials` random points in the shell, the first with room is taken.
 std::optional<Vec3> place_by_trials(const PlacedGrains& grains, double r, std::int64_t trials, RandomStream& random);
 
-/// The same law of places and of failures without the trials that must fail. Cubes cover every point where a grain may
-/// still fit in; a trial hits them with probability p = their volume over that of the shell, so the number of trials up
-/// to the next hit is geometric: it is drawn, and then a point in the cubes. A cube whose point has no room is
-/// discarded until the radius falls below what its clearance allows, or cut into eight.
+/// Places grains and fails by the same law as place_by_trials(), without the trials that must fail. Cubes cover every
+/// point where a grain may still fit in. A trial hits them with probability p = their volume over that of the shell, so
+/// the number of trials up to the next hit is geometric: it is drawn, and then a point in the cubes. A cube whose point
+/// has no room is discarded until the radius falls below what its clearance allows, or cut into eight.
 class VoidPlacement {
  public:
   explicit VoidPlacement(double smallest_radius);
@@ -74,7 +75,7 @@ class VoidPlacement {
 };
 
 /// Generates packing number `index` of the run with this seed. Dimensionless: the same for every Rs and E.
-/// Throws BadInput when no grain could be placed.
+/// Throws InputError when no grain could be placed.
 ShellPacking generate_shell_packing(const SoftParticleSpec& spec, std::uint64_t seed, std::uint64_t index);
 
 /// One after the other, in their order, grows until it touches its nearest neighbour or the shell.

@@ -8,7 +8,7 @@ namespace softgrain {
 
 namespace {
 
-constexpr std::uint64_t kOrientations = 1000000;  ///< at most, of one packing
+constexpr std::uint64_t kOrientations = 1000000;  ///< largest number of orientations of one packing
 
 /// A unit quaternion, evenly on the sphere of four dimensions: four normal numbers over their length.
 struct Turn {

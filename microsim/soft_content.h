@@ -11,13 +11,13 @@ namespace softgrain {
 
 /// A soft particle inside a soft particle.
 struct InnerSoft {
-  Vec3 x{};        ///< in units of the shell that holds it, from its centre
-  double r = 0.0;  ///< likewise
+  Vec3 x{};        ///< position from the centre of the shell that holds it, in units of that shell
+  double r = 0.0;  ///< radius in the same units
 };
 
 struct SoftContent {
   ShellPacking grains;
-  std::vector<InnerSoft> inner;              ///< of the next level; they act by law
+  std::vector<InnerSoft> inner;              ///< soft particles of the next level, whose contacts follow a law
   std::vector<ShellPacking> inner_packings;  ///< unless their grains are here: inner soft particle k holds packing k,
                                              ///< turn by turn, in a shell that moves with the forces on it
 };

@@ -19,14 +19,14 @@ GUIDE = "pipelines/guide"
 PAGES = {
     "scene_pipeline.md": (
         ["pipelines/kinds/soft_particle/scene.cpp", "pipelines/kinds/pipeline/scene.cpp", "pipelines/kinds/macro/scene.cpp",
-         "pipelines/kinds/law_table/crowd_law_fit.cpp",
+         "pipelines/kinds/law_table/multi_contact_law_fit.cpp",
          "pipelines/kinds/macro_comparison/scene.cpp", "pipelines/law/named_laws.cpp",
          "pipelines/commands/calibrate.cpp", "pipelines/law/fit_settings.cpp",
-         "pipelines/kinds/soft_particle/kept_states.cpp"],
+         "pipelines/kinds/soft_particle/snapshot_recorder.cpp"],
         {"beyond", "modulus_stress"}, {"cell", "entry", "pair", "macrosim"}),
     "scene_material_models.md": (["pipelines/kinds/material_models/scene.cpp"], {"name"}, set()),
     "scene_law_table.md": (
-        ["pipelines/kinds/law_table/scene.cpp", "pipelines/kinds/law_table/crowd_scene.cpp", "pipelines/kinds/law_table/crowd_law_fit.cpp",
+        ["pipelines/kinds/law_table/scene.cpp", "pipelines/kinds/law_table/multi_contact_scene.cpp", "pipelines/kinds/law_table/multi_contact_law_fit.cpp",
          "pipelines/kinds/hierarchy/scene.cpp"],
         {"material", "packing"}, set()),
     "scene_particles.md": (
@@ -59,9 +59,9 @@ PAGES = {
 # Sources that read cards and tables, or a scene only to see what it is.
 NO_SCENES = {
     "pipelines/kinds/law_table/law_check.cpp",
-    "common/data/card_text.cpp", "pipelines/law/law_file.cpp", "pipelines/law/law_file_kind.cpp", "common/data/cell_card_io.cpp", "common/data/crowd_law_io.cpp", "common/data/law_card_read.cpp",
+    "common/data/card_text.cpp", "pipelines/law/law_file.cpp", "pipelines/law/law_file_kind.cpp", "common/data/cell_card_io.cpp", "common/data/multi_contact_law_io.cpp", "common/data/law_card_read.cpp",
     "pipelines/commands/check.cpp", "pipelines/kinds/kinds.cpp", "pipelines/kinds/macro/run.cpp", "pipelines/kinds/pipeline/run.cpp",
-    "pipelines/commands/calibrate_crowd.cpp", "pipelines/commands/observables.cpp", "pipelines/kinds/cohesive_powder/run.cpp",
+    "pipelines/commands/calibrate_multi_contact.cpp", "pipelines/commands/observables.cpp", "pipelines/kinds/cohesive_powder/run.cpp",
     "pipelines/kinds/cohesive_powder/variants_run.cpp", "pipelines/runs/run_set.cpp",
 }
 

@@ -10,11 +10,12 @@
 
 namespace softgrain {
 
-/// With h the overlap: N = K_N h - F0 + N_v in contact (N_v = eta times the closing speed, eta = zeta sqrt(4 K_N m12)),
-/// N = -F0 (1 - gap/D0) for a gap up to D0, nothing beyond. kFriction: T = -K_T u_T, |T| <= mu K_N h: the Coulomb cone
-/// starts at N = -F0; without it neither springs nor spins are looked at. kRolling: moment -K_r theta, |K_r theta| <=
-/// mu_r K_N h, theta the elastic part of the relative rotation. No damping but the normal one; springs vanish when the
-/// contact opens. Any consistent units; 2D only.
+/// Contact law of cohesive disks with the overlap h. In contact N = K_N h - F0 + N_v, where N_v is eta times the
+/// closing speed and eta = zeta sqrt(4 K_N m12). At a gap up to D0, N = -F0 (1 - gap/D0); beyond D0 there is no force.
+/// kFriction: T = -K_T u_T, |T| <= mu K_N h, so the Coulomb cone starts at N = -F0; without it the law reads neither
+/// springs nor spins. kRolling: moment -K_r theta, |K_r theta| <= mu_r K_N h, where theta is the elastic part of the
+/// relative rotation. Only the normal force is damped. Springs vanish when the contact opens. Any consistent units; 2D
+/// only.
 template <bool kFriction, bool kRolling>
 struct CohesiveDisk {
   static_assert(kFriction || !kRolling, "the limit of rolling is a share of friction [CP 3.1]: mu_r = c mu a");

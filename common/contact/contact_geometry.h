@@ -12,7 +12,7 @@ namespace softgrain {
 template <int D, class T = double>
 struct ContactGeometry {
   T overlap{};
-  Vec<D, T> normal{};  ///< to body i
+  Vec<D, T> normal{};  ///< unit normal that points to body i
   T arm_i{};
   T arm_j{};
   Vec<D, T> branch{};  ///< x_i - x_j (image of j nearest to i), for spheres and shells [m]

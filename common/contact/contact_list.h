@@ -30,7 +30,7 @@ struct ContactSection {
 };
 
 /// A soft particle with a pair in the list under a law with a particle pass.
-struct CrowdBody {
+struct MultiContactBody {
   Slot body = 0;
   std::int32_t law = 0;  ///< one of them
 };
@@ -64,20 +64,21 @@ struct ContactList {
   std::vector<Slot> i;                   ///< a grain, always
   std::vector<Slot> j;                   ///< grain (j > i), shell or plane
   std::vector<std::int32_t> image;       ///< periodic image of j, see Cell
-  std::vector<PairConstants> constants;  ///< of the law
+  std::vector<PairConstants> constants;  ///< pair constants of the law
   std::vector<Stored<D>> spring;         ///< committed history
   std::vector<Stored<D>> spring_next;    ///< history of the state tried last; there after the first pass that tries
   std::vector<double> memory;  ///< committed history of laws with a memory; empty when no law of the scene has one
   std::vector<double> memory_next;
   std::vector<Stored<D>> roll;  ///< committed history of laws with rolling resistance in space; empty without them
   std::vector<Stored<D>> roll_next;
-  std::vector<std::uint8_t> touched;      ///< 0: the committed history is known to be empty
-  std::vector<CrowdSum<D>> particle_sum;  ///< scratch of laws with a particle pass, per body; empty when no law has one
-  std::vector<double> lost_i;             ///< likewise, per pair that touches: what it takes from body i, if soft
+  std::vector<std::uint8_t> touched;  ///< 0: the committed history is known to be empty
+  std::vector<MultiContactSum<D>>
+      particle_sum;            ///< scratch of laws with a particle pass, per body; empty when no law has one
+  std::vector<double> lost_i;  ///< scratch per touching pair: what it takes from body i, if soft
   std::vector<double> lost_j;
-  std::vector<CrowdBody> crowd_bodies;  ///< whose sums are asked for, by laws, then by bodies
+  std::vector<MultiContactBody> multi_contact_bodies;  ///< whose sums are asked for, by laws, then by bodies
   std::vector<ContactSection> sections;
-  PassPlan plan;            ///< of the pass on several threads
+  PassPlan plan;            ///< plan of the pass on several threads
   bool has_spring = false;  ///< some law of the scene has a tangential spring
   bool has_memory = false;
   bool has_roll = false;

@@ -15,7 +15,7 @@
 
 namespace softgrain {
 
-/// Which pairs a loop looks at: [begin, end), or the places in the list that `order` holds there.
+/// Pairs that a loop visits: [begin, end), or the places in the list that `order` holds there.
 struct PairRange {
   std::int32_t begin = 0;
   std::int32_t end = 0;

@@ -2,7 +2,7 @@
 // caller decides (minimisers try states that are thrown away).
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
-#include "common/contact/crowd_form.h"
+#include "common/contact/multi_contact_form.h"
 #include "common/core/lanes.h"
 #include "common/core/vec.h"
 
@@ -10,20 +10,20 @@ namespace softgrain {
 
 /// What a law asks of a loop, and what others must know of it; the defaults are those of a frictionless elastic law.
 struct LawTraits {
-  int dimension = 0;              ///< the only one that it serves; 0: it serves both
-  bool needs_velocity = false;    ///< motion at the contact
-  bool has_tangential = false;    ///< a tangential force with its spring; needs velocity
-  bool has_memory = false;        ///< one more number of history
-  bool memory_has_sides = false;  ///< that changes its sign when the pair is seen from the other body, as an angle does
-  bool has_rolling = false;       ///< bodies resist turning against each other; in space with a history of its own
-  bool has_onset = false;         ///< overlaps below onset() carry nothing
-  bool acts_at_distance = false;  ///< pairs interact up to a gap of reach()
+  int dimension = 0;                 ///< the only one that it serves; 0: it serves both
+  bool needs_velocity = false;       ///< motion at the contact
+  bool has_tangential = false;       ///< a tangential force with its spring; needs velocity
+  bool has_memory = false;           ///< one more number of history
+  bool memory_has_sides = false;     ///< memory changes its sign when seen from the other body, as an angle does
+  bool has_rolling = false;          ///< bodies resist turning against each other; in space with a history of its own
+  bool has_onset = false;            ///< overlaps below onset() carry nothing
+  bool acts_at_distance = false;     ///< pairs interact up to a gap of reach()
   bool needs_particle_pass = false;  ///< sums over all contacts of a body: share() and finish()
   bool directions_in_sums = false;   ///< the sums know directions
   bool memory_in_sums = false;       ///< share() asks for the memory
   bool stores_energy = false;        ///< stored_energy() of a contact by itself
   bool is_fitted = false;            ///< measured over a range that it can leave
-  bool is_crowd = false;             ///< of a table of laws whose soft particles know of all their contacts
+  bool is_multi_contact = false;  ///< the law is one of a table of laws whose soft particles know of all their contacts
 };
 
 /// Numbers that depend on the two bodies alone, computed by the law when a pair enters the list.
@@ -40,7 +40,7 @@ template <int D, class T = double>
 struct ContactState {
   T overlap{};  ///< h [m]
   Vec<D, T> normal{};
-  T normal_speed{};     ///< of i relative to j along the normal, separation positive [m/s]
+  T normal_speed{};     ///< normal velocity of i relative to j, separation positive [m/s]
   Vec<D, T> sliding{};  ///< tangential velocity of i relative to j at the contact point [m/s]
   Rot<D, T> turning{};  ///< spin of i relative to j, for laws with rolling resistance [rad/s]
   double dt = 0.0;      ///< time since the history was committed [s]
@@ -49,9 +49,9 @@ struct ContactState {
   T memory{};          ///< history: one number for laws that ask for it
   Rot<D, T> roll{};    ///< history: by how much i has turned against j, of laws with rolling resistance in space [rad]
   T radius_i{};
-  T radius_j{};                           ///< 0 for a plane, negative for the inside of a shell
-  const CrowdSum<D, T>* sum_i = nullptr;  ///< of the particle pass, for laws that ask for it: all contacts of body i
-  const CrowdSum<D, T>* sum_j = nullptr;
+  T radius_j{};                                  ///< 0 for a plane, negative for the inside of a shell
+  const MultiContactSum<D, T>* sum_i = nullptr;  ///< sum over all contacts of body i, for laws with a particle pass
+  const MultiContactSum<D, T>* sum_j = nullptr;
   const T* lost_i = nullptr;  ///< what the contact takes from body i, where a particle pass has kept it
   const T* lost_j = nullptr;
 };
@@ -64,10 +64,10 @@ struct ContactResponse {
   Vec<D, T> tangential_force{};  ///< [N]
   T normal_stiffness{};          ///< d elastic_force / d overlap [N/m]
   T tangential_stiffness{};      ///< [N/m]
-  Mask<T> sliding{};             ///< at the Coulomb limit
+  Mask<T> sliding{};             ///< the contact is at the Coulomb limit
   Vec<D, T> spring{};            ///< new history
   T memory{};                    ///< new history
-  Rot<D, T> rolling_moment{};    ///< on i, the opposite on j; of laws with rolling resistance [N m]
+  Rot<D, T> rolling_moment{};    ///< moment on i, the opposite on j; for laws with rolling resistance [N m]
   Rot<D, T> roll{};              ///< new history
   T rolling_stiffness{};         ///< [N m]
 };
@@ -121,13 +121,13 @@ struct PairBodies {
   }
 };
 
-/// Which bodies of a contact are soft particles under a law.
+/// Tells which bodies of a contact are soft particles under a law.
 struct SoftSides {
   bool i = false;
   bool j = false;
 };
 
-/// Of laws between grains neither.
+/// The soft bodies of a contact under this law; laws between grains have none.
 template <class Law>
 SoftSides soft_sides_of(const Law& law) {
   if constexpr (Law::traits.is_fitted) return law.soft_sides();

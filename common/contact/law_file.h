@@ -10,19 +10,19 @@
 
 namespace softgrain {
 
-enum class LawType { hertz, linear, soft, crowd, cohesive };
+enum class LawType { hertz, linear, soft, multi_contact, cohesive };
 
 template <>
-inline constexpr auto words<LawType> = word_list<LawType>({{LawType::hertz, "hertz"},
-                                                           {LawType::linear, "linear"},
-                                                           {LawType::soft, "soft"},
-                                                           {LawType::crowd, "crowd"},
-                                                           {LawType::cohesive, "cohesive"}});
+inline constexpr auto enum_names<LawType> = enum_name_list<LawType>({{LawType::hertz, "hertz"},
+                                                                     {LawType::linear, "linear"},
+                                                                     {LawType::soft, "soft"},
+                                                                     {LawType::multi_contact, "multi-contact"},
+                                                                     {LawType::cohesive, "cohesive"}});
 
 template <>
-inline constexpr auto words<Tangential> = word_list<Tangential>({{Tangential::none, "none"},
-                                                                 {Tangential::mindlin, "mindlin"},
-                                                                 {Tangential::rescaled, "rescaled"}});
+inline constexpr auto enum_names<Tangential> = enum_name_list<Tangential>({{Tangential::none, "none"},
+                                                                           {Tangential::mindlin, "mindlin"},
+                                                                           {Tangential::rescaled, "rescaled"}});
 
 /// Name and law.
 using LawFileEntry = std::pair<std::string, AnyLaw>;
@@ -30,10 +30,10 @@ using LawFileEntry = std::pair<std::string, AnyLaw>;
 /// TOML with one [[law]] per law. Every number is written so that it reads back to the same bits.
 std::string laws_text(const std::vector<LawFileEntry>& laws);
 
-/// The laws of such a text, in its order; `origin` is what messages call it. Throws BadInput.
+/// The laws of such a text, in its order; `origin` is what messages call it. Throws InputError.
 std::vector<LawFileEntry> parse_laws(const std::string& text, const std::string& origin);
 
-/// The same law for the bodies in the other order.
+/// The law for the two bodies of the pair in the opposite order.
 AnyLaw mirrored(const AnyLaw& law);
 
 }  // namespace softgrain

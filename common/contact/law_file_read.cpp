@@ -61,12 +61,12 @@ class Reader {
     LawRange out;
     out.end = number("range_end");
     if (!(out.end > 0.0)) fail("range_end", "must be above 0");
-    out.beyond = word<Beyond>("beyond", "error, clamp or extrapolate");
+    out.beyond = word<Extrapolation>("beyond", "error, clamp or extrapolate");
     return out;
   }
-  template <Worded Enum>
+  template <NamedEnum Enum>
   Enum word(const char* key, const std::string& known) {
-    if (const auto value = from_word<Enum>(text(key))) return *value;
+    if (const auto value = parse_enum<Enum>(text(key))) return *value;
     fail(key, "must be " + known);
   }
   MonotoneCurve curve(const char* points, const char* key) {
@@ -84,7 +84,7 @@ class Reader {
       if (asked_.count(std::string(key.str())) == 0) fail(std::string(key.str()).c_str(), "is no key of this law");
   }
   [[noreturn]] void fail(const char* key, const std::string& problem) const {
-    throw BadInput(origin_ + ": key '" + key + "' " + problem);
+    throw InputError(origin_ + ": key '" + key + "' " + problem);
   }
 
   std::string name;
@@ -152,9 +152,9 @@ AnyLaw read_soft(Reader& r) {
   return law;
 }
 
-template <Crowd kCrowd, bool kUnloading, bool kRolling>
-AnyLaw read_crowd_law(Reader& r) {
-  SoftCrowd<kCrowd, kUnloading, kRolling> law;
+template <LawForm kLawForm, bool kUnloading, bool kRolling>
+AnyLaw read_multi_contact_law(Reader& r) {
+  SoftMultiContact<kLawForm, kUnloading, kRolling> law;
   const auto pressure = r.three("pressure");
   const auto coupling = r.three("coupling");
   law.form.pressure = {pressure[0], pressure[1], pressure[2], r.range()};
@@ -166,7 +166,7 @@ AnyLaw read_crowd_law(Reader& r) {
   law.modulus = r.positive("modulus");
   law.friction = r.not_negative("friction");
   law.kt_ratio = r.not_negative("kt_ratio");
-  law.retreat = r.positive("retreat");
+  law.unloading = r.positive("retreat");
   if (kRolling) {
     law.rolling = r.not_negative("rolling");
     law.rolling_friction = r.not_negative("rolling_friction");
@@ -177,20 +177,22 @@ AnyLaw read_crowd_law(Reader& r) {
   return law;
 }
 
-template <Crowd kCrowd, bool kUnloading>
+template <LawForm kLawForm, bool kUnloading>
 AnyLaw read_rolling(Reader& r) {
-  return r.has("rolling") ? read_crowd_law<kCrowd, kUnloading, true>(r) : read_crowd_law<kCrowd, kUnloading, false>(r);
+  return r.has("rolling") ? read_multi_contact_law<kLawForm, kUnloading, true>(r)
+                          : read_multi_contact_law<kLawForm, kUnloading, false>(r);
 }
 
-template <Crowd kCrowd>
-AnyLaw read_crowd_form(Reader& r) {
-  return r.flag("unloading") ? read_rolling<kCrowd, true>(r) : read_rolling<kCrowd, false>(r);
+template <LawForm kLawForm>
+AnyLaw read_multi_contact_form(Reader& r) {
+  return r.flag("unloading") ? read_rolling<kLawForm, true>(r) : read_rolling<kLawForm, false>(r);
 }
 
-AnyLaw read_crowd(Reader& r) {
-  const auto form = r.word<Crowd>("form", "pair, bag or directional");
-  if (form == Crowd::pair) return read_crowd_form<Crowd::pair>(r);
-  return form == Crowd::bag ? read_crowd_form<Crowd::bag>(r) : read_crowd_form<Crowd::directional>(r);
+AnyLaw read_multi_contact(Reader& r) {
+  const auto form = r.word<LawForm>("form", "pair, isotropic or directional");
+  if (form == LawForm::pair) return read_multi_contact_form<LawForm::pair>(r);
+  return form == LawForm::isotropic ? read_multi_contact_form<LawForm::isotropic>(r)
+                                    : read_multi_contact_form<LawForm::directional>(r);
 }
 
 template <bool kFriction, bool kRolling>
@@ -218,7 +220,7 @@ AnyLaw read_cohesive(Reader& r) {
 }
 
 AnyLaw read_law(Reader& r) {
-  switch (r.word<LawType>("type", "hertz, linear, soft, crowd or cohesive")) {
+  switch (r.word<LawType>("type", "hertz, linear, soft, multi-contact or cohesive")) {
     case LawType::hertz:
       return read_hertz(r);
     case LawType::linear:
@@ -228,7 +230,7 @@ AnyLaw read_law(Reader& r) {
     case LawType::cohesive:
       return read_cohesive(r);
     default:
-      return read_crowd(r);
+      return read_multi_contact(r);
   }
 }
 
@@ -237,12 +239,12 @@ AnyLaw read_law(Reader& r) {
 std::vector<LawFileEntry> parse_laws(const std::string& text, const std::string& origin) {
   const toml::table table = parse_toml(text, origin);
   if (table["softgrain_laws"].value<std::int64_t>() != 1)
-    throw BadInput(origin + ": no laws file of softgrain (softgrain_laws = 1 is missing)");
+    throw InputError(origin + ": no laws file of softgrain (softgrain_laws = 1 is missing)");
   const toml::array* laws = table["law"].as_array();
-  if (laws == nullptr || laws->empty()) throw BadInput(origin + ": holds no [[law]]");
+  if (laws == nullptr || laws->empty()) throw InputError(origin + ": holds no [[law]]");
   std::vector<LawFileEntry> out;
   for (const auto& node : *laws) {
-    if (!node.is_table()) throw BadInput(origin + ": law must be a table");
+    if (!node.is_table()) throw InputError(origin + ": law must be a table");
     Reader reader(*node.as_table(), origin);
     const auto same = [&](const LawFileEntry& other) { return other.first == reader.name; };
     if (std::any_of(out.begin(), out.end(), same)) reader.fail("name", "is there twice");

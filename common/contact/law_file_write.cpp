@@ -80,10 +80,10 @@ void write(std::string& out, const std::string& name, const SoftContact& law) {
   w.range(law.range);
 }
 
-template <Crowd kCrowd, bool kUnloading, bool kRolling>
-void write(std::string& out, const std::string& name, const SoftCrowd<kCrowd, kUnloading, kRolling>& law) {
-  Writer w(out, name, LawType::crowd);
-  w.text("form", to_string(kCrowd));
+template <LawForm kLawForm, bool kUnloading, bool kRolling>
+void write(std::string& out, const std::string& name, const SoftMultiContact<kLawForm, kUnloading, kRolling>& law) {
+  Writer w(out, name, LawType::multi_contact);
+  w.text("form", to_string(kLawForm));
   w.flag("unloading", kUnloading);
   w.values("pressure", {law.form.pressure.a, law.form.pressure.b, law.form.pressure.delta});
   w.values("coupling", {law.form.coupling.m0, law.form.coupling.m1, law.form.coupling.m2});
@@ -97,7 +97,7 @@ void write(std::string& out, const std::string& name, const SoftCrowd<kCrowd, kU
   w.value("modulus", law.modulus);
   w.value("friction", law.friction);
   w.value("kt_ratio", law.kt_ratio);
-  w.value("retreat", law.retreat);
+  w.value("retreat", law.unloading);
   if (kRolling) {
     w.value("rolling", law.rolling);
     w.value("rolling_friction", law.rolling_friction);
@@ -131,8 +131,8 @@ AnyLaw mirror(SoftContact law) {
   return law;
 }
 
-template <Crowd kCrowd, bool kUnloading, bool kRolling>
-AnyLaw mirror(SoftCrowd<kCrowd, kUnloading, kRolling> law) {
+template <LawForm kLawForm, bool kUnloading, bool kRolling>
+AnyLaw mirror(SoftMultiContact<kLawForm, kUnloading, kRolling> law) {
   std::swap(law.i_is_soft, law.j_is_soft);
   return law;
 }

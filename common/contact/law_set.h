@@ -12,7 +12,7 @@
 #include "common/contact/hertz_mindlin.h"
 #include "common/contact/linear_spring.h"
 #include "common/contact/soft_contact.h"
-#include "common/contact/soft_crowd.h"
+#include "common/contact/soft_multi_contact.h"
 
 namespace softgrain {
 
@@ -21,12 +21,14 @@ using AnyLaw =
     std::variant<HertzMindlin<Tangential::none, false>, HertzMindlin<Tangential::none, true>,
                  HertzMindlin<Tangential::mindlin, false>, HertzMindlin<Tangential::mindlin, true>,
                  HertzMindlin<Tangential::rescaled, false>, HertzMindlin<Tangential::rescaled, true>, LinearSpring,
-                 SoftContact, SoftCrowd<Crowd::pair, false>, SoftCrowd<Crowd::pair, true>, SoftCrowd<Crowd::bag, false>,
-                 SoftCrowd<Crowd::bag, true>, SoftCrowd<Crowd::directional, false>, SoftCrowd<Crowd::directional, true>,
-                 SoftCrowd<Crowd::pair, false, true>, SoftCrowd<Crowd::pair, true, true>,
-                 SoftCrowd<Crowd::bag, false, true>, SoftCrowd<Crowd::bag, true, true>,
-                 SoftCrowd<Crowd::directional, false, true>, SoftCrowd<Crowd::directional, true, true>,
-                 CohesiveDisk<false, false>, CohesiveDisk<true, false>, CohesiveDisk<true, true>>;
+                 SoftContact, SoftMultiContact<LawForm::pair, false>, SoftMultiContact<LawForm::pair, true>,
+                 SoftMultiContact<LawForm::isotropic, false>, SoftMultiContact<LawForm::isotropic, true>,
+                 SoftMultiContact<LawForm::directional, false>, SoftMultiContact<LawForm::directional, true>,
+                 SoftMultiContact<LawForm::pair, false, true>, SoftMultiContact<LawForm::pair, true, true>,
+                 SoftMultiContact<LawForm::isotropic, false, true>, SoftMultiContact<LawForm::isotropic, true, true>,
+                 SoftMultiContact<LawForm::directional, false, true>,
+                 SoftMultiContact<LawForm::directional, true, true>, CohesiveDisk<false, false>,
+                 CohesiveDisk<true, false>, CohesiveDisk<true, true>>;
 
 /// What every law is: traits, constants of a pair, and a force for a number or for several side by side; and what it
 /// says of itself is there.
@@ -35,7 +37,7 @@ concept ContactLaw = std::is_same_v<const LawTraits, decltype(Law::traits)> &&
                      (Law::traits.needs_velocity || !Law::traits.has_tangential) &&
                      requires(const Law& law, const PairBodies& bodies,
                               const ContactState<Law::traits.dimension == 2 ? 2 : 3>& state,
-                              CrowdSum<Law::traits.dimension == 2 ? 2 : 3>& sum) {
+                              MultiContactSum<Law::traits.dimension == 2 ? 2 : 3>& sum) {
   { law.pair_constants(bodies) } -> std::same_as<PairConstants>;
   { law.evaluate(state) } -> std::same_as<ContactResponse<Law::traits.dimension == 2 ? 2 : 3>>;
   requires !Law::traits.has_onset || requires {
@@ -55,8 +57,8 @@ concept ContactLaw = std::is_same_v<const LawTraits, decltype(Law::traits)> &&
     law.share(state, true, sum);
     law.finish(sum);
   };
-  requires !Law::traits.is_crowd || requires {
-    { law.form } -> std::convertible_to<CrowdForm>;
+  requires !Law::traits.is_multi_contact || requires {
+    { law.form } -> std::convertible_to<MultiContactForm>;
   };
 };
 

@@ -6,16 +6,16 @@
 //   LinearSpring   kn h - eta vn                                   linear_spring.h
 //   SoftContact    E R^2 (a Delta^b + c), Delta = h/R > delta      soft_contact.h, threshold_term.h
 //   CohesiveDisk   K_N h - F0 - eta vn, attraction at a distance   cohesive_disk.h
-//   SoftCrowd      E R^2 dnu/dx p(S)/S B: several contacts         soft_crowd.h, crowd_form.h
+//   SoftMultiContact      E R^2 dnu/dx p(S)/S B: several contacts         soft_multi_contact.h, multi_contact_form.h
 //
 // How to use one: pair_constants(PairBodies) once per pair, evaluate(ContactState) as often as wanted. SI units.
-// SoftCrowd asks for a pass before: share() of every contact to the sums of its bodies, finish() once per body.
+// SoftMultiContact asks for a pass before: share() of every contact to the sums of its bodies, finish() once per body.
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include "common/contact/cohesive_disk.h"
-#include "common/contact/crowd_form.h"
 #include "common/contact/hertz_mindlin.h"
 #include "common/contact/linear_spring.h"
+#include "common/contact/multi_contact_form.h"
 #include "common/contact/soft_contact.h"
-#include "common/contact/soft_crowd.h"
+#include "common/contact/soft_multi_contact.h"
 #include "common/contact/threshold_term.h"

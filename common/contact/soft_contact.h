@@ -49,7 +49,7 @@ struct SoftContact {
   double damping = 0.0;          ///< zeta, fraction of critical
   bool partner_is_soft = false;  ///< soft-soft: the smaller radius counts; soft-solid: the soft one's
   bool i_is_soft = true;         ///< soft-solid: which of the two is soft
-  LawRange range;                ///< of Delta
+  LawRange range;                ///< range of Delta
 
   [[nodiscard]] SoftSides soft_sides() const { return {partner_is_soft || i_is_soft, partner_is_soft || !i_is_soft}; }
 
@@ -76,7 +76,7 @@ struct SoftContact {
     T force{};      ///< [N]
     T stiffness{};  ///< [N/m]
   };
-  /// At a Delta that is not idle.
+  /// Elastic force and stiffness at a Delta that is not idle.
   template <class T>
   [[nodiscard]] Elastic<T> elastic_at(const T& ratio, const T& radius) const {
     const auto [force, slope] = normal.at(ratio);

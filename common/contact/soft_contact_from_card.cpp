@@ -10,16 +10,16 @@ namespace softgrain {
 namespace {
 
 [[noreturn]] void unusable(PairKind kind, const std::string& problem) {
-  throw BadInput("law card: no usable " + to_string(kind) + " law: " + problem);
+  throw InputError("law card: no usable " + to_string(kind) + " law: " + problem);
 }
 
 PowerTerm term(const ThresholdPowerLaw& law) { return threshold_term(law.a.value, law.b.value, law.delta.value); }
 
-void require_sound(const ThresholdPowerLaw& law, PairKind kind, const char* part) {
-  const bool sound = std::isfinite(law.a.value) && law.a.value > 0.0 && std::isfinite(law.b.value) &&
+void require_valid(const ThresholdPowerLaw& law, PairKind kind, const char* part) {
+  const bool valid = std::isfinite(law.a.value) && law.a.value > 0.0 && std::isfinite(law.b.value) &&
                      law.b.value > 0.0 && std::isfinite(law.delta.value) && law.delta.value >= 0.0 &&
                      law.delta.value < 1.0;
-  if (!sound) unusable(kind, std::string(part) + " part needs a > 0, b > 0 and delta in [0, 1)");
+  if (!valid) unusable(kind, std::string(part) + " part needs a > 0, b > 0 and delta in [0, 1)");
 }
 
 const PairLaw& usable_law(const LawCard& card, PairKind kind) {
@@ -28,7 +28,7 @@ const PairLaw& usable_law(const LawCard& card, PairKind kind) {
   if (!has_numbers(law->status))
     unusable(kind, "its status is \"" + to_string(law->status) + "\"" +
                        (law->reason.empty() ? "" : " (" + law->reason + ")"));
-  require_sound(law->normal, kind, "normal");
+  require_valid(law->normal, kind, "normal");
   return *law;
 }
 
@@ -38,14 +38,14 @@ PowerTerm tangential_term(const LawCard& card, const PairLaw& law, bool use_seca
   if (!has_tangential(law))
     return {assumed_kt_ratio(card, law) * law.normal.a.value * law.normal.b.value, law.normal.b.value - 1.0, 0.0};
   const ThresholdPowerLaw& chosen = secant ? law.tangential_secant : law.tangential_initial;
-  require_sound(chosen, law.kind, "tangential");
+  require_valid(chosen, law.kind, "tangential");
   return term(chosen);
 }
 
 }  // namespace
 
 SoftContact make_soft_contact(const LawCard& card, PairKind kind, double modulus, double friction, double damping,
-                              bool use_secant, std::optional<Beyond> beyond) {
+                              bool use_secant, std::optional<Extrapolation> beyond) {
   const PairLaw& law = usable_law(card, kind);
   SoftContact out;
   out.normal = term(law.normal);

@@ -26,21 +26,21 @@ class Error : public std::runtime_error {
 };
 
 /// Wrong value in a scene, card or option. The message says where, what, and the allowed range.
-class BadInput : public Error {
+class InputError : public Error {
  public:
-  explicit BadInput(const std::string& message) : Error(ExitStatus::bad_input, message) {}
+  explicit InputError(const std::string& message) : Error(ExitStatus::bad_input, message) {}
 };
 
 /// The run came to an end without a usable result (diverged, lost grain, not converged...).
-class NotUsable : public Error {
+class UnusableResult : public Error {
  public:
-  explicit NotUsable(const std::string& message) : Error(ExitStatus::not_usable, message) {}
+  explicit UnusableResult(const std::string& message) : Error(ExitStatus::not_usable, message) {}
 };
 
 /// A file could not be read or written, or its content is damaged.
-class FileTrouble : public Error {
+class IoError : public Error {
  public:
-  explicit FileTrouble(const std::string& message) : Error(ExitStatus::file_trouble, message) {}
+  explicit IoError(const std::string& message) : Error(ExitStatus::file_trouble, message) {}
 };
 
 /// A signal asked the run to stop; everything computed so far has been saved.

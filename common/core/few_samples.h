@@ -16,7 +16,7 @@ double student95(double degrees);
 /// 1.35 for seven samples, 1.06 for 32; infinite for fewer than two.
 double few_samples_factor(std::size_t samples);
 
-/// The same where intervals are of several samples; 1 where they are of one, or of nobody knows how many (0).
+/// few_samples_factor() for intervals from several samples; 1 for a single sample or an unknown number (0).
 double factor_of_several(std::int64_t samples);
 
 /// An interval widened about its value by a factor, on either side by itself. `positive`: of a quantity above 0,

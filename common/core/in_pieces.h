@@ -12,7 +12,7 @@
 namespace softgrain {
 
 inline constexpr std::size_t kPieceLength = 2048;
-/// Below this length one thread is faster than two: of bodies, and of what costs as little as a body.
+/// Length below which one thread is faster than two. It counts bodies, or items that cost as little as a body.
 inline constexpr std::size_t kParallelLength = 4000;
 
 inline std::size_t pieces_of(std::size_t length) { return (length + kPieceLength - 1) / kPieceLength; }
@@ -50,7 +50,7 @@ Result joined_in_pieces(std::size_t length, const Work& work, const Join& join) 
   return all;
 }
 
-/// Their sum.
+/// Sum of what work(begin, end) returns for all pieces, in their order.
 template <class Sum, class Work>
 Sum sum_in_pieces(std::size_t length, const Work& work) {
   return joined_in_pieces<Sum>(length, work, [](Sum& all, const Sum& piece) { all += piece; });

@@ -42,7 +42,7 @@ template <class M>
     return any_of(mask);
 }
 
-/// As std::max and std::min choose.
+/// Maximum and minimum with the choice of std::max and std::min.
 template <class T>
 [[gnu::always_inline]] inline T largest(const T& a, const std::type_identity_t<T>& b) {
   return choose<T>(a < b, b, a);

@@ -5,7 +5,7 @@
 
 namespace softgrain {
 
-/// As long as it lives; then as many as before.
+/// Limits OpenMP to one thread during its lifetime; its destructor restores the number before.
 class OneThread {
  public:
   OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }

@@ -11,8 +11,8 @@ namespace softgrain {
 /// the smallest index is thrown when all running ones have ended.
 void parallel_tasks(std::int64_t count, const std::function<void(std::int64_t)>& task);
 
-/// The same with the tasks that cost most first, so that no long one is left over at the end; `costs` in any unit. The
-/// error that is thrown is that of the task that came first in this order.
+/// Runs one task per entry of `costs`, the most expensive first, so that no long one is left over at the end. `costs`
+/// may be in any unit. The error that is thrown is that of the task that came first in this order.
 void parallel_tasks(const std::vector<double>& costs, const std::function<void(std::size_t)>& task);
 
 }  // namespace softgrain

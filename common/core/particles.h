@@ -21,13 +21,13 @@ struct Particles {
   std::vector<Sphere<D>> sphere;
   std::vector<Stored<D>> velocity;      ///< [m/s]
   std::vector<StoredRot<D>> spin;       ///< [rad/s]
-  std::vector<Stored<D>> force;         ///< of the last pass, on the body [N]
+  std::vector<Stored<D>> force;         ///< force on the body in the last pass [N]
   std::vector<StoredRot<D>> torque;     ///< [N m]
   std::vector<double> inverse_mass;     ///< [1/kg]; 0: not moved by forces
   std::vector<double> inverse_inertia;  ///< [1/(kg m^2)]; 0: not turned by torques
   std::vector<std::int32_t> material;   ///< index into the materials of the scene
   std::vector<std::int32_t> shell;      ///< slot of the shell this grain (or shell) lives in, -1: none
-  std::vector<std::int32_t> id;         ///< of grains: number in which they were added; empty while that is the slot
+  std::vector<std::int32_t> id;         ///< order of addition of each grain; empty while it equals the slot
   std::vector<Vec<D>> plane_normal;     ///< one per plane, unit, into the space of the grains
   std::vector<double>
       plane_load;           ///< one per plane: outside force along its normal [N]; acts on planes moved by forces

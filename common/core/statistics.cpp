@@ -72,7 +72,7 @@ double slope_at_first(const std::vector<double>& x, const std::vector<double>& y
 }
 
 RatioError paired_ratio(std::span<const double> candidate, std::span<const double> reference) {
-  if (candidate.size() != reference.size()) throw BadInput("ratio of means: the two sets have different sizes");
+  if (candidate.size() != reference.size()) throw InputError("ratio of means: the two sets have different sizes");
   const double a = sum(candidate);
   const double b = sum(reference);
   const double ratio = quotient(a, b);

@@ -56,7 +56,7 @@ struct RatioError {
 };
 
 /// mean(candidate) / mean(reference) of paired values, error by jackknife over the pairs.
-/// Throws BadInput when the lengths differ.
+/// Throws InputError when the lengths differ.
 RatioError paired_ratio(std::span<const double> candidate, std::span<const double> reference);
 
 /// Ratio of two independent means, relative errors added in squares.

@@ -42,9 +42,9 @@ std::string read_words(const SceneTable& root, std::initializer_list<const char*
   return table_id;
 }
 
-std::optional<Beyond> read_beyond(const SceneTable& table) {
+std::optional<Extrapolation> read_beyond(const SceneTable& table) {
   if (!table.has("beyond")) return std::nullopt;
-  return table.choice<Beyond>("beyond");
+  return table.choice<Extrapolation>("beyond");
 }
 
 namespace {
@@ -75,7 +75,7 @@ const std::vector<SpecLine>& spec_lines() {
   return lines;
 }
 
-/// Of lines "key = value".
+/// Inline table of lines "key = value".
 std::string inline_table(const std::string& lines) {
   std::string text = "{";
   for (const char c : lines) text += c == '\n' ? std::string(", ") : std::string(1, c);

@@ -14,12 +14,12 @@ namespace softgrain {
 
 /// Shortest text that reads back to the same double; what is not finite goes into quotes.
 std::string real(double value);
-/// In quotes, with what TOML wants escaped.
+/// The text in quotes, with the escapes that TOML needs.
 std::string quoted(const std::string& text);
 /// A number, or what was not known at the time of writing: "nan", "inf", "-inf".
 double read_real(const SceneTable& table, const std::string& key, const Range& range);
 
-/// Of a force or stiffness over overlap; fits end far below.
+/// Largest exponent of a force or stiffness over overlap; fits end far below.
 inline constexpr double kLargestExponent = 50.0;
 
 /// Takes the words for people, which nothing depends on (of the definitions: those keys), and returns which .h5 belongs
@@ -27,7 +27,7 @@ inline constexpr double kLargestExponent = 50.0;
 std::string read_words(const SceneTable& root, std::initializer_list<const char*> definitions);
 
 /// Key `beyond`, of cards and of scenes that overrule them; empty when it is not there.
-std::optional<Beyond> read_beyond(const SceneTable& table);
+std::optional<Extrapolation> read_beyond(const SceneTable& table);
 
 /// "key = value" lines of what is known of a soft particle, and back; `may_be_unknown`: all but Rs and E may be absent.
 std::string spec_text(const SoftParticleSpec& spec);

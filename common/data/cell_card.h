@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "common/core/enum_names.h"
 #include "common/core/limits.h"
-#include "common/core/words.h"
 #include "common/data/law_card.h"
 
 namespace softgrain {
@@ -15,8 +15,8 @@ namespace softgrain {
 enum class StateForm { porosity, pores };
 
 template <>
-inline constexpr auto words<StateForm> = word_list<StateForm>({{StateForm::porosity, "porosity"},
-                                                               {StateForm::pores, "pores"}});
+inline constexpr auto enum_names<StateForm> = enum_name_list<StateForm>({{StateForm::porosity, "porosity"},
+                                                                         {StateForm::pores, "pores"}});
 
 /// Numbers of the cell law (macrosim/cell_matter), dimensionless, and what they were measured on.
 struct CellCard {
@@ -36,22 +36,22 @@ struct CellCard {
   double mixture_high = 0.0;  ///< largest V_f/V_c measured; the smallest is 0
   // Measured on grains and a preparation of these; another one has other numbers.
   double youngs_modulus = kNaN;  ///< E [Pa]; NaN: the card does not say (older ones)
-  double density = kNaN;         ///< of the grains, mean over their solid volume [kg/m^3]; NaN: not said
+  double density = kNaN;         ///< density of the grains, mean over their solid volume [kg/m^3]; NaN: not said
   double poisson_ratio = 0.0;
   double grain_friction = 0.0;
   std::string preparation;      ///< its name
   double start_pressure = 0.0;  ///< p/E of its end
   double split = 0.0;           ///< largest radius of fines over largest of coarse grains
   double fines_ratio = 0.0;     ///< largest over smallest radius of the fines
-  std::string fines_sizes;      ///< of their distribution, in words
-  std::int64_t samples = 0;     ///< of each measurement
+  std::string fines_sizes;      ///< size distribution of the fines, in words
+  std::int64_t samples = 0;     ///< number of samples of each measurement
 };
 
-/// Writes the card as TOML, for people and for read_cell_card(), which gives the same bits. Atomic. Throws FileTrouble.
+/// Writes the card as TOML, for people and for read_cell_card(), which gives the same bits. Atomic. Throws IoError.
 void write_cell_card(const CellCard& card, const std::string& path, const Provenance& provenance = build_provenance());
 
-/// Throws BadInput with file and line for keys that are missing or unknown, numbers that are none of a law and
-/// intervals whose ends are the wrong way round; FileTrouble.
+/// Throws InputError with file and line for keys that are missing or unknown, numbers that are none of a law and
+/// intervals whose ends are the wrong way round; IoError.
 CellCard read_cell_card(const std::string& path);
 
 }  // namespace softgrain

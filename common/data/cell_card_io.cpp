@@ -88,13 +88,13 @@ void write_measured(Out out, const CellCard& card) {
 
 Estimate read_estimate(const SceneTable& table, const Range& range) {
   Estimate e = read_estimate_text(table, range);
-  if (!(e.low <= e.high)) table.reject("low", "must not be above the high end");
+  if (!(e.low <= e.high)) table.throw_error("low", "must not be above the high end");
   return e;
 }
 
 void read_range(const SceneTable& t, CellCard& card) {
   const std::vector<double> pressure = t.numbers("pressure", Unit::none, Range::positive());
-  if (pressure.size() != 2 || !(pressure[0] < pressure[1])) t.reject("pressure", "must be two rising values");
+  if (pressure.size() != 2 || !(pressure[0] < pressure[1])) t.throw_error("pressure", "must be two rising values");
   card.pressure_low = pressure[0];
   card.pressure_high = pressure[1];
   card.mixture_high = t.number("mixture_max", Unit::none, Range::positive());
@@ -102,7 +102,7 @@ void read_range(const SceneTable& t, CellCard& card) {
 
 std::string read_words_of(const SceneTable& t, const char* key) {
   std::string text = t.text(key);
-  if (text.empty()) t.reject(key, "must not be empty");
+  if (text.empty()) t.throw_error(key, "must not be empty");
   return text;
 }
 

@@ -25,23 +25,23 @@ std::string text_of(const Limits& limits) {
 void require_unit(const h5::Group& group, const std::string& name, const std::string& unit) {
   const std::string said = group.text_of(name, "unit");
   if (said == unit) return;
-  throw FileTrouble(said.empty() ? fmt::format("data set '{}' says no unit, '{}' is expected", name, unit)
-                                 : fmt::format("data set '{}' is in '{}', '{}' is expected", name, said, unit));
+  throw IoError(said.empty() ? fmt::format("data set '{}' says no unit, '{}' is expected", name, unit)
+                             : fmt::format("data set '{}' is in '{}', '{}' is expected", name, said, unit));
 }
 
 void require_shape(const h5::Group& group, const std::string& name, const h5::Shape& shape) {
   const h5::Shape there = group.shape(name);
   if (there == shape) return;
-  throw FileTrouble(fmt::format("data set '{}' has a wrong {}: {}, {} expected", name,
-                                shape.size() == 1 && there.size() == 1 ? "length" : "shape", text_of(there),
-                                text_of(shape)));
+  throw IoError(fmt::format("data set '{}' has a wrong {}: {}, {} expected", name,
+                            shape.size() == 1 && there.size() == 1 ? "length" : "shape", text_of(there),
+                            text_of(shape)));
 }
 
 void require_within(double value, const Limits& limits, const std::string& name, std::size_t row) {
   if (!std::isfinite(value))
-    throw FileTrouble(fmt::format("data set '{}' holds a number that is not finite, in row {}", name, row));
+    throw IoError(fmt::format("data set '{}' holds a number that is not finite, in row {}", name, row));
   if (value < limits.low || value > limits.high)
-    throw FileTrouble(fmt::format("data set '{}' holds {} in row {}; allowed: {}", name, value, row, text_of(limits)));
+    throw IoError(fmt::format("data set '{}' holds {} in row {}; allowed: {}", name, value, row, text_of(limits)));
 }
 
 std::vector<double> read_numbers(const h5::Group& group, const std::string& name, const std::string& unit,
@@ -58,9 +58,9 @@ std::vector<double> read_numbers(const h5::Group& group, const std::string& name
 
 double read_attribute(const h5::Group& group, const std::string& name, const Limits& limits) {
   const double value = group.number(name);
-  if (!std::isfinite(value)) throw FileTrouble(fmt::format("attribute '{}' is not finite", name));
+  if (!std::isfinite(value)) throw IoError(fmt::format("attribute '{}' is not finite", name));
   if (value < limits.low || value > limits.high)
-    throw FileTrouble(fmt::format("attribute '{}' is {}; allowed: {}", name, value, text_of(limits)));
+    throw IoError(fmt::format("attribute '{}' is {}; allowed: {}", name, value, text_of(limits)));
   return value;
 }
 
@@ -85,7 +85,7 @@ void StoredColumn::read(const h5::Group& group, std::size_t length) {
 
 std::size_t column_length(const h5::Group& group, const std::string& name) {
   const h5::Shape shape = group.shape(name);
-  if (shape.size() != 1) throw FileTrouble("data set '" + name + "' has a wrong shape: " + text_of(shape));
+  if (shape.size() != 1) throw IoError("data set '" + name + "' has a wrong shape: " + text_of(shape));
   return group.integers(name).size();
 }
 

@@ -8,9 +8,9 @@
 #include <type_traits>
 #include <vector>
 
+#include "common/core/enum_names.h"
 #include "common/core/error.h"
 #include "common/core/vec.h"
-#include "common/core/words.h"
 #include "common/io/hdf5_file.h"
 
 namespace softgrain {
@@ -43,39 +43,39 @@ struct Limits {
   static Limits flag() { return {0.0, 1.0}; }
 };
 
-/// Of overlaps over the radius of the shell: beyond, two bodies have passed each other.
+/// Limits of overlaps over the radius of the shell. Beyond them two bodies have passed each other.
 inline constexpr Limits kOverlaps{0.0, 2.0};
 
-/// An index of a list that long. Throws FileTrouble: "`what` out of range".
+/// An index of a list that long. Throws IoError: "`what` out of range".
 inline std::int64_t below(std::int64_t value, std::size_t length, const char* what) {
-  if (value < 0 || static_cast<std::uint64_t>(value) >= length) throw FileTrouble(std::string(what) + " out of range");
+  if (value < 0 || static_cast<std::uint64_t>(value) >= length) throw IoError(std::string(what) + " out of range");
   return value;
 }
 
-/// What a data set must be to be taken for what its name says. All throw FileTrouble that names it and what is there.
+/// What a data set must be to be taken for what its name says. All throw IoError that names it and what is there.
 void require_unit(const h5::Group& group, const std::string& name, const std::string& unit);
 void require_shape(const h5::Group& group, const std::string& name, const h5::Shape& shape);
 void require_within(double value, const Limits& limits, const std::string& name, std::size_t row);
 
-/// Finite numbers of this unit, shape and range, row by row. Throws FileTrouble.
+/// Finite numbers of this unit, shape and range, row by row. Throws IoError.
 std::vector<double> read_numbers(const h5::Group& group, const std::string& name, const std::string& unit,
                                  const h5::Shape& shape, const Limits& limits = {});
 
-/// A finite number within limits that is an attribute of the group. Throws FileTrouble.
+/// A finite number within limits that is an attribute of the group. Throws IoError.
 double read_attribute(const h5::Group& group, const std::string& name, const Limits& limits = {});
 
-/// A word of an enum that is an attribute of the group. Throws FileTrouble for any other.
-template <Worded Enum>
+/// A word of an enum that is an attribute of the group. Throws IoError for any other.
+template <NamedEnum Enum>
 Enum read_word(const h5::Group& group, const std::string& name) {
   const std::string text = group.text(name);
-  if (const auto value = from_word<Enum>(text)) return *value;
-  throw FileTrouble("attribute '" + name + "' is '" + text + "', which is not known");
+  if (const auto value = parse_enum<Enum>(text)) return *value;
+  throw IoError("attribute '" + name + "' is '" + text + "', which is not known");
 }
 
 /// Number of records of a group: the length of its data set `name`.
 std::size_t column_length(const h5::Group& group, const std::string& name);
 
-/// Reads the data set into set(record, value) of every record; the numbers may be anything. Throws FileTrouble when
+/// Reads the data set into set(record, value) of every record; the numbers may be anything. Throws IoError when
 /// length or unit are others.
 template <class Record, class Set>
 void read_doubles(const h5::Group& group, const std::string& name, const std::string& unit,
@@ -85,8 +85,8 @@ void read_doubles(const h5::Group& group, const std::string& name, const std::st
   const std::vector<double> values = group.doubles(name);
   for (std::size_t k = 0; k < records.size(); ++k) set(records[k], values[k]);
 }
-/// The same for numbers that everything else is worked out from. Throws FileTrouble also when one is not finite, or
-/// outside limits.
+/// Reads the data set into set(record, value) of every record, for numbers that everything else is computed from.
+/// Throws IoError when length or unit are others, or when a number is not finite or outside the limits.
 template <class Record, class Set>
 void read_finite(const h5::Group& group, const std::string& name, const std::string& unit, std::vector<Record>& records,
                  Set set, const Limits& limits = {}) {
@@ -138,7 +138,7 @@ struct StoredColumn {
   std::vector<std::int64_t> wholes{};
 
   void write(const h5::Group& group) const;
-  /// Throws FileTrouble where the numbers are not `length` ones of this unit within the limits.
+  /// Throws IoError where the numbers are not `length` ones of this unit within the limits.
   void read(const h5::Group& group, std::size_t length);
 };
 
@@ -183,7 +183,7 @@ void write_records(const h5::Group& group, const std::vector<Record>& records) {
   for (const StoredColumn& column : columns) column.write(group);
 }
 
-/// Reads them back into as many records as there are. Throws FileTrouble.
+/// Reads them back into as many records as there are. Throws IoError.
 template <class Record>
 void read_records(const h5::Group& group, std::vector<Record>& records) {
   std::vector<StoredColumn> columns = columns_of<Record>();
@@ -224,17 +224,16 @@ std::vector<Record> records_of(const std::vector<double>& rows) {
 class Slices {
  public:
   explicit Slices(std::size_t total) : total_(total) {}
-  /// First index of the next `length` elements. Throws FileTrouble.
+  /// First index of the next `length` elements. Throws IoError.
   std::size_t next(std::int64_t length) {
-    if (length < 0 || static_cast<std::uint64_t>(length) > total_ - used_)
-      throw FileTrouble("counts do not fit the data");
+    if (length < 0 || static_cast<std::uint64_t>(length) > total_ - used_) throw IoError("counts do not fit the data");
     const std::size_t first = used_;
     used_ += static_cast<std::size_t>(length);
     return first;
   }
-  /// Throws FileTrouble unless everything was handed out.
+  /// Throws IoError unless everything was handed out.
   void finish() const {
-    if (used_ != total_) throw FileTrouble("counts do not fit the data");
+    if (used_ != total_) throw IoError("counts do not fit the data");
   }
 
  private:

@@ -4,8 +4,8 @@
 
 #include "common/core/statistics.h"
 #include "common/data/columns.h"
-#include "common/data/crowd_measurements.h"
 #include "common/data/measurements.h"
+#include "common/data/multi_contact_measurements.h"
 
 namespace softgrain {
 
@@ -47,25 +47,25 @@ void fields(auto&& visit, Of<PackingInfo> auto& p) {
   visit("exponent_error", p.exponent_error, "1", Limits::anything());
 }
 
-/// Without its lists.
+/// Fields of a PackingRun without its lists.
 void fields(auto&& visit, Of<PackingRun> auto& r) {
   visit("packing", r.packing, "1");
   fields(visit, r.normal_cost, "normal_");
   fields(visit, r.tangential_cost, "tangential_");
 }
 
-void fields(auto&& visit, Of<CrowdPartner> auto& p) {
+void fields(auto&& visit, Of<MultiContactPartner> auto& p) {
   visit("ratio", p.ratio, "1", Limits::not_negative());
   visit("direction", p.direction, "1");
 }
 
-void fields(auto&& visit, Of<CrowdConfiguration> auto& c) {
+void fields(auto&& visit, Of<MultiContactConfiguration> auto& c) {
   visit("centre_free", c.centre_free, "1", Limits::flag());
   visit("held_out", c.held_out, "1", Limits::flag());
 }
 
-/// Without what it says of each neighbour.
-void fields(auto&& visit, Of<CrowdPoint> auto& p) {
+/// Fields of a MultiContactPoint without its values per neighbour.
+void fields(auto&& visit, Of<MultiContactPoint> auto& p) {
   visit("stage", p.stage, "1");
   visit("slide", p.slide, "Rs");
   visit("centre", p.centre, "Rs");
@@ -74,8 +74,8 @@ void fields(auto&& visit, Of<CrowdPoint> auto& p) {
   visit("converged", p.converged, "1", Limits::flag());
 }
 
-/// Without its points.
-void fields(auto&& visit, Of<CrowdRun> auto& r) {
+/// Fields of a MultiContactRun without its points.
+void fields(auto&& visit, Of<MultiContactRun> auto& r) {
   visit("configuration", r.configuration, "1");
   visit("packing", r.packing, "1");
   fields(visit, r.cost);

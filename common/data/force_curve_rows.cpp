@@ -13,7 +13,7 @@ namespace softgrain {
 namespace {
 
 constexpr std::size_t kLeastPoints = 5;     ///< a, b and delta, and something to judge them by
-constexpr double kLargestSceneDelta = 0.9;  ///< of a scene; beyond, unit or radius are wrong
+constexpr double kLargestSceneDelta = 0.9;  ///< largest Delta that is accepted; beyond it, unit or radius are wrong
 
 }  // namespace
 
@@ -40,8 +40,8 @@ void CurveRows::read() {
 double CurveRows::required(const CsvRow& row, std::size_t column, Unit unit) const {
   const auto value = file_.number(row, column, unit);
   if (!value)
-    throw BadInput(fmt::format("{}: column \"{}\": the value is missing; fill it in or remove the line",
-                               file_.where(row.line), file_.columns()[column].title));
+    throw InputError(fmt::format("{}: column \"{}\": the value is missing; fill it in or remove the line",
+                                 file_.where(row.line), file_.columns()[column].title));
   return *value;
 }
 
@@ -49,7 +49,7 @@ double CurveRows::overlap(const CsvRow& row) const {
   const double delta = at_.delta != CurveLayout::none ? required(row, at_.delta, Unit::none)
                                                       : required(row, at_.hn, Unit::length) / out_.spec.shell_radius;
   if (delta > kLargestSceneDelta)
-    throw BadInput(
+    throw InputError(
         fmt::format("{}: overlap of {:.4g} Rs (Rs = {:.4g} m): allowed are at most {}; check unit and radius",
                     file_.where(row.line), delta, out_.spec.shell_radius, kLargestSceneDelta));
   return delta;
@@ -75,8 +75,8 @@ std::size_t CurveRows::sample_of(const CsvRow& row) {
       at_.sample_name.empty() ? std::filesystem::path(file_.path()).stem().string() : at_.sample_name;
   const std::string name = all ? file : row.cells[at_.sample];
   if (name.empty())
-    throw BadInput(fmt::format("{}: column \"{}\": the value is missing", file_.where(row.line),
-                               file_.columns()[at_.sample].title));
+    throw InputError(fmt::format("{}: column \"{}\": the value is missing", file_.where(row.line),
+                                 file_.columns()[at_.sample].title));
   const auto [known, is_new] = index_.try_emplace(name, out_.samples.size());
   if (is_new) {
     out_.samples.push_back({name, {}, {}, {}});
@@ -99,15 +99,15 @@ void CurveRows::add_normal(const CsvRow& row, double delta, std::size_t index) {
   if (at_.error != CurveLayout::none) {
     p.error = required(row, at_.error, Unit::force);
     if (p.error < 0.0)
-      throw BadInput(fmt::format("{}: column \"{}\": {} must not be negative", file_.where(row.line),
-                                 file_.columns()[at_.error].title, row.cells[at_.error]));
+      throw InputError(fmt::format("{}: column \"{}\": {} must not be negative", file_.where(row.line),
+                                   file_.columns()[at_.error].title, row.cells[at_.error]));
   }
   if (!sample.normal.empty() && delta <= sample.normal.back().delta) {
     if (options_.unloading == Unloading::drop) {
       ++dropped_;
       return;
     }
-    throw BadInput(fmt::format(
+    throw InputError(fmt::format(
         "{}: sample \"{}\": the overlap does not rise (Delta = {:.6g} after {:.6g}); a law is fitted to the loading "
         "branch: remove unloading and repeated points, or leave them out with --set unloading=drop",
         file_.where(row.line), sample.name, delta, sample.normal.back().delta));
@@ -155,7 +155,7 @@ void CurveRows::require_enough() const {
   std::size_t most = 0;
   for (const ForceCurve& s : out_.samples) most = std::max(most, s.normal.size());
   if (most < kLeastPoints)
-    throw BadInput(fmt::format(
+    throw InputError(fmt::format(
         "{}:{}: too few points: {} of the normal force in the longest sample, at least {} are needed", file_.path(),
         file_.rows().empty() ? file_.header_line() : file_.rows().back().line, most, kLeastPoints));
 }

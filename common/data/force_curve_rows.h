@@ -14,7 +14,7 @@ namespace softgrain {
 struct CurveLayout {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
   std::size_t hn = none, delta = none, fn = none, error = none, sample = none, ht = none, ft = none, kt = none;
-  std::string sample_name;  ///< of all rows, by a comment; empty: the file's
+  std::string sample_name;  ///< sample name of all rows, from a comment; empty: the name of the file
 };
 
 /// Reads the rows of one file into samples.
@@ -24,7 +24,7 @@ class CurveRows {
   CurveRows(const CsvFile& file, const CurveLayout& at, const ForceCurveOptions& options, ForceCurves& out)
       : file_(file), at_(at), options_(options), out_(out) {}
 
-  /// Throws BadInput with file and line.
+  /// Throws InputError with file and line.
   void read();
 
  private:
@@ -43,8 +43,8 @@ class CurveRows {
   const CurveLayout& at_;
   const ForceCurveOptions& options_;
   ForceCurves& out_;
-  std::unordered_map<std::string, std::size_t> index_;  ///< of each sample by its name
-  std::vector<std::vector<int>> lines_;                 ///< of the normal points of each sample
+  std::unordered_map<std::string, std::size_t> index_;  ///< index of each sample by its name
+  std::vector<std::vector<int>> lines_;                 ///< file lines of the normal points of each sample
   std::int64_t before_touch_ = 0;
   std::int64_t dropped_ = 0;
 };

@@ -52,16 +52,17 @@ std::string known_columns(const std::string& found) {
   std::string found;
   for (const CsvColumn& c : file.columns())
     found += (found.empty() ? "\"" : ", \"") + c.title + "\"" + known_columns(c.name);
-  throw BadInput(fmt::format("{}: no column {}; found {}", file.where(file.header_line()), wanted, found));
+  throw InputError(fmt::format("{}: no column {}; found {}", file.where(file.header_line()), wanted, found));
 }
 
-/// Of spheres a strain may be the overlap over the radius or over the diameter, and the fit differs by a power of two.
+/// Refuses columns of strain. A strain of spheres may be the overlap over the radius or over the diameter, and the fit
+/// differs by a power of two.
 void refuse_ambiguous(const CsvFile& file) {
   const CsvNames ambiguous{"strain", "compressive strain", "compression", "deformation", "epsilon", "eps", "h/d",
                            "h/2r"};
   for (const CsvColumn& c : file.columns())
     if (std::find(ambiguous.begin(), ambiguous.end(), c.name) != ambiguous.end())
-      throw BadInput(
+      throw InputError(
           fmt::format("{}: column \"{}\": over which length is it? Give the overlap as hn [mm] (also overlap, "
                       "displacement, indentation), or over the radius Rs as Delta; a strain over the diameter of the "
                       "soft particle is half of Delta",
@@ -79,9 +80,9 @@ CurveLayout layout_of(const CsvFile& file, std::vector<std::string>& remarks) {
       if (std::find(names.begin(), names.end(), file.columns()[c].name) == names.end()) continue;
       known = true;
       if (place(layout, q) != CurveLayout::none)
-        throw BadInput(fmt::format("{}: columns \"{}\" and \"{}\" both name {}", file.where(file.header_line()),
-                                   file.columns()[place(layout, q)].title, file.columns()[c].title,
-                                   column_names()[q].quantity));
+        throw InputError(fmt::format("{}: columns \"{}\" and \"{}\" both name {}", file.where(file.header_line()),
+                                     file.columns()[place(layout, q)].title, file.columns()[c].title,
+                                     column_names()[q].quantity));
       place(layout, q) = c;
     }
     if (!known) unused += (unused.empty() ? "\"" : ", \"") + file.columns()[c].title + "\"";
@@ -94,12 +95,12 @@ void require_columns(const CsvFile& file, const CurveLayout& at) {
   if (at.hn == CurveLayout::none && at.delta == CurveLayout::none)
     no_column(file, "of the overlap, e.g. hn [mm] or Delta");
   if (at.hn != CurveLayout::none && at.delta != CurveLayout::none)
-    throw BadInput(file.where(file.header_line()) + ": give the overlap once, as hn or as Delta");
+    throw InputError(file.where(file.header_line()) + ": give the overlap once, as hn or as Delta");
   if (at.fn == CurveLayout::none) no_column(file, "of the force, e.g. Fn [N]");
   if ((at.ht == CurveLayout::none) != (at.ft == CurveLayout::none))
     no_column(file, at.ht == CurveLayout::none ? "ht beside Ft" : "Ft beside ht");
   if (at.kt != CurveLayout::none && at.ft != CurveLayout::none)
-    throw BadInput(file.where(file.header_line()) + ": give the tangential law once, as kt or as ht and Ft");
+    throw InputError(file.where(file.header_line()) + ": give the tangential law once, as kt or as ht and Ft");
   const auto unit = [&](std::size_t column, Unit u, const char* example) {
     if (column != CurveLayout::none) file.require_unit(column, u, example);
   };
@@ -125,16 +126,16 @@ PairKind kind_of(const CsvFile& file, const ForceCurveOptions& options) {
   const auto said = file.word(kKind);
   if (!said && options.kind) return *options.kind;
   if (!said)
-    throw BadInput(file.path() +
-                   ": which contact was measured? Give --kind soft-solid or soft-soft, or a comment \"# kind = "
-                   "soft-solid\"");
-  const auto kind = from_word<PairKind>(said->value);
+    throw InputError(file.path() +
+                     ": which contact was measured? Give --kind soft-solid or soft-soft, or a comment \"# kind = "
+                     "soft-solid\"");
+  const auto kind = parse_enum<PairKind>(said->value);
   if (!kind)
-    throw BadInput(
+    throw InputError(
         fmt::format("{}: {} = {}: must be soft-solid or soft-soft", file.where(said->line), said->title, said->value));
   if (options.kind && *options.kind != *kind)
-    throw BadInput(fmt::format("{}: {} = {} contradicts {} {}: leave one of them out", file.where(said->line),
-                               said->title, said->value, options.kind_from, to_string(*options.kind)));
+    throw InputError(fmt::format("{}: {} = {} contradicts {} {}: leave one of them out", file.where(said->line),
+                                 said->title, said->value, options.kind_from, to_string(*options.kind)));
   return *kind;
 }
 
@@ -146,18 +147,18 @@ std::optional<double> agreed(const CsvFile& file, const CsvNames& names, Unit un
   if (!value || !beside) return value ? value : beside;
   if (std::abs(*value - *beside) <= kRounding * *value) return beside;
   const CsvSetting said = *file.setting(names);
-  throw BadInput(fmt::format("{}: {} = {} ({:g} {}) contradicts {} {:g} {}: leave one of them out",
-                             file.where(said.line), said.title, said.value, *value, si, from, *beside, si));
+  throw InputError(fmt::format("{}: {} = {} ({:g} {}) contradicts {} {:g} {}: leave one of them out",
+                               file.where(said.line), said.title, said.value, *value, si, from, *beside, si));
 }
 
 SoftParticleSpec spec_of(const CsvFile& file, const ForceCurveOptions& options) {
   const auto radius = agreed(file, kRadius, Unit::length, options.shell_radius, options.radius_from, "m");
   if (!radius)
-    throw BadInput(file.path() +
-                   ": the radius of the soft particle is needed: --radius \"16 mm\", or a comment \"# Rs = 16 mm\"");
+    throw InputError(file.path() +
+                     ": the radius of the soft particle is needed: --radius \"16 mm\", or a comment \"# Rs = 16 mm\"");
   const auto modulus = agreed(file, kModulus, Unit::pressure, options.youngs_modulus, options.modulus_from, "Pa");
   if (!modulus)
-    throw BadInput(
+    throw InputError(
         file.path() +
         ": E of the grains is needed to make the law dimensionless: --modulus \"0.5 MPa\", or a comment \"# E "
         "= 0.5 MPa\" (a law used with the same E gives back the measured forces)");
@@ -205,7 +206,7 @@ constexpr SpecName kSaid[] = {{"Rs", &SoftParticleSpec::shell_radius},
 void require_same(const std::string& a, const std::string& b, const SoftParticleSpec& s, const SoftParticleSpec& t) {
   for (const SpecName& n : kSaid)
     if (is_known(s.*n.value) && is_known(t.*n.value) && s.*n.value != t.*n.value)
-      throw BadInput(fmt::format("{} and {}: {} differs: {} and {}", a, b, n.name, s.*n.value, t.*n.value));
+      throw InputError(fmt::format("{} and {}: {} differs: {} and {}", a, b, n.name, s.*n.value, t.*n.value));
 }
 
 /// What one file says holds for all.
@@ -230,8 +231,8 @@ ForceCurves read_force_curves(const std::string& path, const ForceCurveOptions& 
   file.require_known_comments({kRadius, kModulus, kKind, kPoisson, kFriction, kDensity, kSample}, "a press test");
   if (const auto sample = file.word(kSample)) at.sample_name = sample->value;
   if (!at.sample_name.empty() && at.sample != CurveLayout::none)
-    throw BadInput(fmt::format("{}: samples are named by the column \"{}\": leave the comment out",
-                               file.where(file.setting(kSample)->line), file.columns()[at.sample].title));
+    throw InputError(fmt::format("{}: samples are named by the column \"{}\": leave the comment out",
+                                 file.where(file.setting(kSample)->line), file.columns()[at.sample].title));
   out.kind = kind_of(file, options);
   out.spec = spec_of(file, options);
   out.has_errors = at.error != CurveLayout::none;
@@ -256,7 +257,7 @@ std::vector<ForceCurves> read_force_curve_files(const std::vector<std::string>& 
                                                 const ForceCurveOptions& options) {
   std::vector<ForceCurves> out;
   for (const std::string& path : paths) {
-    if (std::count(paths.begin(), paths.end(), path) > 1) throw BadInput(path + ": the file is given twice");
+    if (std::count(paths.begin(), paths.end(), path) > 1) throw InputError(path + ": the file is given twice");
     ForceCurves one = read_force_curves(path, options);
     const auto same = std::find_if(out.begin(), out.end(), [&](const ForceCurves& c) { return c.kind == one.kind; });
     for (const ForceCurves& before : out) require_same(paths.front(), path, before.spec, one.spec);
@@ -269,7 +270,7 @@ std::vector<ForceCurves> read_force_curve_files(const std::vector<std::string>& 
     for (const ForceCurve& s : same->samples) taken.insert(s.name);
     for (ForceCurve& s : one.samples) {
       if (taken.contains(s.name)) s.name = stem + ": " + s.name;
-      if (!taken.insert(s.name).second) throw BadInput(path + ": sample \"" + s.name + "\" was read before");
+      if (!taken.insert(s.name).second) throw InputError(path + ": sample \"" + s.name + "\" was read before");
       same->samples.push_back(std::move(s));
     }
     for (const SpecName& n : kSaid)

@@ -40,8 +40,8 @@ struct ForceCurves {
 enum class Unloading { refuse, drop };
 
 template <>
-inline constexpr auto words<Unloading> = word_list<Unloading>({{Unloading::refuse, "refuse"},
-                                                               {Unloading::drop, "drop"}});
+inline constexpr auto enum_names<Unloading> = enum_name_list<Unloading>({{Unloading::refuse, "refuse"},
+                                                                         {Unloading::drop, "drop"}});
 
 /// What is said beside the file, for what the file does not say; both must not contradict each other.
 struct ForceCurveOptions {
@@ -60,7 +60,7 @@ struct ForceCurveOptions {
 /// optional sample, a standard error of Fn (se, error), and for the tangential law ht with Ft (Ft at ht = 0 is the
 /// prestrain), or kt. Other columns are named in a remark. Comments may say "# kind = soft-solid", "# Rs = 16 mm",
 /// "# E [MPa] = 0.5", "# nu = ...", "# mu = ...", "# density [kg/m^3] = ...", "# sample = ..."; other comments that
-/// name a value are refused. Throws BadInput with file and line: unknown unit, missing value, number that is not
+/// name a value are refused. Throws InputError with file and line: unknown unit, missing value, number that is not
 /// finite, overlap that falls, too few points (5), kind, Rs or E not given or said twice in different ways.
 ForceCurves read_force_curves(const std::string& path, const ForceCurveOptions& options);
 
@@ -74,7 +74,7 @@ SaidByFile said_by_comments(const CsvFile& table);
 std::vector<std::string> implausible_forces(const ForceCurves& curves);
 
 /// Files of one experiment, joined by pair kind (soft-solid first). A sample is named by its file when there are
-/// several. Throws BadInput when files disagree about Rs, E, nu, mu or density.
+/// several. Throws InputError when files disagree about Rs, E, nu, mu or density.
 std::vector<ForceCurves> read_force_curve_files(const std::vector<std::string>& paths,
                                                 const ForceCurveOptions& options);
 

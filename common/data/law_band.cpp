@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kParameters = kLawParameterNames.size();
 
-using Gradient = std::array<double, 3>;  ///< by a, b and delta
+using Gradient = std::array<double, 3>;  ///< derivatives with respect to a, b and delta
 
 /// Places of (a, b, delta) of a part in kLawParameterNames; delta is shared.
 std::array<std::size_t, 3> parameter_places(LawPart part) {
@@ -30,7 +30,7 @@ bool below_threshold(const ThresholdPowerLaw& law, double overlap) {
   return overlap < law.delta.value || overlap <= 0.0;
 }
 
-/// Of a (D^b - delta^b) for D >= delta; zero below.
+/// Gradient of a (D^b - delta^b) for D >= delta; zero below.
 Gradient value_gradient(const ThresholdPowerLaw& law, double overlap) {
   const double a = law.a.value;
   const double b = law.b.value;
@@ -43,7 +43,7 @@ Gradient value_gradient(const ThresholdPowerLaw& law, double overlap) {
   return {power - threshold, a * (power * std::log(overlap) - threshold_log), d_delta};
 }
 
-/// Of a b D^(b-1) for D >= delta; zero below.
+/// Gradient of a b D^(b-1) for D >= delta; zero below.
 Gradient slope_gradient(const ThresholdPowerLaw& law, double overlap) {
   if (below_threshold(law, overlap)) return {0.0, 0.0, 0.0};
   const double a = law.a.value;
@@ -71,7 +71,8 @@ bool part_has_covariance(const PairLaw& law, LawPart part) {
                      [&](std::size_t k) { return law.covariance[k * kParameters + k] > 0.0; });
 }
 
-/// Of a standard error, over packings with Student's t: with seven of them 2.45. Residuals of single curves are many.
+/// Half-width of a 95 % interval. Over packings it follows Student's t: 2.45 standard errors with seven packings.
+/// Residuals of single curves are many, so they follow the normal distribution.
 double half_width(const PairLaw& law, double variance) {
   const bool over_packings = law.band_origin != kFromResiduals && law.packings > 1;
   return (over_packings ? student95(law.packings - 1) : kNormal95) * std::sqrt(variance);
@@ -79,7 +80,7 @@ double half_width(const PairLaw& law, double variance) {
 
 LawInterval around(double value, double half) { return {std::max(0.0, value - half), value + half, kFromCovariance}; }
 
-constexpr double kRounding = 1e-12;  ///< over the value: a narrower interval is one of rounding
+constexpr double kRounding = 1e-12;  ///< half-width over the value; a narrower interval is one of rounding
 
 /// Empty where the width is that of rounding: what never scattered says nothing of how far off it may be.
 std::optional<LawInterval> unless_nothing(double value, double half) {

@@ -43,12 +43,12 @@ struct LawInterval {
   std::string origin = kFromCovariance;
 };
 
-/// Of the value F(Delta): from the stored band where that reaches (linear between its points), else linearised; empty
-/// when neither exists.
+/// 95 % interval of the value F(Delta). It comes from the stored band where that reaches (linear between its points),
+/// else from linearisation. Empty when neither exists.
 std::optional<LawInterval> value_interval(const PairLaw& law, LawPart part, double delta);
 
-/// Of the slope dF/dDelta = a b Delta^(b-1), linearised (never below zero); [0, 0] below the threshold; empty without
-/// covariance.
+/// 95 % interval of the slope dF/dDelta = a b Delta^(b-1), linearised (never below zero); [0, 0] below the threshold;
+/// empty without covariance.
 std::optional<LawInterval> slope_interval(const PairLaw& law, LawPart part, double delta);
 
 }  // namespace softgrain

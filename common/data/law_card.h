@@ -17,7 +17,7 @@ namespace softgrain {
 
 /// Where 95 % intervals come from, as files and reports say it.
 inline constexpr const char* kFromPackings = "bootstrap over packings";
-inline constexpr const char* kFromSamples = "bootstrap over samples";  ///< of an experiment
+inline constexpr const char* kFromSamples = "bootstrap over samples";  ///< source of the intervals of an experiment
 inline constexpr const char* kFromResiduals = "bootstrap of residuals about the law";
 
 /// A fitted number with its standard error (covariance) and 95 % interval (bootstrap, see PairLaw::band_origin).
@@ -62,12 +62,12 @@ struct LawBandRows {
 inline constexpr std::array<const char*, 7> kLawParameterNames{"a_n",         "b_n",        "delta",     "a_t_initial",
                                                                "b_t_initial", "a_t_secant", "b_t_secant"};
 
-/// Which of the two tangential stiffnesses somebody wants.
+/// Choice between the two tangential stiffnesses.
 enum class TangentialSlope { initial, secant };
 
 template <>
-inline constexpr auto words<TangentialSlope> = word_list<TangentialSlope>({{TangentialSlope::initial, "initial"},
-                                                                           {TangentialSlope::secant, "secant"}});
+inline constexpr auto enum_names<TangentialSlope> =
+    enum_name_list<TangentialSlope>({{TangentialSlope::initial, "initial"}, {TangentialSlope::secant, "secant"}});
 
 /// What was found for one pair kind.
 struct PairLaw {
@@ -86,8 +86,8 @@ struct PairLaw {
   std::vector<double> covariance;  ///< 7 x 7 row-major over kLawParameterNames; rows of unfitted parameters are zero
   double delta_min = 0.0;          ///< validity: range of Delta that was fitted
   double delta_max = 0.0;
-  Beyond beyond = Beyond::extrapolate;  ///< what the law does above delta_max
-  double max_overlap = 0.0;             ///< largest grain overlap over the smaller radius inside that range
+  Extrapolation beyond = Extrapolation::extrapolate;  ///< what the law does above delta_max
+  double max_overlap = 0.0;  ///< largest grain overlap over the smaller radius inside that range
   int packings = 0;
   int points = 0;
   double chi2_per_dof = 0.0;
@@ -95,20 +95,20 @@ struct PairLaw {
   LawTableRows table;
   std::vector<double> band_delta;  ///< Delta of the bands; empty without replicates
   std::vector<LawBandRows> bands;
-  std::string band_origin = kFromPackings;  ///< where bands and 95 % intervals of this pair come from
+  std::string band_origin = kFromPackings;  ///< source of the bands and 95 % intervals of this pair
 };
 
-inline constexpr const char* kExperiment = "experiment";  ///< in the place of a relaxation
+inline constexpr const char* kExperiment = "experiment";  ///< value of LawCard::relaxation for an experiment
 
 struct LawCard {
   int schema = 1;
-  SoftParticleSpec spec;                   ///< of the measurement behind the law
-  std::string relaxation;                  ///< which relaxation measured it, or kExperiment
+  SoftParticleSpec spec;                   ///< soft particle that was measured for the law
+  std::string relaxation;                  ///< name of the relaxation that measured the law, or kExperiment
   TurnProtocol turn = TurnProtocol::slow;  ///< how tangential stiffnesses were measured; not of an experiment
-  std::string intervals = kFromPackings;   ///< where the 95 % intervals come from, of all pairs together
+  std::string intervals = kFromPackings;   ///< source of the 95 % intervals, for all pairs together
   std::vector<PairLaw> pairs;
-  std::string table_id{};            ///< of the .h5 that belongs to the card; may be empty
-  std::vector<std::string> notes{};  ///< of reading: what of the .h5 does not go with an edited card
+  std::string table_id{};            ///< identifier of the .h5 that belongs to the card; may be empty
+  std::vector<std::string> notes{};  ///< remarks from reading: parts of the .h5 that do not match an edited card
 
   [[nodiscard]] const PairLaw* find(PairKind kind) const;
   /// Whether none of our relaxations measured it, but somebody's experiment.
@@ -132,11 +132,11 @@ bool has_frozen_kt(const LawCard& card);
 /// "measured with the damped relaxation, kt by a slow turn", "from an experiment".
 std::string measured_text(const LawCard& card);
 
-/// Writes `law.toml` (card) and, beside it with extension .h5, the table. Atomic. Throws FileTrouble.
+/// Writes `law.toml` (card) and, beside it with extension .h5, the table. Atomic. Throws IoError.
 void save_card(const LawCard& card, const std::string& toml_path, const Provenance& provenance = build_provenance());
 
-/// Reads a card (and its table when the .h5 is there). Throws BadInput with file:line for wrong content, and when the
-/// .h5 is that of another card; FileTrouble for files.
+/// Reads a card (and its table when the .h5 is there). Throws InputError with file:line for wrong content, and when the
+/// .h5 is that of another card; IoError for files.
 LawCard load_card(const std::string& toml_path);
 
 }  // namespace softgrain

@@ -47,7 +47,7 @@ inline constexpr std::array<LawTableColumn, 7> kLawTableColumns{
 /// The card as TOML; `table_id` names the .h5 that belongs to it.
 std::string card_text(const LawCard& card, const Provenance& provenance, const std::string& table_id);
 
-/// Card without its table. Throws BadInput with file and line, FileTrouble.
+/// Card without its table. Throws InputError with file and line, IoError.
 LawCard read_card_text(const std::string& toml_path);
 
 /// Name of the table beside a card: the same with extension .h5.
@@ -55,12 +55,12 @@ std::string table_path(const std::string& toml_path);
 void write_table(const LawCard& card, const std::string& path, const Provenance& provenance,
                  const std::string& table_id);
 
-/// Card (or law table) and .h5 name each other by `table_id`. Throws BadInput when the file belongs to another one.
+/// Card (or law table) and .h5 name each other by `table_id`. Throws InputError when the file belongs to another one.
 void require_own_table(const h5::Group& root, const std::string& table_id, const std::string& path);
 inline constexpr const char* kTableId = "belongs_to";  ///< attribute of the .h5
 
 /// Fills the table rows of the pairs that the file holds, and the bands of laws whose numbers are those of the card; a
-/// law that was edited has none, which LawCard::notes say. Throws FileTrouble, BadInput for the table of another card.
+/// law that was edited has none, which LawCard::notes say. Throws IoError, InputError for the table of another card.
 void read_table(LawCard& card, const std::string& path);
 
 }  // namespace softgrain

@@ -26,7 +26,7 @@ Estimate read_estimate(const SceneTable& table, const Range& range, bool must_be
   const SceneTable interval = table.table("interval_95");
   e.low = read_real(interval, "low", Range::any());
   e.high = read_real(interval, "high", Range::any());
-  if (e.low > e.high) interval.reject("low", "must not be above the high end");
+  if (e.low > e.high) interval.throw_error("low", "must not be above the high end");
   return e;
 }
 
@@ -40,7 +40,7 @@ ThresholdPowerLaw read_law(const SceneTable& table, bool must_be_known) {
   if (!must_be_known) return law;
   const double expected = -law.a.value * std::pow(law.delta.value, law.b.value);
   if (std::abs(law.c.value - expected) > kContinuityTolerance * std::abs(expected))
-    table.table("c").reject("value", fmt::format("must be -a delta^b = {}, or the law jumps at delta", expected));
+    table.table("c").throw_error("value", fmt::format("must be -a delta^b = {}, or the law jumps at delta", expected));
   return law;
 }
 
@@ -51,7 +51,7 @@ std::vector<double> read_covariance(const SceneTable& pair) {
   for (const char* name : kLawParameterNames) {
     const std::vector<double> row = table.numbers(name, Unit::none);
     if (row.size() != kLawParameterNames.size())
-      table.reject(name, fmt::format("must have {} entries", kLawParameterNames.size()));
+      table.throw_error(name, fmt::format("must have {} entries", kLawParameterNames.size()));
     covariance.insert(covariance.end(), row.begin(), row.end());
   }
   return covariance;
@@ -60,9 +60,9 @@ std::vector<double> read_covariance(const SceneTable& pair) {
 void read_validity(const SceneTable& table, PairLaw& law) {
   law.delta_min = table.number("delta_min", Unit::none, Range::closed(0.0, kLargestDelta));
   law.delta_max = table.number("delta_max", Unit::none, Range::closed(0.0, kLargestDelta));
-  if (law.delta_max < law.delta_min) table.reject("delta_max", "must not be below delta_min");
+  if (law.delta_max < law.delta_min) table.throw_error("delta_max", "must not be below delta_min");
   law.max_overlap = read_real(table, "max_overlap", Range::not_negative());
-  law.beyond = read_beyond(table).value_or(Beyond::extrapolate);
+  law.beyond = read_beyond(table).value_or(Extrapolation::extrapolate);
 }
 
 void read_tangential(const SceneTable& table, ThresholdPowerLaw& law, double& angle, bool& fitted, bool good) {
@@ -89,7 +89,7 @@ PairLaw read_pair(const SceneTable& table) {
   const bool good = law.status == LawStatus::good || (law.status == LawStatus::underdetermined && !none);
   law.normal = read_law(table.table("normal"), good);
   if (law.status == LawStatus::good && !(law.normal.delta.value < law.delta_max))
-    table.table("normal").table("delta").reject(
+    table.table("normal").table("delta").throw_error(
         "value", fmt::format("must be below delta_max = {}: a good law has a force in the range it was fitted to",
                              law.delta_max));
   read_tangential(table.table("tangential_initial"), law.tangential_initial, law.initial_angle_deg,
@@ -117,7 +117,7 @@ LawCard read_card_text(const std::string& toml_path) {
   card.spec = read_spec_text(measurement, card.from_experiment());
   for (const SceneTable& pair : root.tables("pair")) {
     const PairLaw law = read_pair(pair);
-    if (card.find(law.kind) != nullptr) pair.reject("kind", "this pair kind was given before");
+    if (card.find(law.kind) != nullptr) pair.throw_error("kind", "this pair kind was given before");
     card.pairs.push_back(law);
   }
   root.finish();

@@ -87,7 +87,7 @@ std::vector<double> ascending(const h5::Group& group, const std::string& name, c
   std::vector<double> values = group.doubles(name);
   for (std::size_t k = 0; k < values.size(); ++k)
     if (!std::isfinite(values[k]) || (k > 0 && !(values[k - 1] < values[k])))
-      throw FileTrouble(path + ": '" + name + "' does not ascend in row " + std::to_string(k));
+      throw IoError(path + ": '" + name + "' does not ascend in row " + std::to_string(k));
   return values;
 }
 
@@ -104,7 +104,7 @@ void read_bands(const h5::Group& root, PairLaw& pair, const std::string& path, s
     if (!group.has(key + "_low") || !group.has(key + "_high")) continue;
     LawBandRows rows{key, group.doubles(key + "_low"), group.doubles(key + "_high")};
     if (rows.low.size() != pair.band_delta.size() || rows.high.size() != pair.band_delta.size())
-      throw FileTrouble(path + ": the band of '" + key + "' has a wrong length");
+      throw IoError(path + ": the band of '" + key + "' has a wrong length");
     const h5::Group fitted = root.open(name);
     if (fitted.has(key) && same_numbers(fitted.open(key), pair.*part.law))
       pair.bands.push_back(std::move(rows));
@@ -120,7 +120,7 @@ LawTableRows read_curve(const h5::Group& table, const std::string& path) {
     values = column.values == &LawTableRows::delta ? ascending(table, column.name, path) : table.doubles(column.name);
     // A quantity that was not measured has an empty column.
     if (!values.empty() && values.size() != rows.delta.size())
-      throw FileTrouble(path + ": column '" + column.name + "' of the table has a wrong length");
+      throw IoError(path + ": column '" + column.name + "' of the table has a wrong length");
   }
   return rows;
 }
@@ -131,10 +131,11 @@ void require_own_table(const h5::Group& root, const std::string& table_id, const
   const std::string said = root.has_attribute(kTableId) ? root.text(kTableId) : "";
   // People may take the words about the origin out of a card: then its numbers tell.
   if (table_id.empty() || said == table_id) return;
-  throw BadInput(path + ": this file belongs to another law (" + (said.empty() ? "it names none" : "it names " + said) +
-                 ", the .toml of this name wants " + table_id +
-                 "): put the one back that was written with the .toml, or "
-                 "remove it");
+  throw InputError(path + ": this file belongs to another law (" +
+                   (said.empty() ? "it names none" : "it names " + said) + ", the .toml of this name wants " +
+                   table_id +
+                   "): put the one back that was written with the .toml, or "
+                   "remove it");
 }
 
 void write_table(const LawCard& card, const std::string& path, const Provenance& provenance,

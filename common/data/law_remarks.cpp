@@ -15,7 +15,7 @@ std::string slides_text(const LawTableEntry& entry) {
                                     {"among soft particles", &entry.slide_soft}}) {
     const std::string numbers = fmt::format("{:.2f}, {:.2f}", slide->friction.value, slide->kt_ratio.value);
     text += (text.empty() ? "" : "; ") +
-            (slide->measured ? numbers + " " + name : fmt::format("not measured {} ({} stand in)", name, numbers));
+            (slide->measured ? numbers + " " + name : fmt::format("not measured {} ({} taken instead)", name, numbers));
   }
   text = "friction limit and kt/kn: " + text;
   if (!entry.rolls()) return text;
@@ -52,11 +52,12 @@ std::string kt_remark(const LawCard& card) {
 }
 
 std::string unloading_text(const LawTableEntry& entry) {
-  if (!entry.retreat_measured) return "unloading was not measured";
-  std::string text = fmt::format("unloading is {:.2f} times as steep as loading", entry.retreat.value);
-  if (entry.slide_solid.retreats)
-    text += fmt::format(", {:.2f} against solid spheres", entry.slide_solid.retreat.value);
-  if (entry.slide_soft.retreats) text += fmt::format(", {:.2f} among soft particles", entry.slide_soft.retreat.value);
+  if (!entry.unloading_measured) return "unloading was not measured";
+  std::string text = fmt::format("unloading is {:.2f} times as steep as loading", entry.unloading.value);
+  if (entry.slide_solid.has_unloading)
+    text += fmt::format(", {:.2f} against solid spheres", entry.slide_solid.unloading.value);
+  if (entry.slide_soft.has_unloading)
+    text += fmt::format(", {:.2f} among soft particles", entry.slide_soft.unloading.value);
   return text;
 }
 
@@ -68,7 +69,7 @@ std::string pair_law_remark() {
 }
 
 bool use_pair_law(const std::vector<MacroCurve>& curves) {
-  return std::any_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.law.form == Crowd::pair; });
+  return std::any_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.law.form == LawForm::pair; });
 }
 
 }  // namespace softgrain

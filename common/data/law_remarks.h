@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "common/data/crowd_law.h"
 #include "common/data/macro_result.h"
+#include "common/data/multi_contact_law.h"
 
 namespace softgrain {
 

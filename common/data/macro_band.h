@@ -18,15 +18,16 @@ enum class BandPart {
 };
 
 template <>
-inline constexpr auto words<BandPart> = word_list<BandPart>({{BandPart::law, "law"},
-                                                             {BandPart::discrepancy, "discrepancy"},
-                                                             {BandPart::noise, "noise"},
-                                                             {BandPart::all, "all"}});
+inline constexpr auto enum_names<BandPart> = enum_name_list<BandPart>({{BandPart::law, "law"},
+                                                                       {BandPart::discrepancy, "discrepancy"},
+                                                                       {BandPart::noise, "noise"},
+                                                                       {BandPart::all, "all"}});
 
 enum class BandOf { axial, lateral };
 
 template <>
-inline constexpr auto words<BandOf> = word_list<BandOf>({{BandOf::axial, "axial"}, {BandOf::lateral, "lateral"}});
+inline constexpr auto enum_names<BandOf> = enum_name_list<BandOf>({{BandOf::axial, "axial"},
+                                                                   {BandOf::lateral, "lateral"}});
 
 /// The stress that a band is about.
 const std::vector<double>& banded_stress(const MacroCurve& curve, BandOf of);

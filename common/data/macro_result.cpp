@@ -41,7 +41,7 @@ constexpr Column kOptionalColumns[] = {{"residual_largest", "1", &MacroCurve::re
                                        {"fabric", "1", &MacroCurve::fabric},
                                        {"fabric_bodies", "1", &MacroCurve::fabric_bodies},
                                        {"coordination_bodies", "1", &MacroCurve::coordination_bodies, kNotNegative},
-                                       {"law_asked", "1", &MacroCurve::law_asked, kNotNegative},
+                                       {"law_asked", "1", &MacroCurve::law_evaluations, kNotNegative},
                                        {"law_beyond", "1", &MacroCurve::law_beyond, kNotNegative},
                                        {"law_largest", "1", &MacroCurve::law_largest, kNotNegative},
                                        {"stage", "1", &MacroCurve::stage, kNotNegative},
@@ -80,7 +80,7 @@ void read_stage_axes(const h5::Group& group, std::vector<StageRecord>& stages) {
   std::string line;
   for (StageRecord& s : stages) {
     if (!std::getline(lines, line) || (line != "none" && line.find_first_not_of("xyz") != std::string::npos))
-      throw FileTrouble(fmt::format("attribute '{}': '{}' are no axes", kStageAxes, line));
+      throw IoError(fmt::format("attribute '{}': '{}' are no axes", kStageAxes, line));
     const auto has = [&](char axis) { return line != "none" && line.find(axis) != std::string::npos; };
     s.by_stress = {has('x'), has('y'), has('z')};
   }
@@ -108,7 +108,7 @@ void read_modulus_stresses(const h5::Group& group, std::vector<StageRecord>& sta
   std::istringstream numbers(group.text("modulus_stresses"));
   for (StageRecord& s : stages)
     if (!(numbers >> s.modulus_stress[0] >> s.modulus_stress[1]))
-      throw FileTrouble("attribute 'modulus_stresses': two numbers for each of the stages are needed");
+      throw IoError("attribute 'modulus_stresses': two numbers for each of the stages are needed");
 }
 
 std::vector<StageRecord> read_stage_records(const h5::Group& group) {
@@ -122,9 +122,9 @@ std::vector<StageRecord> read_stage_records(const h5::Group& group) {
     StageRecord record;
     words >> kind >> way >> std::ws;
     std::getline(words, record.name);
-    const auto known_kind = from_word<StageKind>(kind);
-    const auto known_way = from_word<StageKind>(way);
-    if (!known_kind || !known_way) throw FileTrouble("attribute 'stages': unknown kind in '" + line + "'");
+    const auto known_kind = parse_enum<StageKind>(kind);
+    const auto known_way = parse_enum<StageKind>(way);
+    if (!known_kind || !known_way) throw IoError("attribute 'stages': unknown kind in '" + line + "'");
     record.kind = *known_kind;
     record.way = *known_way;
     stages.push_back(record);
@@ -140,7 +140,7 @@ void read_column(const h5::Group& group, MacroCurve& curve, const Column& c, std
 
 std::int64_t read_count(const h5::Group& group, const char* name) {
   const std::int64_t value = group.integer(name);
-  if (value < 0) throw FileTrouble(fmt::format("attribute '{}' is {}; allowed: at least 0", name, value));
+  if (value < 0) throw IoError(fmt::format("attribute '{}' is {}; allowed: at least 0", name, value));
   return value;
 }
 
@@ -154,7 +154,7 @@ struct Number {
 constexpr Number<LawIdentity> kLawNumbers[] = {{"law_solid_fraction", &LawIdentity::solid_fraction},
                                                {"law_youngs_modulus", &LawIdentity::youngs_modulus}};
 
-/// The same of what may not be known; there is no attribute then.
+/// A number that may be unknown, and its name as an attribute. An unknown number has no attribute.
 struct KnownNumber {
   const char* name;
   std::optional<double> LawIdentity::*value;
@@ -171,7 +171,7 @@ constexpr const char* kPoissonName = "poisson_ratio";  // of the start; below ze
 constexpr Number<MacroStart> kStartSizes[] = {
     {"size_x", &MacroStart::size_x}, {"size_y", &MacroStart::size_y}, {"size_z", &MacroStart::size_z}};
 
-/// The law of cells, which is no form of a crowd law.
+/// The law of cells, which is no form of a multi-contact law.
 const std::string kCellForm = "cell";
 
 void write_origin(const h5::Group& group, const MacroCurve& curve) {
@@ -199,7 +199,7 @@ void read_origin(const h5::Group& group, MacroCurve& curve) {
       for (const auto& n : kStartSizes) curve.start.*n.value = read_attribute(group, n.name, kNotNegative);
   }
   if (!group.has_attribute("law_form")) return;
-  if (group.text("law_form") != kCellForm) curve.law.form = read_word<Crowd>(group, "law_form");
+  if (group.text("law_form") != kCellForm) curve.law.form = read_word<LawForm>(group, "law_form");
   curve.law.hash = group.text("law_hash");
   for (const auto& n : kLawNumbers) curve.law.*n.value = read_attribute(group, n.name, kNotNegative);
   for (const KnownNumber& n : kLawKnown)
@@ -250,7 +250,7 @@ std::vector<std::vector<double>> read_rows(const h5::Group& group, const char* n
   const h5::Shape shape = group.shape(name);
   const auto fits = [&](std::size_t k) { return wanted[k] == 0 || shape[k] == wanted[k]; };
   if (shape.size() != 2 || !fits(0) || !fits(1))
-    throw FileTrouble(fmt::format("data set '{}' has another shape than the curve that it belongs to", name));
+    throw IoError(fmt::format("data set '{}' has another shape than the curve that it belongs to", name));
   const std::vector<double> all = group.doubles(name);
   for (std::size_t r = 0; r < shape[0]; ++r) {
     const auto begin = all.begin() + static_cast<std::ptrdiff_t>(r * shape[1]);
@@ -292,7 +292,7 @@ void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
 
 MacroCurve read_macro_curve(const h5::Group& group) {
   MacroCurve curve;
-  curve.engine = group.text("engine");
+  curve.engine = current_name(group.text("engine"));
   curve.test = read_word<MacroTest>(group, "test");
   if (group.has_attribute("boundary")) curve.boundary = read_word<Boundary>(group, "boundary");
   curve.stages = read_stage_records(group);
@@ -319,7 +319,7 @@ MacroCurve read_macro_curve(const h5::Group& group) {
     for (const std::string& name : more.children()) {
       curve.more[name] = more.doubles(name);
       if (curve.more[name].size() != points)
-        throw FileTrouble(
+        throw IoError(
             fmt::format("data set 'more/{}' has {} values for {} points", name, curve.more[name].size(), points));
     }
   }
@@ -349,9 +349,9 @@ std::vector<MacroCurve> load_macro(const std::string& path) {
     const h5::Group one = group.open(name);
     try {
       curves.push_back(read_macro_curve(one));
-    } catch (const FileTrouble& e) {
+    } catch (const IoError& e) {
       const std::string text = e.what();
-      throw FileTrouble(text.starts_with(path) ? text : path + ": " + name + ": " + text);
+      throw IoError(text.starts_with(path) ? text : path + ": " + name + ": " + text);
     }
   }
   return curves;

@@ -17,12 +17,12 @@ namespace softgrain {
 
 /// The law that a curve was made with: two runs with the same hash had the same forces.
 struct LawIdentity {
-  std::optional<Crowd> form{};            ///< empty: with a hash the law of cells, else a twin, or not recorded
-  double solid_fraction = 0.0;            ///< at which a table was taken; 0: a law card
-  double youngs_modulus = 0.0;            ///< that scales its forces [Pa]
-  std::optional<double> poisson_ratio{};  ///< of the grains that it was measured with; empty: not known (experiments)
-  std::optional<double> friction{};       ///< mu of them
-  std::string hash;                       ///< of every number that forces depend on
+  std::optional<LawForm> form{};          ///< empty: with a hash the law of cells, else a twin, or not recorded
+  double solid_fraction = 0.0;            ///< solid fraction at which a table was taken; 0: a law card
+  double youngs_modulus = 0.0;            ///< E that scales the forces of the law [Pa]
+  std::optional<double> poisson_ratio{};  ///< nu of the measured grains; empty: not known (experiments)
+  std::optional<double> friction{};       ///< mu of the measured grains
+  std::string hash;                       ///< hash of every number that forces depend on
 
   friend bool operator==(const LawIdentity&, const LawIdentity&) = default;
 };
@@ -31,10 +31,10 @@ struct LawIdentity {
 /// 0123456789abcdef".
 std::string identity_text(const LawIdentity& law);
 
-/// Which matter a law is for, as check, summaries and reports say it: empty for a twin.
+/// Material that a law is for, in the words of check, summaries and reports; empty for a twin.
 inline constexpr const char* kMatterInShells =
-    "laws of soft particles are for matter in shells: fines that spread into the voids bear far less";
-inline constexpr const char* kMatterWithoutShells = "for matter without shells: fines fill all voids";
+    "laws of soft particles are for material with shells: fines that spread into the voids bear far less";
+inline constexpr const char* kMatterWithoutShells = "for material without shells: fines fill all voids";
 inline std::string picture_of(const LawIdentity& law) {
   if (law.form) return kMatterInShells;
   return law.hash.empty() ? "" : kMatterWithoutShells;
@@ -43,11 +43,11 @@ inline std::string picture_of(const LawIdentity& law) {
 /// Resolved twins of a law, which are engines of curves too.
 enum class Twin {
   shelled,  ///< contents in moving shells
-  free      ///< the same grains without shells
+  free      ///< grains of the shelled twin without shells
 };
 
 template <>
-inline constexpr auto words<Twin> = word_list<Twin>({{Twin::shelled, "shelled"}, {Twin::free, "free"}});
+inline constexpr auto enum_names<Twin> = enum_name_list<Twin>({{Twin::shelled, "shelled"}, {Twin::free, "free"}});
 
 enum class MacroTest {
   isotropic,
@@ -57,10 +57,10 @@ enum class MacroTest {
 };
 
 template <>
-inline constexpr auto words<MacroTest> = word_list<MacroTest>({{MacroTest::oedometric, "oedometric"},
-                                                               {MacroTest::isotropic, "isotropic"},
-                                                               {MacroTest::shear, "shear"},
-                                                               {MacroTest::stages, "stages"}});
+inline constexpr auto enum_names<MacroTest> = enum_name_list<MacroTest>({{MacroTest::oedometric, "oedometric"},
+                                                                         {MacroTest::isotropic, "isotropic"},
+                                                                         {MacroTest::shear, "shear"},
+                                                                         {MacroTest::stages, "stages"}});
 
 /// What the axes of a box or cell do in a part of a test; the load is along z.
 enum class StageKind {
@@ -70,21 +70,21 @@ enum class StageKind {
   triaxial,       ///< z is driven, x and y are held by stress
   consolidation,  ///< every axis goes to its stress
   axes,           ///< every axis to a strain or a stress of its own
-  unload,         ///< the way of the last stage that was none of these three, back
-  reload,         ///< and forth again
+  unload,         ///< reverses the path of the last stage that was none of unload, reload and hold
+  reload,         ///< repeats the path that an unloading reversed
   hold            ///< nothing is driven
 };
 
 template <>
-inline constexpr auto words<StageKind> = word_list<StageKind>({{StageKind::oedometric, "oedometric"},
-                                                               {StageKind::isotropic, "isotropic"},
-                                                               {StageKind::shear, "shear"},
-                                                               {StageKind::triaxial, "triaxial"},
-                                                               {StageKind::consolidation, "consolidation"},
-                                                               {StageKind::axes, "axes"},
-                                                               {StageKind::unload, "unload"},
-                                                               {StageKind::reload, "reload"},
-                                                               {StageKind::hold, "hold"}});
+inline constexpr auto enum_names<StageKind> = enum_name_list<StageKind>({{StageKind::oedometric, "oedometric"},
+                                                                         {StageKind::isotropic, "isotropic"},
+                                                                         {StageKind::shear, "shear"},
+                                                                         {StageKind::triaxial, "triaxial"},
+                                                                         {StageKind::consolidation, "consolidation"},
+                                                                         {StageKind::axes, "axes"},
+                                                                         {StageKind::unload, "unload"},
+                                                                         {StageKind::reload, "reload"},
+                                                                         {StageKind::hold, "hold"}});
 
 /// What is around the bodies.
 enum class Boundary {
@@ -93,20 +93,21 @@ enum class Boundary {
 };
 
 template <>
-inline constexpr auto words<Boundary> = word_list<Boundary>({{Boundary::walls, "walls"},
-                                                             {Boundary::periodic, "periodic"}});
+inline constexpr auto enum_names<Boundary> = enum_name_list<Boundary>({{Boundary::walls, "walls"},
+                                                                       {Boundary::periodic, "periodic"}});
 
 /// A part of a test as a curve knows it.
 struct StageRecord {
   std::string name;
   StageKind kind = StageKind::oedometric;
-  StageKind way = StageKind::oedometric;  ///< of unload, reload and hold: what they go back, forth or stand on
+  StageKind way = StageKind::oedometric;  ///< stage that unload, reload or hold reverse, repeat or stay on
   /// Stresses [Pa], ascending, between which its modulus is taken; zeros: as stage_results.h says for its kind.
   std::array<double, 2> modulus_stress{};
   /// Axes that go by stress, x, y, z; empty: not recorded, as in files of earlier versions.
   std::optional<std::array<bool, 3>> by_stress{};
 
-  /// Of what the stage does: how its curve is evaluated makes no other one, nor what one of them does not say.
+  /// Compares what the stages do. How the curve is evaluated does not count, nor does anything that one of them does
+  /// not say.
   friend bool operator==(const StageRecord& a, const StageRecord& b) {
     return a.name == b.name && a.kind == b.kind && a.way == b.way &&
            (!a.by_stress || !b.by_stress || *a.by_stress == *b.by_stress);
@@ -115,13 +116,13 @@ struct StageRecord {
 
 /// What a curve starts from; runs that are set side by side should agree in it. Zeros: not known.
 struct MacroStart {
-  double radius_min = 0.0;      ///< of the bodies [m]
-  double radius_max = 0.0;      ///< [m]
-  double youngs_modulus = 0.0;  ///< of solid grains and of what is inside the soft particles [Pa]
+  double radius_min = 0.0;      ///< smallest radius of the bodies [m]
+  double radius_max = 0.0;      ///< largest radius of the bodies [m]
+  double youngs_modulus = 0.0;  ///< E of solid grains and of the content of soft particles [Pa]
   double poisson_ratio = 0.0;
   double friction = 0.0;
   double wall_friction = 0.0;
-  double size_x = 0.0;  ///< of the box [m]
+  double size_x = 0.0;  ///< length of the box along x [m]
   double size_y = 0.0;
   double size_z = 0.0;
   std::string bodies;  ///< hash of the box and of places, radii and kinds of all bodies
@@ -141,44 +142,45 @@ struct MacroCurve {
   std::int64_t soft = 0;
   std::int64_t grains = 0;  ///< grains resolved inside soft particles (0 for laws)
   double soft_volume_share = 0.0;
-  double solid_fraction = 0.0;  ///< of bodies in the box at the start
+  double solid_fraction = 0.0;  ///< solid fraction of the bodies in the box at the start
   MacroStart start;
   LawIdentity law;
   double preload = 0.0;             ///< shear: isotropic strain before; recorded at strains from -preload to 0
-  std::vector<StageRecord> stages;  ///< of the test; empty: not recorded
+  std::vector<StageRecord> stages;  ///< stages of the test; empty: not recorded
   std::vector<double> strain;
   std::vector<double> stress_axial;
   std::vector<double> stress_lateral;         ///< mean of both directions
-  std::vector<double> stress_axial_contacts;  ///< from the contact sum, a check on the walls
+  std::vector<double> stress_axial_contacts;  ///< axial stress from the contact sum, a check on the walls
   std::vector<double> coordination;           ///< contacts per body (engine "law": force-carrying)
   std::vector<double> residual;               ///< largest net force over mean contact force
   // The rest may be empty: not recorded.
-  std::vector<double> residual_largest;  ///< of all increments since the point before
+  std::vector<double> residual_largest;  ///< largest residual of all increments since the previous point
   std::vector<double> stress_x;
   std::vector<double> stress_y;
   std::vector<double> stress_deviator;      ///< axial (z) minus x
   std::vector<double> fabric;               ///< zz - xx of the fabric tensor of contacts between grains
-  std::vector<double> fabric_bodies;        ///< the same of contacts between bodies, a soft particle being one
+  std::vector<double> fabric_bodies;        ///< zz - xx of the fabric between bodies, a soft particle being one
   std::vector<double> coordination_bodies;  ///< bodies and walls that a body touches, mean
   std::vector<double> body_forces;          ///< normal forces between bodies, walls included, at the end [N]
-  std::vector<double> law_asked;            ///< soft contacts (pair laws) and soft particles (crowd laws) in contact
-  std::vector<double> law_beyond;           ///< of them, those beyond the range that their law was measured in
-  std::vector<double> law_largest;          ///< largest Delta or lost volume over the end of that range
-  std::vector<double> stage;                ///< that ends at the point or comes to it, counted from 0; 0 at the start
-  std::vector<double> strain_x;             ///< 1 - L/L0, L0 the length at the start
+  std::vector<double>
+      law_evaluations;              ///< soft contacts (pair laws) and soft particles (multi-contact laws) in contact
+  std::vector<double> law_beyond;   ///< number of law_evaluations beyond the range that their law was measured in
+  std::vector<double> law_largest;  ///< largest Delta or lost volume over the end of that range
+  std::vector<double> stage;        ///< stage that ends at the point or leads to it, counted from 0; 0 at the start
+  std::vector<double> strain_x;     ///< 1 - L/L0, L0 the length at the start
   std::vector<double> strain_y;
   std::vector<double> strain_z;
   std::map<std::string, std::vector<double>> more;  ///< per point, by name: what one kind of scene alone records
   std::vector<std::vector<double>> drawn_axial;  ///< per draw of the law, then per point: stress_axial with that draw
-  /// Of shelled twins per point: low and high corner of the box, then where every body is, x, y, z in turn [m].
+  /// Places in shelled twins, per point: low and high corner of the box, then x, y, z of every body in turn [m].
   std::vector<std::vector<double>> places;
   bool usable = true;
   std::string note;
   std::string warning;  ///< what may make it wrong for its purpose; empty: nothing
   Cost cost;
-  Cost preparation;  ///< of the state that it starts from, which other engines may share
+  Cost preparation;  ///< cost of the state that the curve starts from, which other engines may share
 
-  [[nodiscard]] std::optional<Twin> twin() const { return from_word<Twin>(engine); }  ///< empty: made by a law
+  [[nodiscard]] std::optional<Twin> twin() const { return parse_enum<Twin>(engine); }  ///< empty: made by a law
 };
 
 /// Numbers of a row of `places`.
@@ -190,7 +192,7 @@ inline constexpr const char* kAgainLateral = "again_stress_lateral";
 
 /// One curve as a group of a file, for checkpoints.
 void write_macro_curve(const h5::Group& group, const MacroCurve& curve);
-/// Throws FileTrouble.
+/// Throws IoError.
 MacroCurve read_macro_curve(const h5::Group& group);
 
 /// Writes all curves to an HDF5 file, atomically.

@@ -51,8 +51,8 @@ void write_runs(const h5::Group& root, const std::vector<PackingRun>& runs) {
 }
 
 TurnProtocol read_turn(const std::string& word) {
-  if (const auto turn = from_word<TurnProtocol>(word)) return *turn;
-  throw FileTrouble("turn of unknown name '" + word + "'");
+  if (const auto turn = parse_enum<TurnProtocol>(word)) return *turn;
+  throw IoError("turn of unknown name '" + word + "'");
 }
 
 std::vector<std::string> read_relaxations(const h5::Group& group) {
@@ -134,9 +134,9 @@ Measurements load_measurements(const std::string& path) {
     data.spec = read_spec(root);
     data.packings = read_packings(root);
     data.runs = read_runs(root, data.packings.size());
-  } catch (const FileTrouble& e) {
+  } catch (const IoError& e) {
     const std::string text = e.what();
-    throw FileTrouble(text.starts_with(path) ? text : path + ": damaged: " + text);
+    throw IoError(text.starts_with(path) ? text : path + ": damaged: " + text);
   }
   return data;
 }

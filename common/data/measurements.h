@@ -18,8 +18,8 @@ namespace softgrain {
 enum class Placement { trials, voids };
 
 template <>
-inline constexpr auto words<Placement> = word_list<Placement>({{Placement::trials, "trials"},
-                                                               {Placement::voids, "voids"}});
+inline constexpr auto enum_names<Placement> = enum_name_list<Placement>({{Placement::trials, "trials"},
+                                                                         {Placement::voids, "voids"}});
 
 /// How the first soft particle was brought to an angle before its drag was recorded.
 enum class TurnProtocol {
@@ -28,8 +28,8 @@ enum class TurnProtocol {
 };
 
 template <>
-inline constexpr auto words<TurnProtocol> = word_list<TurnProtocol>({{TurnProtocol::frozen, "frozen turn"},
-                                                                     {TurnProtocol::slow, "slow turn"}});
+inline constexpr auto enum_names<TurnProtocol> = enum_name_list<TurnProtocol>({{TurnProtocol::frozen, "frozen turn"},
+                                                                               {TurnProtocol::slow, "slow turn"}});
 
 /// The soft particle that was measured [SP 1.1-1.3]. SI units. Of an experiment only Rs and E are always known: numbers
 /// that nobody gave are NaN, trials 0.
@@ -46,7 +46,7 @@ struct SoftParticleSpec {
   double rmax_over_shell = 0.5;             ///< rmax/Rs
   double beta = 3.0;                        ///< volume of drawn grains over the volume of the shell
   std::int64_t trials = 10000;              ///< I, random positions tried per grain
-  Placement placement = Placement::trials;  ///< the same law either way, other random numbers
+  Placement placement = Placement::trials;  ///< placement of grains: the same law either way, other random numbers
 };
 
 /// Whether a number of a soft particle was given.
@@ -113,16 +113,16 @@ struct Measurements {
   SoftParticleSpec spec;
   bool shell_turns = true;                 ///< whether the first shell turns with its grains in tangential runs
   double approach_speed = 0.0;             ///< [m/s], of the published relaxation
-  TurnProtocol turn = TurnProtocol::slow;  ///< of tangential points; files that do not say it have frozen turns
+  TurnProtocol turn = TurnProtocol::slow;  ///< turn protocol of tangential points; files without it: frozen
   double turn_speed = 0.0;                 ///< [m/s], of the rim of the shell in a slow turn; 0: nothing was turned
   std::vector<PackingInfo> packings;
   std::vector<PackingRun> runs;
 };
 
-/// Writes to an HDF5 file, atomically (temporary file, flush, rename). Throws FileTrouble.
+/// Writes to an HDF5 file, atomically (temporary file, flush, rename). Throws IoError.
 void save(const Measurements& data, const std::string& path, const Provenance& provenance = build_provenance());
 
-/// Reads what save() wrote. Throws FileTrouble naming the file and what is missing or damaged.
+/// Reads what save() wrote. Throws IoError naming the file and what is missing or damaged.
 Measurements load_measurements(const std::string& path);
 
 }  // namespace softgrain

@@ -1,7 +1,7 @@
 // The two published cases of a contact with a soft particle.
 #pragma once
 
-#include "common/core/words.h"
+#include "common/core/enum_names.h"
 
 namespace softgrain {
 
@@ -13,7 +13,7 @@ enum class PairKind {
 inline constexpr PairKind kPairKinds[] = {PairKind::soft_solid, PairKind::soft_soft};
 
 template <>
-inline constexpr auto words<PairKind> = word_list<PairKind>({{PairKind::soft_solid, "soft-solid"},
-                                                             {PairKind::soft_soft, "soft-soft"}});
+inline constexpr auto enum_names<PairKind> = enum_name_list<PairKind>({{PairKind::soft_solid, "soft-solid"},
+                                                                       {PairKind::soft_soft, "soft-soft"}});
 
 }  // namespace softgrain

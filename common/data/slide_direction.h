@@ -1,4 +1,4 @@
-// Where the first neighbour of a crowd measurement slides.
+// Where the first neighbour of a multi-contact measurement slides.
 #pragma once
 
 #include <cmath>

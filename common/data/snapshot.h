@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "common/core/enum_names.h"
 #include "common/core/vec.h"
-#include "common/core/words.h"
 
 namespace softgrain {
 
@@ -17,24 +17,25 @@ namespace softgrain {
 enum class SnapshotKind : std::int64_t { particles, soft_particle, macro, twin, powder, grain_box };
 
 template <>
-inline constexpr auto words<SnapshotKind> = word_list<SnapshotKind>({{SnapshotKind::particles, "particles"},
-                                                                     {SnapshotKind::soft_particle, "soft-particle"},
-                                                                     {SnapshotKind::macro, "macro"},
-                                                                     {SnapshotKind::twin, "twin"},
-                                                                     {SnapshotKind::powder, "powder"},
-                                                                     {SnapshotKind::grain_box, "grain-box"}});
+inline constexpr auto enum_names<SnapshotKind> = enum_name_list<SnapshotKind>({{SnapshotKind::particles, "particles"},
+                                                                               {SnapshotKind::soft_particle,
+                                                                                "soft-particle"},
+                                                                               {SnapshotKind::macro, "macro"},
+                                                                               {SnapshotKind::twin, "twin"},
+                                                                               {SnapshotKind::powder, "powder"},
+                                                                               {SnapshotKind::grain_box, "grain-box"}});
 
 /// What a particle is: a solid grain that is a body by itself, a soft particle taken as one sphere (it acts by a fitted
 /// law), or a grain inside a soft particle.
 enum class ParticleRole : std::int64_t { solid, soft, inner };
 
 template <>
-inline constexpr auto words<ParticleRole> = word_list<ParticleRole>({{ParticleRole::solid, "solid"},
-                                                                     {ParticleRole::soft, "soft"},
-                                                                     {ParticleRole::inner, "inner"}});
+inline constexpr auto enum_names<ParticleRole> = enum_name_list<ParticleRole>({{ParticleRole::solid, "solid"},
+                                                                               {ParticleRole::soft, "soft"},
+                                                                               {ParticleRole::inner, "inner"}});
 
 struct SnapshotParticle {
-  Vec3 position{};  ///< of the centre; periodic cells: as it is, not folded into the cell
+  Vec3 position{};  ///< centre; in a periodic cell as it is, not folded into the cell
   double radius = 0.0;
   Vec3 velocity{};  ///< zero unless Snapshot::has_velocity
   std::int64_t id = 0;
@@ -46,14 +47,14 @@ struct SnapshotParticle {
 enum class WallShape : std::int64_t { plane, sphere_inside };
 
 template <>
-inline constexpr auto words<WallShape> = word_list<WallShape>({{WallShape::plane, "plane"},
-                                                               {WallShape::sphere_inside, "sphere-inside"}});
+inline constexpr auto enum_names<WallShape> = enum_name_list<WallShape>({{WallShape::plane, "plane"},
+                                                                         {WallShape::sphere_inside, "sphere-inside"}});
 
 struct SnapshotWall {
   WallShape shape = WallShape::plane;
-  Vec3 point{};            ///< of the plane, or centre of the sphere
-  Vec3 normal{};           ///< of the plane, unit, into the space of the particles
-  double radius = 0.0;     ///< of the sphere: a shell, or a container
+  Vec3 point{};            ///< point of the plane, or centre of the sphere
+  Vec3 normal{};           ///< unit normal of the plane, into the space of the particles
+  double radius = 0.0;     ///< radius of the sphere: a shell, or a container
   std::int64_t body = -1;  ///< the soft particle whose shell it is; -1: none
 };
 
@@ -61,16 +62,16 @@ struct SnapshotWall {
 enum class Moment { time, strain, overlap, frame };
 
 template <>
-inline constexpr auto words<Moment> = word_list<Moment>(
+inline constexpr auto enum_names<Moment> = enum_name_list<Moment>(
     {{Moment::time, "time"}, {Moment::strain, "strain"}, {Moment::overlap, "Delta"}, {Moment::frame, "frame"}});
 
 struct SnapshotContact {
   std::int32_t i = 0;         ///< index into Snapshot::particles
-  std::int32_t j = 0;         ///< likewise; from particles.size() on, walls[j - particles.size()]
+  std::int32_t j = 0;         ///< index into Snapshot::particles; from particles.size() on, walls[j - particles.size()]
   Vec3 from{};                ///< end of its line: the centre of i
   Vec3 to{};                  ///< the centre of j in the image that i touches; of a wall the point of contact
-  Vec3 point{};               ///< of contact, beside i
-  Vec3 force{};               ///< on i, the opposite on j
+  Vec3 point{};               ///< contact point, beside i
+  Vec3 force{};               ///< force on i, the opposite on j
   double normal_force = 0.0;  ///< its part along the normal, pushing positive
   Vec3 shift{};  ///< lattice vector that brings position[j] to the image that i touches; zero inside the cell
 };
@@ -81,10 +82,10 @@ struct Snapshot {
 
   SnapshotKind kind = SnapshotKind::particles;
   std::string series;      ///< states with the same name follow each other: "particles", "shelled-0", ...
-  std::string label;       ///< for people: "shelled twin, sample 0, strain 0.15"
+  std::string label;       ///< label for readers: "shelled twin, sample 0, strain 0.15"
   std::int64_t frame = 0;  ///< number of the recorded point within its series, not always consecutive
-  double time = kNone;     ///< what of the three orders the series is a number, the others are NaN
-  double strain = kNone;   ///< of macro runs and grain boxes (of the axis that is loaded), compression positive
+  double time = kNone;  ///< the one of time, strain and overlap that orders the series is a number; the others are NaN
+  double strain = kNone;   ///< strain of macro runs and grain boxes (along the loaded axis), compression positive
   double overlap = kNone;  ///< Delta = hn/Rs of a soft particle
 
   std::string length_unit = "m";  ///< "a" of powders

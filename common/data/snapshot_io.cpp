@@ -17,7 +17,7 @@ constexpr const char* kStatesFormat = "states";
 
 template <class Enum>
 Enum checked(std::int64_t value, Enum last, const char* what) {
-  if (value < 0 || value > static_cast<std::int64_t>(last)) throw FileTrouble(std::string("unknown ") + what);
+  if (value < 0 || value > static_cast<std::int64_t>(last)) throw IoError(std::string("unknown ") + what);
   return static_cast<Enum>(value);
 }
 
@@ -49,7 +49,7 @@ void require_segments(const h5::Group& g) {
   require_shape(g, "segment", {rows.size() / 2, 2});
   for (std::size_t k = 0; k < rows.size(); ++k)
     if (rows[k] != static_cast<std::int64_t>(k))
-      throw FileTrouble(fmt::format("data set 'segment' holds {} in row {}, where {} belongs", rows[k], k / 2, k));
+      throw IoError(fmt::format("data set 'segment' holds {} in row {}, where {} belongs", rows[k], k / 2, k));
 }
 
 void read_particles(const h5::Group& g, Snapshot& s) {
@@ -153,7 +153,7 @@ std::vector<SnapshotContact> read_snapshot_contacts(const h5::Group& g, const Sn
     const std::int64_t j = pairs[2 * k + 1];
     if (i < 0 || j < 0 || i >= static_cast<std::int64_t>(bodies.particles) ||
         j >= static_cast<std::int64_t>(bodies.all))
-      throw FileTrouble("a contact names a body that is not there");
+      throw IoError("a contact names a body that is not there");
     contacts[k].i = static_cast<std::int32_t>(i);
     contacts[k].j = static_cast<std::int32_t>(j);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -201,7 +201,7 @@ Snapshot read_snapshot(const h5::Group& g) {
   s.time_unit = g.text("time_unit");
   const std::int64_t dimension = g.integer("dimension");
   if (dimension != 2 && dimension != 3)
-    throw FileTrouble(fmt::format("a state has {} dimensions; allowed: 2, 3", dimension));
+    throw IoError(fmt::format("a state has {} dimensions; allowed: 2, 3", dimension));
   s.dimension = static_cast<int>(dimension);
   read_particles(g.open("particles"), s);
   read_walls(g.open("walls"), s);

@@ -19,7 +19,7 @@ struct SnapshotBodies {
   std::size_t particles = 0;
   std::size_t all = 0;
 };
-/// Throws FileTrouble when shapes or units are others, a number is not finite, a contact names a body that is not
+/// Throws IoError when shapes or units are others, a number is not finite, a contact names a body that is not
 /// there, or a line joins other rows than those of its contact.
 std::vector<SnapshotContact> read_snapshot_contacts(const h5::Group& group, const SnapshotBodies& bodies,
                                                     const Snapshot& units);
@@ -27,17 +27,17 @@ std::vector<SnapshotContact> read_snapshot_contacts(const h5::Group& group, cons
 /// One state: attributes, particles (position, radius, id, role, body, material, index; velocity), walls, cell, and the
 /// group "contacts".
 void write_snapshot(const h5::Group& group, const Snapshot& snapshot);
-/// Throws FileTrouble when arrays do not fit together or a number is not finite.
+/// Throws IoError when arrays do not fit together or a number is not finite.
 Snapshot read_snapshot(const h5::Group& group);
 
 /// Group "states" with one child per state, in order.
 void write_snapshot_list(const h5::Group& group, const std::vector<Snapshot>& snapshots);
 std::vector<Snapshot> read_snapshot_list(const h5::Group& group);
 
-/// A file of states. Atomic. Throws FileTrouble.
+/// A file of states. Atomic. Throws IoError.
 void save_snapshots(const std::vector<Snapshot>& snapshots, const std::string& path, const Provenance& provenance);
 
-/// Opens a file of states and checks its format. Throws FileTrouble.
+/// Opens a file of states and checks its format. Throws IoError.
 h5::Group open_snapshots(const std::string& path);
 
 }  // namespace softgrain

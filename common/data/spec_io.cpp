@@ -50,7 +50,7 @@ void write_spec(const h5::Group& root, const SoftParticleSpec& spec) {
 SoftParticleSpec read_spec(const h5::Group& root) {
   const h5::Group group = root.open("spec");
   SoftParticleSpec spec;
-  if (group.text("units") != kUnits) throw FileTrouble("spec: units '" + group.text("units") + "' are not known");
+  if (group.text("units") != kUnits) throw IoError("spec: units '" + group.text("units") + "' are not known");
   if (group.has_attribute("sizes")) {
     spec.sizes = stored_grading(group.text("sizes"));
     spec.exponent = std::numeric_limits<double>::quiet_NaN();
@@ -59,11 +59,10 @@ SoftParticleSpec read_spec(const h5::Group& root) {
     if (!spec.sizes || field.value != &SoftParticleSpec::exponent)
       spec.*field.value = read_attribute(group, field.name, field.limits);
   spec.trials = group.integer("trials");
-  if (spec.trials < 1)
-    throw FileTrouble("attribute 'trials' is " + std::to_string(spec.trials) + "; allowed: at least 1");
+  if (spec.trials < 1) throw IoError("attribute 'trials' is " + std::to_string(spec.trials) + "; allowed: at least 1");
   if (!group.has_attribute("placement")) return spec;
-  const auto placement = from_word<Placement>(group.text("placement"));
-  if (!placement) throw FileTrouble("spec: unknown placement '" + group.text("placement") + "'");
+  const auto placement = parse_enum<Placement>(group.text("placement"));
+  if (!placement) throw IoError("spec: unknown placement '" + group.text("placement") + "'");
   spec.placement = *placement;
   return spec;
 }
@@ -74,11 +73,11 @@ void write_format(const h5::Group& root, const std::string& format) {
 }
 
 void require_format(const h5::Group& root, const std::string& format, const std::string& path) {
-  if (!root.has_attribute("format") || root.text("format") != format) throw FileTrouble(path + ": holds no " + format);
+  if (!root.has_attribute("format") || root.text("format") != format) throw IoError(path + ": holds no " + format);
   const std::int64_t schema = root.integer("schema_version");
   if (schema != kSchemaVersion)
-    throw FileTrouble(path + ": schema version " + std::to_string(schema) + ", this program reads version " +
-                      std::to_string(kSchemaVersion));
+    throw IoError(path + ": schema version " + std::to_string(schema) + ", this program reads version " +
+                  std::to_string(kSchemaVersion));
 }
 
 void write_packings(const h5::Group& root, const std::vector<PackingInfo>& packings) {

@@ -42,7 +42,7 @@ void put(Rows<D>& rows, int k, const Vec<D, Lanes>& x) {
   for (int c = 0; c < D; ++c) rows[static_cast<std::size_t>(c)].put(k, x[c]);
 }
 
-/// Sums of bodies, see CrowdSum.
+/// Sums of bodies, see MultiContactSum.
 template <int D>
 struct SumRows {
   Row volume;
@@ -60,28 +60,28 @@ template <int D>
 struct Block {
   int touching = 0;
   std::array<std::int32_t, kBlock + 8> pair;    ///< place in the list
-  std::array<std::int32_t, kBlock + 8> number;  ///< in an ordered range
+  std::array<std::int32_t, kBlock + 8> number;  ///< number of the pair in an ordered range
   std::array<Quad, kBlock + 8> record;          ///< x_i - x_j and one number more, see `fourth`
   Rows<D> branch;
   std::array<Quad, kBlock + 8> upright_record;  ///< normals of planes
   Row fourth;                                   ///< r_i + r_j of spheres, r_j - r_i of a shell, r_i above a plane
   Rows<D> upright;                              ///< normals of planes
   Row radius_i, radius_j;
-  Rows<D> velocity;  ///< of i against j
+  Rows<D> velocity;  ///< velocity of i relative to j
   Rows<kRot<D>> spin_i, spin_j;
   Rows<D> spring;
   Row a, b, memory;
-  Rows<kRollsOf<D>> roll;  ///< in space
+  Rows<kRollsOf<D>> roll;  ///< roll history, in space
   SumRows<D> sum_i, sum_j;
   // Results.
-  Rows<D> force;         ///< on i
-  Rows<kRot<D>> moment;  ///< of a unit arm
+  Rows<D> force;         ///< force on i
+  Rows<kRot<D>> moment;  ///< moment for a unit arm
   Row arm_i, arm_j;
   Row rolling;                    ///< moment of rolling resistance, in two dimensions
-  Rows<kRollsOf<D>> roll_moment;  ///< likewise in space
+  Rows<kRollsOf<D>> roll_moment;  ///< moment of rolling resistance, in space
   Row rolling_stiffness;
   Row normal_force, stiffness, tangential_stiffness;
-  Rows<D> normal;      ///< of the particle pass
+  Rows<D> normal;      ///< contact normals of the particle pass
   Row lost_i, lost_j;  ///< results of the particle pass, then what laws are told of them
 };
 

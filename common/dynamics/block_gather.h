@@ -21,21 +21,22 @@ Block<D>& scratch() {
   return block;
 }
 
-/// Which pairs of a range a loop takes: all of them, those of an order, or those that are not lent, with what waits
-/// added in between.
-enum class Take { all, ordered, own };
+/// Pairs of a range that a loop takes: all of them, those of an order, or those that are not lent. With those
+/// not lent, the waiting loads are added in between.
+enum class PairSubset { all, ordered, own };
 
 /// Finds the touching pairs of a block and brings all that a law asks for into rows. kTraits: what laws of this kind
 /// ask for.
-template <int D, LawTraits kTraits, Geometry kGeometry, bool kPeriodic, Take kTake>
+template <int D, LawTraits kTraits, Geometry kGeometry, bool kPeriodic, PairSubset kSubset>
 class Gatherer {
  public:
   Gatherer(System<D>& s, const Kernel<D>& kernel, const PairRange& range, const BlockPass<D>& pass)
       : s_(s), list_(s.contacts), kernel_(kernel), range_(range), pass_(pass), images_(s.cell) {}
 
  protected:
-  static constexpr bool kOrdered = kTake == Take::ordered;
-  static constexpr bool kSumsUp = kTraits.is_crowd && !kTraits.has_tangential;  ///< the first half of a particle pass
+  static constexpr bool kOrdered = kSubset == PairSubset::ordered;
+  static constexpr bool kSumsUp =
+      kTraits.is_multi_contact && !kTraits.has_tangential;  ///< the first half of a particle pass
 
   static std::size_t u(std::int32_t k) { return static_cast<std::size_t>(k); }
 
@@ -71,7 +72,7 @@ class Gatherer {
   /// One bit for each of four pairs from place k on that is lent.
   [[nodiscard]] int lent([[maybe_unused]] std::int32_t k) const {
     int bits = 0;
-    if constexpr (kTake == Take::own) {
+    if constexpr (kSubset == PairSubset::own) {
       std::uint32_t flags = 0;
       std::memcpy(&flags, pass_.lent + k, sizeof flags);
       if (flags != 0)
@@ -219,27 +220,27 @@ class Gatherer {
     if constexpr (kRolls) roll[c] = {};
   }
 
-  /// From records to rows, four contacts at a time.
+  /// Gathers records into rows, four contacts at a time.
   [[gnu::always_inline]] void gather() {
     const auto& p = s_.particles;
     const Slot* const first = list_.i.data();
     const Slot* const second = list_.j.data();
     const Sphere<D>* const spheres = p.sphere.data();
-    const CrowdSum<D>* const sums = list_.particle_sum.data();
+    const MultiContactSum<D>* const sums = list_.particle_sum.data();
     const Stored<D>* const velocities = p.velocity.data();
     const StoredRot<D>* const spins = p.spin.data();
     const Stored<D>* const springs = list_.spring.data();
     const PairConstants* const all_constants = list_.constants.data();
     for (int g = 0; g < block_.touching; g += 4) {
       std::array<Quad, 4> branch, motion, spin_i, spin_j, spring, normal, roll;
-      [[maybe_unused]] std::array<const CrowdSum<D>*, 4> sum_i, sum_j;
+      [[maybe_unused]] std::array<const MultiContactSum<D>*, 4> sum_i, sum_j;
       for (std::size_t l = 0; l < 4; ++l) {
         const std::size_t c = u(block_.pair[u(g) + l]);
         const std::size_t i = u(first[c]);
         const std::size_t j = u(second[c]);
         branch[l] = block_.record[u(g) + l];
         block_.a.v[u(g) + l] = all_constants[c].a;
-        if constexpr (kTraits.needs_velocity || kTraits.is_crowd) block_.b.v[u(g) + l] = all_constants[c].b;
+        if constexpr (kTraits.needs_velocity || kTraits.is_multi_contact) block_.b.v[u(g) + l] = all_constants[c].b;
         if constexpr (kTraits.needs_velocity) {
           motion[l] = quad_of(velocities[i]) - quad_of(velocities[j]);
           if constexpr (kPeriodic) motion[l] -= images_.velocity[u(list_.image[c])];
@@ -295,9 +296,9 @@ class Gatherer {
     }
   }
 
-  /// Four sums become columns of the rows, see CrowdSum.
-  static void gather_sums(SumRows<D>& rows, int g, const std::array<const CrowdSum<D>*, 4>& sums) {
-    static_assert(D != 3 || offsetof(CrowdSum<3>, second) == 7 * sizeof(double));
+  /// Four sums become columns of the rows, see MultiContactSum.
+  static void gather_sums(SumRows<D>& rows, int g, const std::array<const MultiContactSum<D>*, 4>& sums) {
+    static_assert(D != 3 || offsetof(MultiContactSum<3>, second) == 7 * sizeof(double));
     std::array<Quad, 4> numbers;
     const auto columns = [&](int group, const std::array<Row*, 4>& to) {
       for (std::size_t l = 0; l < 4; ++l)

@@ -21,8 +21,8 @@ template <int D, Geometry kGeometry>
 
 /// What the force of a contact takes from a sum.
 template <int D, bool kDirections>
-[[gnu::always_inline]] inline CrowdSum<D, Lanes> sum_at(const SumRows<D>& rows, int g) {
-  CrowdSum<D, Lanes> sum;
+[[gnu::always_inline]] inline MultiContactSum<D, Lanes> sum_at(const SumRows<D>& rows, int g) {
+  MultiContactSum<D, Lanes> sum;
   sum.volume = rows.volume.at(g);
   if constexpr (kDirections) {
     sum.first = at<D>(rows.first, g);
@@ -41,7 +41,7 @@ template <int D, Geometry kGeometry, class Law>
   s.overlap = geometry.overlap;
   s.normal = geometry.normal;
   s.constants = {b.a.at(g), b.b.at(g)};
-  if constexpr (Law::traits.is_crowd) {
+  if constexpr (Law::traits.is_multi_contact) {
     s.radius_i = b.radius_i.at(g);
     s.radius_j = kGeometry == Geometry::sphere_shell ? -b.radius_j.at(g) : b.radius_j.at(g);
   }
@@ -66,7 +66,7 @@ template <int D, Geometry kGeometry, class Law>
     else if constexpr (kLaw.needs_velocity)
       s.normal_speed = dot(at<D>(b.velocity, g), geometry.normal);
     if constexpr (kLaw.has_rolling) s.turning = at<kRot<D>>(b.spin_i, g) - at<kRot<D>>(b.spin_j, g);
-    CrowdSum<D, Lanes> sum_i, sum_j;
+    MultiContactSum<D, Lanes> sum_i, sum_j;
     Lanes lost_i, lost_j;
     if constexpr (kLaw.needs_particle_pass) {
       sum_i = sum_at<D, kLaw.directions_in_sums>(b.sum_i, g);
@@ -111,8 +111,8 @@ template <int D, Geometry kGeometry, class Law>
     const ContactGeometry<D, Lanes> geometry = geometry_at<D, kGeometry>(b, g);
     const ContactState<D, Lanes> s = state_at<D, kGeometry, Law>(b, g, geometry);
     put<D>(b.normal, g, geometry.normal);
-    if (law.soft_sides().i) b.lost_i.put(g, law.taken(s, true));
-    if (law.soft_sides().j) b.lost_j.put(g, law.taken(s, false));
+    if (law.soft_sides().i) b.lost_i.put(g, law.occupied_volume(s, true));
+    if (law.soft_sides().j) b.lost_j.put(g, law.occupied_volume(s, false));
   }
 }
 
@@ -122,7 +122,7 @@ struct Kernel {
   const void* law = nullptr;
   void (*run)(const void* law, double dt, bool stiffness, Block<D>& block) = nullptr;
   double reach = 0.0;
-  SoftSides sums{};  ///< of which bodies it asks for the sums
+  SoftSides sums{};  ///< bodies of a contact whose sums the law asks for
 
   void operator()(double dt, bool stiffness, Block<D>& block) const { run(law, dt, stiffness, block); }
 };
@@ -141,7 +141,7 @@ constexpr LawTraits seen_by_loop(LawTraits t) {
           .acts_at_distance = t.acts_at_distance,
           .needs_particle_pass = t.needs_particle_pass,
           .directions_in_sums = t.directions_in_sums,
-          .is_crowd = t.is_crowd};
+          .is_multi_contact = t.is_multi_contact};
 }
 
 }  // namespace softgrain::block

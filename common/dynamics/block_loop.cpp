@@ -11,9 +11,9 @@ namespace {
 using namespace block;
 
 /// Forces of a range of pairs.
-template <int D, LawTraits kTraits, Geometry kGeometry, bool kPeriodic, Take kTake>
-class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kTake> {
-  using Base = Gatherer<D, kTraits, kGeometry, kPeriodic, kTake>;
+template <int D, LawTraits kTraits, Geometry kGeometry, bool kPeriodic, PairSubset kSubset>
+class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kSubset> {
+  using Base = Gatherer<D, kTraits, kGeometry, kPeriodic, kSubset>;
   using Base::block_, Base::list_, Base::pass_, Base::s_, Base::u, Base::kRolls;
 
  public:
@@ -53,7 +53,7 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kTake> {
       wall = -1;
     };
     for_records([&](int k, std::size_t c, Quad force, Quad moment) {
-      if constexpr (kTake != Take::all)
+      if constexpr (kSubset != PairSubset::all)
         if (pass_.waiting != nullptr && pass_.waiting->next < static_cast<std::int32_t>(c)) {
           if constexpr (kWalls) let_go();
           pass_.waiting->add_before(static_cast<std::int32_t>(c));
@@ -97,7 +97,7 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kTake> {
     if (pass_.virial != nullptr) add_virial(*pass_.virial);
   }
 
-  /// Of number k of the block.
+  /// Stiffness of contact number k of the block.
   [[nodiscard]] ContactStiffness stiffness_of(int k) const {
     ContactStiffness out{block_.stiffness.v[k], 0.0, 0.0, std::abs(block_.normal_force.v[k])};
     if constexpr (kTraits.has_tangential) {
@@ -117,7 +117,7 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kTake> {
         out[a] += block_.force[static_cast<std::size_t>(a)].v[k] * block_.branch[static_cast<std::size_t>(a)].v[k];
   }
 
-  /// The same for bodies of other threads.
+  /// Stores the loads of the contacts, for bodies of other threads.
   void put_down() {
     for_records([&](int k, std::size_t, Quad force, Quad moment) {
       ContactLoad& load = pass_.loads[block_.number[u(k)]];
@@ -180,16 +180,16 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kTake> {
 };
 template <int D, LawTraits kTraits, Geometry kGeometry>
 void run_loop(System<D>& s, const Kernel<D>& kernel, const PairRange& range, const BlockPass<D>& pass) {
-  const auto run = [&]<Take kTake>(auto periodic) {
-    Loop<D, kTraits, kGeometry, decltype(periodic)::value, kTake>(s, kernel, range, pass).run();
+  const auto run = [&]<PairSubset kSubset>(auto periodic) {
+    Loop<D, kTraits, kGeometry, decltype(periodic)::value, kSubset>(s, kernel, range, pass).run();
   };
   const auto with_order = [&](auto periodic) {
     if (range.order != nullptr)
-      run.template operator()<Take::ordered>(periodic);
+      run.template operator()<PairSubset::ordered>(periodic);
     else if (pass.lent != nullptr)
-      run.template operator()<Take::own>(periodic);
+      run.template operator()<PairSubset::own>(periodic);
     else
-      run.template operator()<Take::all>(periodic);
+      run.template operator()<PairSubset::all>(periodic);
   };
   if constexpr (kGeometry != Geometry::sphere_plane)
     if (s.cell.any_periodic()) return with_order(std::true_type{});

@@ -10,17 +10,18 @@
 
 namespace softgrain {
 
-/// Force and moment of a contact, put down for bodies that another thread owns.
+/// Force and moment of a contact, stored for bodies that another thread owns.
 struct alignas(64) ContactLoad {
-  double force[3];   ///< on i [N]
+  double force[3];   ///< force on i [N]
   double arm_i;      ///< [m]
-  double moment[3];  ///< of a unit arm along the normal [N]; in 2D the first, and [1] is that of rolling [N m]
+  double moment[3];  ///< moment for a unit arm along the normal [N]; in 2D moment[0] alone, and moment[1] is that of
+                     ///< rolling [N m]
   double arm_j;      ///< [m]
 };
 
-/// Moment of rolling resistance of a contact in space, likewise.
+/// Moment of rolling resistance of a contact in space, stored for bodies that another thread owns.
 struct ContactRoll {
-  double moment[3];  ///< on i [N m]
+  double moment[3];  ///< moment on i [N m]
 };
 
 /// Loads that wait to be added to bodies, in list order.
@@ -39,13 +40,13 @@ struct BodyStiffness {
   std::vector<double> rotation;     ///< sum of kt arm^2, in space with that of rolling [N m]
   // Of the contacts whose first body it is, so that every contact counts once:
   std::vector<double> force;           ///< sum of |normal force| [N]
-  std::vector<std::int32_t> contacts;  ///< that carry a force
+  std::vector<std::int32_t> contacts;  ///< number of contacts that carry a force
 
   void clear(std::size_t bodies);
   [[nodiscard]] double mean_force() const;
 };
 
-/// What a contact adds to them, put down likewise.
+/// What a contact adds to the sums of BodyStiffness, stored for bodies that another thread owns.
 struct ContactStiffness {
   double translation;  ///< kn + kt [N/m]
   double rotation_i;   ///< [N m]
@@ -64,12 +65,12 @@ struct BlockPass {
   History history = History::next;
   ContactLoad* loads =
       nullptr;  ///< when there, bodies are left alone: the load of pair k of the range goes to loads[k]
-  ContactRoll* rolls = nullptr;             ///< likewise, of laws with rolling resistance in space
-  std::uint8_t* touches = nullptr;          ///< and touches[k] says whether it touches
+  ContactRoll* rolls = nullptr;  ///< gets the moment of pair k at rolls[k], for laws with rolling resistance in space
+  std::uint8_t* touches = nullptr;          ///< gets at touches[k] whether pair k touches
   WaitingLoads* waiting = nullptr;          ///< added in between, in list order
   const std::uint8_t* lent = nullptr;       ///< one flag per place in the list, 1: pairs of the range that are left out
   BodyStiffness* stiffness = nullptr;       ///< gets the sums of what goes to the bodies
-  ContactStiffness* stiffnesses = nullptr;  ///< put down with the loads
+  ContactStiffness* stiffnesses = nullptr;  ///< stored with the loads
   Vec<D>* virial = nullptr;                 ///< sum over contacts of force times branch, per axis [N m]
 };
 

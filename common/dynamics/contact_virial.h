@@ -9,20 +9,20 @@
 
 namespace softgrain {
 
-/// Per axis [N m], compression positive; over the volume it is the stress. Sum of force times place over all bodies,
-/// less force times shift of the contacts across faces of the periodic cell, which alone are evaluated again. Bodies
-/// must bear nothing but their contacts (no gravity). The same bits for any number of threads. Looks up the contacts
-/// across faces once per neighbour list.
+/// Sum over contacts of force times branch, per axis [N m], compression positive; over the volume it is the stress. It
+/// is the sum of force times place over all bodies, less force times shift of the contacts across faces of the periodic
+/// cell. These contacts alone are evaluated again. Bodies must bear nothing but their contacts (no gravity). The same
+/// bits for any number of threads. Looks up the contacts across faces once per neighbour list.
 template <int D>
 class ContactVirial {
  public:
-  /// Of the last pass, whose history has been committed.
+  /// Sum of the last pass, whose history has been committed.
   Vec<D> of(System<D>& system);
 
  private:
   struct Across {
     std::size_t section = 0;
-    std::vector<std::int32_t> places;  ///< in the list
+    std::vector<std::int32_t> places;  ///< places of the contacts in the list
   };
   void find_across(const System<D>& system);
 

@@ -11,7 +11,7 @@ namespace softgrain {
 
 namespace {
 
-/// Sections one after another; sums of crowd laws are made anew, because those of the last pass are scratch.
+/// Sections one after another; sums of multi-contact laws are made anew, because those of the last pass are scratch.
 template <int D>
 class Watcher {
  public:
@@ -70,18 +70,18 @@ class Watcher {
 
   template <class Law>
   void note_use(const Law& law, const ContactState<D>& state, std::size_t i, std::size_t j) {
-    if constexpr (Law::traits.is_crowd) {
-      note_crowd(law, state, true, i);
-      note_crowd(law, state, false, j);
+    if constexpr (Law::traits.is_multi_contact) {
+      note_multi_contact(law, state, true, i);
+      note_multi_contact(law, state, false, j);
     } else if constexpr (Law::traits.is_fitted) {
       out_.laws.add(state.overlap / (state.constants.a * law.range.end), law.range.beyond);
     }
   }
 
   template <class Law>
-  void note_crowd(const Law& law, const ContactState<D>& state, bool of_i, std::size_t body) {
+  void note_multi_contact(const Law& law, const ContactState<D>& state, bool of_i, std::size_t body) {
     if constexpr (!Law::traits.needs_particle_pass) {
-      CrowdSum<D> own;
+      MultiContactSum<D> own;
       law.share(state, of_i, own);
       if (own.square != 0.0) add_volume(own.volume, law.form);
     } else {
@@ -93,24 +93,24 @@ class Watcher {
       form_[body] = &law.form;
     }
   }
-  void add_volume(double volume, const CrowdForm& form) {
+  void add_volume(double volume, const MultiContactForm& form) {
     out_.laws.add(volume / form.pressure.range.end, form.pressure.range.beyond);
   }
 
   const System<D>& s_;
   ContactWatch<D> out_;
-  std::vector<CrowdSum<D>> sums_;       ///< per body; empty without laws of crowds
-  std::vector<const CrowdForm*> form_;  ///< of the law that serves it
+  std::vector<MultiContactSum<D>> sums_;       ///< per body; empty without multi-contact laws
+  std::vector<const MultiContactForm*> form_;  ///< form of the law that serves each body
 };
 
 }  // namespace
 
 std::string law_use_text(const LawUse& use) {
   if (use.beyond == 0) return "";
-  const char* done = use.refused > 0 ? "which the law does not allow" : use.clamped > 0 ? "clamped" : "extrapolated";
+  const char* done = use.rejected > 0 ? "which the law does not allow" : use.clamped > 0 ? "clamped" : "extrapolated";
   return fmt::format(
       "{} of {} uses of fitted laws beyond what was measured, up to {:.2f} times the end of the range: {}", use.beyond,
-      use.asked, use.largest, done);
+      use.evaluations, use.max_range_ratio, done);
 }
 
 template <int D>

@@ -154,7 +154,7 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* fram
   for (;;) {
     if (result.passes % kMassInterval == 0) {
       const double scale = std::max(stiffness_.mean_force(), options_.force_floor);
-      const double worst = worst_net_force(s.particles, options_.restless);
+      const double worst = worst_net_force(s.particles, options_.unbalanced_fraction);
       result.residual = scale > 0.0 ? worst / scale : 0.0;
       if (!std::isfinite(worst))
         result.end = RelaxationEnd::diverged;

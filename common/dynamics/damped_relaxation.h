@@ -14,9 +14,9 @@
 namespace softgrain {
 
 struct DampedOptions {
-  double tolerance = 1e-2;   ///< largest net force over mean contact force at the end
-  double restless = 0.0;     ///< share of the bodies, rounded down, whose net force may be larger
-  double force_floor = 0.0;  ///< the mean contact force never counts for less than this [N]
+  double tolerance = 1e-2;           ///< largest net force over mean contact force at the end
+  double unbalanced_fraction = 0.0;  ///< share of the bodies, rounded down, whose net force may be larger
+  double force_floor = 0.0;          ///< the mean contact force never counts for less than this [N]
   std::int64_t max_passes = 20000;
   double max_move = 0.05;  ///< largest move of a body per pass, in its radius
   /// No body moves farther per pass than this times the root mean square move of all, both in radii (MoveLimit).
@@ -73,7 +73,7 @@ class DampedRelaxation {
 
   /// Relaxes until the tolerance is met. Leaves all velocities zero and the forces of the final state in place.
   RelaxationResult relax(System<D>& system) { return relax(system, nullptr); }
-  /// The same with a frame, until that is at rest too.
+  /// Relaxes the system together with a frame, until both are at rest.
   RelaxationResult relax(System<D>& system, RelaxingFrame<D>& frame) { return relax(system, &frame); }
 
  private:

@@ -12,8 +12,8 @@ namespace softgrain {
 template <int D>
 void displace(System<D>& system, const std::vector<Vec<D>>& moves);
 
-/// The same while the edges of a periodic rectangular cell grow by the factors 1 + growth; what is in touch across a
-/// face sees the image move with it.
+/// Moves every body as displace() above does, while the edges of a periodic rectangular cell grow by the factors 1 +
+/// growth. A contact across a face sees the image move with it.
 template <int D>
 void displace(System<D>& system, const std::vector<Vec<D>>& moves, const Vec<D>& growth);
 

@@ -50,8 +50,8 @@ struct Fire {
 
 /// Sums over the bodies that forces move.
 struct StiffnessSums {
-  double stiffness = 0.0;  ///< of their contacts [N/m]
-  double radii = 0.0;      ///< [m]
+  double stiffness = 0.0;  ///< sum of the stiffness of their contacts [N/m]
+  double radii = 0.0;      ///< sum of their radii [m]
 
   template <class Particles, class Stiffness>
   StiffnessSums(const Particles& p, const Stiffness& of) {
@@ -70,13 +70,13 @@ struct PseudoMasses {
   static constexpr std::int64_t kInterval = 10;  ///< passes between two updates of the masses
 
   double floor_per_radius = 0.0;  ///< least stiffness over radius [Pa]
-  double pull = 0.0;              ///< where nothing touches: the largest net force [N]
+  double pull = 0.0;              ///< largest net force where nothing touches, else 0 [N]
 
-  /// From sums over the bodies that forces move: of the stiffness of their contacts [N/m] and of their radii [m]. A
+  /// Takes sums over the bodies that forces move: of the stiffness of their contacts [N/m] and of their radii [m]. A
   /// body without contacts gets a share of the mean stiffness per size, so that a new contact does not throw it. Where
-  /// hardly anything touches, that mean says nothing, and grains that meet would find themselves too light for their
-  /// contact: no body counts as softer than `least` times its radius. With no contact anywhere, weights alone pull
-  /// (`worst_net_force`): a body then moves its radius in a step of 1, before the limit on moves.
+  /// hardly anything touches, that mean says nothing, and grains that meet would be too light for their contact. So no
+  /// body counts as softer than `least` times its radius. With no contact anywhere, weights alone pull
+  /// (`worst_net_force`): a body then moves by its radius in a step of 1, before the limit on moves.
   PseudoMasses(double stiffness_sum, double radius_sum, double least, double worst_net_force)
       : floor_per_radius(std::max(radius_sum > 0.0 ? 0.1 * stiffness_sum / radius_sum : 0.0, least)),
         pull(stiffness_sum > 0.0 ? 0.0 : worst_net_force) {}
@@ -97,8 +97,8 @@ struct MoveLimit {
   static constexpr std::int64_t kLeadDoubles = 2000;  ///< passes
 
   double most = 0.05;
-  /// Times the root mean square move of all: the few that fly would use up the margins of the neighbour list. Doubles
-  /// every kLeadDoubles passes, so that nothing waits for ever.
+  /// Limit over the root mean square move of all: the few that fly would use up the margins of the neighbour list. It
+  /// doubles every kLeadDoubles passes, so that no body waits for ever.
   double lead = std::numeric_limits<double>::infinity();
 
   /// `typical`: root mean square move of the last pass, in radii.

@@ -15,7 +15,7 @@ namespace softgrain {
 
 namespace {
 
-/// Below this many listed pairs one thread is faster than two.
+/// Number of listed pairs below which one thread is faster than two.
 constexpr std::int32_t kParallelPairs = 8000;
 
 template <int D>

@@ -19,7 +19,8 @@ void force_pass(System<D>& system, double dt, History history = History::next);
 template <int D>
 void add_contact_forces(System<D>& system, double dt, History history);
 
-/// Those sums and the stiffness sums.
+/// Sums the forces and the contact stiffness per body; the list is known to be valid and the forces of all bodies are
+/// zero.
 template <int D>
 void add_contact_forces(System<D>& system, double dt, BodyStiffness& stiffness, History history);
 
@@ -33,13 +34,13 @@ struct ContactRecord {
   Slot i = 0;
   Slot j = 0;
   double overlap = 0.0;
-  Vec<D> normal{};  ///< to i
+  Vec<D> normal{};  ///< unit normal, points to body i
   Vec<D> branch{};  ///< x_i - x_j (from a point of the plane for planes) [m]
-  Vec<D> point{};   ///< of contact, image near i [m]
+  Vec<D> point{};   ///< contact point, image near i [m]
   double normal_force = 0.0;
   Vec<D> tangential_force{};
   bool sliding = false;
-  Rot<D> rolling_moment{};  ///< on i, of laws with rolling resistance [N m]
+  Rot<D> rolling_moment{};  ///< rolling moment on i, for laws with rolling resistance [N m]
 };
 
 /// All force-carrying contacts of the committed state. Never changes the trajectory; not counted as a loop pass.

@@ -66,7 +66,7 @@ struct SystemPairs {
     return state;
   }
 
-  /// Without a tangential force spins are not needed.
+  /// Sets the relative motion at the contact. Spins are not needed without a tangential force.
   template <bool kSpins>
   [[gnu::always_inline]] void move(const Pair& pair, const ContactGeometry<D>& g, ContactState<D>& state) const {
     const auto& p = s.particles;

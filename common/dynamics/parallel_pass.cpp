@@ -17,9 +17,9 @@ namespace softgrain {
 
 namespace {
 
-/// A pair that another thread, or this one, has put down, and one of its bodies here.
+/// A pair whose load another thread, or this one, has stored, and one of its bodies here.
 struct Waiting {
-  std::int32_t place = 0;  ///< in the list
+  std::int32_t place = 0;  ///< place of the pair in the list
   std::int32_t thread = 0;
   std::int32_t number = 0;
   bool first = false;  ///< the body here is the first of the pair
@@ -27,15 +27,15 @@ struct Waiting {
 
 /// Pairs of one section that concern one thread.
 struct Share {
-  std::vector<std::int32_t> inner;            ///< places in the list of pairs whose bodies are both the thread's
-  std::vector<PairRange> touching;            ///< stretches of the list that hold all pairs with a body of the thread
-  std::vector<PairRange> stretches;           ///< that hold all of inner and beside them only pairs of two threads
-  std::vector<std::int32_t> outer;            ///< of those that it evaluates of pairs with bodies of two threads
-  std::vector<ContactLoad> loads;             ///< of outer
-  std::vector<ContactRoll> rolls;             ///< of outer, in space where some law has rolling resistance
-  std::vector<ContactStiffness> stiffnesses;  ///< of outer, where they have been asked for
-  std::vector<std::uint8_t> touches;          ///< of outer
-  std::vector<Waiting> waiting;               ///< bodies here of all pairs that were put down, in list order
+  std::vector<std::int32_t> inner;   ///< places in the list of pairs whose bodies are both the thread's
+  std::vector<PairRange> touching;   ///< stretches of the list that hold all pairs with a body of the thread
+  std::vector<PairRange> stretches;  ///< stretches that hold all of inner, else only pairs of two threads
+  std::vector<std::int32_t> outer;   ///< places of the pairs with bodies of two threads that this thread evaluates
+  std::vector<ContactLoad> loads;    ///< loads of the outer pairs
+  std::vector<ContactRoll> rolls;    ///< rolling moments of the outer pairs, in space where a law has them
+  std::vector<ContactStiffness> stiffnesses;  ///< stiffnesses of the outer pairs, where they have been asked for
+  std::vector<std::uint8_t> touches;          ///< whether each outer pair touches
+  std::vector<Waiting> waiting;               ///< bodies here of all pairs whose loads were stored, in list order
 
   void clear() {
     inner.clear();
@@ -53,8 +53,8 @@ struct Plan {
   bool rolls = false;               ///< some law of the scene has rolling resistance
   bool shares_sums = false;         ///< the particle pass goes by threads: they find their pairs in long stretches
   std::vector<std::uint8_t> owner;  ///< thread of every body
-  std::vector<std::vector<BodyRange>> bodies;  ///< the same by threads, as stretches
-  std::vector<std::uint8_t> lent;              ///< by place in the list, 1: the pair has bodies of two threads
+  std::vector<std::vector<BodyRange>> bodies;  ///< bodies of each thread, as stretches
+  std::vector<std::uint8_t> lent;              ///< flag per place in the list, 1: the pair has bodies of two threads
   std::vector<std::vector<Share>> shares;      ///< [thread][section]
 };
 
@@ -81,7 +81,7 @@ std::vector<std::uint8_t> owners_of(const System<D>& s, const std::vector<double
   return owner;
 }
 
-/// Of each thread; nothing where bodies do not lie in spatial order, so that stretches are short.
+/// Stretches of bodies of each thread. Empty where bodies do not lie in spatial order, so that stretches are short.
 std::vector<std::vector<BodyRange>> stretches_of(const std::vector<std::uint8_t>& owner, std::size_t threads) {
   constexpr std::size_t kShort = 4;
   std::size_t many = 0;
@@ -122,7 +122,7 @@ class Lenders {
 
   struct Lent {
     std::uint8_t thread = 0;
-    std::int32_t number = 0;  ///< of the pairs that this thread evaluates
+    std::int32_t number = 0;  ///< number of the pair among those of two threads that this thread evaluates
   };
   Lent next(std::uint8_t a, std::uint8_t b) {
     const std::uint8_t thread = lent_[a] * share_[b] <= lent_[b] * share_[a] ? a : b;

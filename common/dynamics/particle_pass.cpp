@@ -9,13 +9,14 @@ namespace {
 using namespace block;
 
 template <class Law>
-constexpr LawTraits kAskedOfShares{
-    .has_memory = Law::traits.memory_in_sums, .directions_in_sums = Law::traits.directions_in_sums, .is_crowd = true};
+constexpr LawTraits kAskedOfShares{.has_memory = Law::traits.memory_in_sums,
+                                   .directions_in_sums = Law::traits.directions_in_sums,
+                                   .is_multi_contact = true};
 
 /// The first half of the particle pass: what every contact takes from its bodies.
 template <class Law, Geometry kGeometry, bool kPeriodic>
-class Shares : Gatherer<3, kAskedOfShares<Law>, kGeometry, kPeriodic, Take::all> {
-  using Base = Gatherer<3, kAskedOfShares<Law>, kGeometry, kPeriodic, Take::all>;
+class Shares : Gatherer<3, kAskedOfShares<Law>, kGeometry, kPeriodic, PairSubset::all> {
+  using Base = Gatherer<3, kAskedOfShares<Law>, kGeometry, kPeriodic, PairSubset::all>;
   using Base::block_, Base::list_, Base::u;
 
  public:
@@ -47,7 +48,7 @@ class Shares : Gatherer<3, kAskedOfShares<Law>, kGeometry, kPeriodic, Take::all>
   }
 
   /// Law::add, four numbers at once.
-  static void add(double nu, Quad n, CrowdSum<3>& sum) {
+  static void add(double nu, Quad n, MultiContactSum<3>& sum) {
     double* const numbers = &sum.volume;
     const auto to = [&](int group, Quad more) {
       store_quad(numbers + 4 * group, load_quad(numbers + 4 * group) + more);  // NOLINT: they lie in groups of four
@@ -71,7 +72,7 @@ class Closing {
  public:
   explicit Closing(const Law& law) : law_(law) {}
 
-  void add(CrowdSum<3>& sum) {
+  void add(MultiContactSum<3>& sum) {
     if (!(sum.square > 0.0)) return;
     waiting_[static_cast<std::size_t>(many_)] = &sum;
     volume_.v[many_] = law_.equivalent(sum);
@@ -79,7 +80,7 @@ class Closing {
   }
   void close() {
     for (int l = many_; l < kLanes; ++l) volume_.v[l] = volume_.v[0];
-    CrowdSum<3, Lanes> sum;
+    MultiContactSum<3, Lanes> sum;
     if (many_ > 0) sum.close(law_.form.pressure, volume_.at(0));
     for (int l = 0; l < many_; ++l) {
       waiting_[static_cast<std::size_t>(l)]->gain = sum.gain[static_cast<std::size_t>(l)];
@@ -91,7 +92,7 @@ class Closing {
  private:
   const Law& law_;
   int many_ = 0;
-  std::array<CrowdSum<3>*, static_cast<std::size_t>(kLanes)> waiting_{};
+  std::array<MultiContactSum<3>*, static_cast<std::size_t>(kLanes)> waiting_{};
   Row volume_{};
 };
 
@@ -115,8 +116,8 @@ void add_particle_shares(System<3>& s, const ContactSection& section, const Pair
 
 template <int D>
 void clear_particle_sums(System<D>& s, OwnBodies own) {
-  for (const CrowdBody& crowd : s.contacts.crowd_bodies)
-    if (own(crowd.body)) s.contacts.particle_sum[at(crowd.body)] = {};
+  for (const MultiContactBody& multi_contact : s.contacts.multi_contact_bodies)
+    if (own(multi_contact.body)) s.contacts.particle_sum[at(multi_contact.body)] = {};
 }
 
 template <>
@@ -124,7 +125,7 @@ void close_particle_sums(System<2>&, OwnBodies) {}
 
 template <>
 void close_particle_sums(System<3>& s, OwnBodies own) {
-  const auto& bodies = s.contacts.crowd_bodies;
+  const auto& bodies = s.contacts.multi_contact_bodies;
   for (std::size_t begin = 0, end = 0; begin < bodies.size(); begin = end) {
     while (end < bodies.size() && bodies[end].law == bodies[begin].law) ++end;
     std::visit(

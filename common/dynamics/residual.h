@@ -19,7 +19,8 @@ struct Residual {
   }
 };
 
-/// From the forces of the last pass (gravity included when add_gravity was called) and the contacts as they are.
+/// Residual from the forces of the last pass (gravity included when add_gravity was called) and the contacts as they
+/// are.
 template <int D>
 Residual residual(const System<D>& system);
 
@@ -27,7 +28,7 @@ Residual residual(const System<D>& system);
 template <int D>
 double worst_net_force(const Particles<D>& particles);
 
-/// The same but for a share of the bodies, rounded down, that are farthest from rest.
+/// The largest net force without a share of the bodies, rounded down, that are farthest from rest.
 template <int D>
 double worst_net_force(const Particles<D>& particles, double but_for);
 

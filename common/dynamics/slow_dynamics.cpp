@@ -19,7 +19,7 @@ Drive driven_at(std::vector<Vec3> velocity, std::vector<Vec3> spin) {
 
 void run_steps(System3& system, const Drive& drive, double dt, std::int64_t steps, StretchMasses masses) {
   std::optional<ScaledMasses<3>> raised;
-  if (masses == StretchMasses::raised) raised.emplace(system, dt, kCrowdedFraction);
+  if (masses == StretchMasses::raised) raised.emplace(system, dt, kMultiContactedFraction);
   if (drive) drive(system, 1.0);
   VelocityVerlet<3> integrator(dt);
   integrator.initialise(system);

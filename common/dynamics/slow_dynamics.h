@@ -16,14 +16,14 @@ namespace softgrain {
 
 /// Share of sqrt(m/K), K the sum of all contact stiffnesses of a grain, that a step never exceeds: a heavily damped
 /// contact evaluated once per step otherwise keeps jittering, and the forces come out plausible and 10-15 % low.
-inline constexpr double kCrowdedFraction = 0.5;
+inline constexpr double kMultiContactedFraction = 0.5;
 
 /// Time step of the published protocol over sqrt(m_min/k), k at 5 % overlap of the smallest grain.
 inline constexpr double kPublishedStep = 0.2;
 
-/// Which masses the bodies have while they move.
+/// Masses of the bodies while they move.
 enum class StretchMasses {
-  raised,  ///< those of the quickest are raised until the step suits them (ScaledMasses)
+  raised,  ///< masses of the quickest bodies are raised until the step suits them (ScaledMasses)
   real     ///< the step has to suit them
 };
 
@@ -35,7 +35,7 @@ Drive driven_at(std::vector<Vec3> velocity, std::vector<Vec3> spin = {});
 
 /// Steps of velocity Verlet. What the drive gives (empty: nothing) is added at the begin and taken off at the end;
 /// motion goes on from what it was and is left as it is: stopping it every now and then raises the force of a pack near
-/// its threshold by a third. Throws Interrupted and NotUsable (a grain is lost).
+/// its threshold by a third. Throws Interrupted and UnusableResult (a grain is lost).
 void run_steps(System3& system, const Drive& drive, double dt, std::int64_t steps, StretchMasses masses);
 
 /// Takes these laws, and makes the list of neighbours anew, with their constants.
@@ -48,8 +48,8 @@ double real_mass_step(System3& system, double fraction, double crowded_fraction)
 /// The step of a stretch is chosen for the contacts at its beginning. A grain that gets wedged between stiffer ones on
 /// the way can be thrown through its shell by a step that has become too long, which many large grains with much
 /// friction between them bring about. Calls `stretch(halves)`, which is to run the whole stretch with its time step
-/// divided by `halves`; when that ends with NotUsable, again from the same state with half the step, up to a sixteenth.
-/// A stretch that goes through the first time is not touched. What was tried counts as cost.
+/// divided by `halves`; when that ends with UnusableResult, again from the same state with half the step, up to a
+/// sixteenth. A stretch that goes through the first time is not touched. What was tried counts as cost.
 template <class Experiment, class Work>
 void with_steps_short_enough(Experiment& e, const Work& stretch) {
   constexpr int kShortest = 16;
@@ -58,7 +58,7 @@ void with_steps_short_enough(Experiment& e, const Work& stretch) {
     try {
       stretch(halves);
       return;
-    } catch (const NotUsable&) {
+    } catch (const UnusableResult&) {
       if (halves == kShortest) throw;
       const Cost spent = e.system.cost;
       e = before;

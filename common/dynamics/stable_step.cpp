@@ -22,7 +22,7 @@ struct Joint {
   double arm_j = 0.0;
   double kn = 0.0;    ///< [N/m]
   double kt = 0.0;    ///< twice the tangential stiffness, see stable_step [N/m]
-  double eta = 0.0;   ///< of both directions [N s/m]
+  double eta = 0.0;   ///< damping constant in both directions [N s/m]
   double roll = 0.0;  ///< twice the stiffness of rolling, likewise [N m]
 };
 
@@ -216,8 +216,8 @@ class Network {
   }
 
   std::vector<Joint<D>> joints_;
-  std::vector<double> root_;       ///< of the inverse mass, per body
-  std::vector<double> turn_root_;  ///< of the inverse inertia
+  std::vector<double> root_;       ///< root of the inverse mass, per body
+  std::vector<double> turn_root_;  ///< root of the inverse inertia, per body
   std::vector<Vec<D>> push_;
   std::vector<Rot<D>> turn_;
 };

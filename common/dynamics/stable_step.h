@@ -15,17 +15,17 @@ enum class Dashpots { count, leave_out };
 struct StableStep {
   double step = std::numeric_limits<double>::infinity();  ///< [s]; infinite without contacts
   Slot body = -1;                                         ///< the one that moves most in the mode that breaks first
-  std::int64_t contacts = 0;                              ///< of it
+  std::int64_t contacts = 0;                              ///< number of contacts of this body
 };
 
 /// About the state as it is, contacts neither opening nor sliding. The step h of VelocityVerlet is stable as long as
 /// the largest eigenvalue of M^-1 (Kn h^2/4 + Kt h^2/2 + C h) is below 1: Kn and Kt the normal and tangential stiffness
 /// of the network of contacts, translation and rotation, C its dashpots (a mode that changes its sign in every step
 /// solves the equations of motion where it is 1). Kt counts twice because tangential springs add up predicted
-/// velocities. One normal spring without dashpot: h < 2/omega. Laws of crowds count with what each contact feels of
+/// velocities. One normal spring without dashpot: h < 2/omega. Multi-contact laws count with what each contact feels of
 /// itself. `enough`: when a bound for every body by itself, from
 /// the sums over its contacts, says that this step is stable, that bound is what comes back; otherwise the mode is
-/// found by iteration. Throws NotUsable as update_neighbours does. The state is left alone.
+/// found by iteration. Throws UnusableResult as update_neighbours does. The state is left alone.
 template <int D>
 StableStep stable_step(const System<D>& system, double enough, Dashpots dashpots = Dashpots::count);
 

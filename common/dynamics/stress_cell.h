@@ -19,7 +19,7 @@ struct StressControl {
   Vec<D> imposed{};           ///< Sigma per axis
   Vec<D> reference_length{};  ///< L0 of the strain eps, d(eps)/dt = -dL/dt/L0
   double cell_mass = 0.0;     ///< Mc of Mc d2(eps)/dt2 = Sigma_imposed - Sigma_measured; infinite: lengths are fixed
-  double edge_speed_cap = std::numeric_limits<double>::infinity();  ///< of |dL/dt| [length/time]
+  double edge_speed_cap = std::numeric_limits<double>::infinity();  ///< upper limit of |dL/dt| [length/time]
   double drag =
       0.0;  ///< gamma of -gamma m v, likewise on spins and on the rate of the cell: settles what has come together
 };
@@ -40,18 +40,18 @@ class StressCellVerlet {
 
   void step(System<D>& system) { advance(system, 1); }
 
-  /// The same as so many single steps, bit for bit, with one pass over the bodies less per step.
+  /// Makes `steps` single steps, bit for bit, with one pass over the bodies less per step.
   void advance(System<D>& system, std::int64_t steps);
 
-  /// From the next step on: gamma of -gamma m v (peculiar) and -gamma I spin per body, and of the rate of the cell
-  /// [1/time] while that goes against what pushes it: it ends vibrations and does not hold back a pack that gives way.
-  /// Empty: no drag.
+  /// Sets the drag from the next step on: gamma of -gamma m v (peculiar) and -gamma I spin per body, and gamma of the
+  /// rate of the cell [1/time]. The drag of the cell acts while its rate goes against what pushes it. It ends
+  /// vibrations and does not hold back a pack that gives way. Empty: no drag of bodies.
   void set_drag(double of_cell, std::vector<double> of_bodies) {
     cell_drag_ = of_cell;
     drag_ = std::move(of_bodies);
   }
 
-  /// Of the last pass.
+  /// Stress of the last pass.
   [[nodiscard]] const Vec<D>& stress() const { return stress_; }
 
  private:
@@ -74,8 +74,8 @@ class StressCellVerlet {
   Vec<D> stress_{};
   Vec<D> rate_{};  ///< dL/dt
   std::vector<double> mass_;
-  std::vector<Vec<D>> peculiar_;  ///< at the end of a step
-  std::vector<Rot<D>> spin_;      ///< likewise
+  std::vector<Vec<D>> peculiar_;  ///< peculiar velocity at the end of a step
+  std::vector<Rot<D>> spin_;      ///< spin at the end of a step
   std::vector<Vec<D>> middle_;    ///< peculiar velocity in the middle of a step
   std::vector<Rot<D>> middle_spin_;
   ListWatch<D> watch_;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kServed = 0.75;
 /// How much faster the other choice must be.
 constexpr double kFaster = 0.9;
-/// And how much slower than at the last trial everything must be for a new one at once.
+/// Slowdown since the last trial from which a new trial starts at once.
 constexpr double kSlower = 2.0;
 constexpr int kLongestWait = 256;
 /// Shorter blocks say nothing: other programs come and go in slices of a few milliseconds [s].

@@ -16,9 +16,9 @@ class ThreadChoice {
   explicit ThreadChoice(int all) : all_(all) {}
 
   struct Block {
-    double seconds = 0.0;      ///< on the clock
-    double cpu_seconds = 0.0;  ///< of all threads of the program together
-    double work = 0.0;         ///< in any unit that takes about as long each time
+    double seconds = 0.0;      ///< wall-clock time [s]
+    double cpu_seconds = 0.0;  ///< CPU time of all threads of the program together [s]
+    double work = 0.0;         ///< amount of work, in any unit that takes about as long each time
   };
 
   [[nodiscard]] int all() const { return all_; }
@@ -33,11 +33,11 @@ class ThreadChoice {
 
   int all_;
   bool on_all_ = true;
-  bool trial_ = false;     ///< the next block is one
+  bool trial_ = false;     ///< the next block is a trial
   double before_ = 0.0;    ///< time per work before the trial [s]
-  double settled_ = 0.0;   ///< of what was kept at the last trial [s]
+  double settled_ = 0.0;   ///< time per work of what was kept at the last trial [s]
   int wait_ = kFirstWait;  ///< blocks between two trials
-  int left_ = 0;           ///< of them
+  int left_ = 0;           ///< blocks left before the next trial
 };
 
 /// Takes the threads of the program for passes, by the choice that all relaxations of a thread share, and gives them

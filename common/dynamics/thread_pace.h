@@ -8,7 +8,7 @@ namespace softgrain {
 
 /// What threads have been measured by. Times decide who does what, never in which order anything is summed.
 struct ThreadPace {
-  std::vector<double> share;    ///< of all pairs, per thread; sum 1
+  std::vector<double> share;    ///< share of all pairs, per thread; sum 1
   std::vector<double> seconds;  ///< spent by each since the shares were made [s]
   int passes = 0;               ///< since then
   int look_after = 64;          ///< passes between two looks at the pace: ever more, as new shares need a new plan

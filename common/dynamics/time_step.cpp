@@ -11,10 +11,10 @@ namespace {
 /// Overlap in units of the shell radius at which soft contacts are judged: near the end of their measured range.
 constexpr double kSoftOverlap = 0.35;
 
-/// The sums of a body pressed from six sides like this, the common crowd; whichever of the two is soft.
+/// The sums of a body pressed from six sides like this, the common case; whichever of the two is soft.
 template <class Law>
-CrowdSum<3> crowded(const Law& law, ContactState<3> state) {
-  CrowdSum<3> sum;
+MultiContactSum<3> crowded(const Law& law, ContactState<3> state) {
+  MultiContactSum<3> sum;
   for (int side = 0; side < 6; ++side) {
     state.normal = {};
     state.normal[side / 2] = side % 2 == 0 ? 1.0 : -1.0;
@@ -33,7 +33,7 @@ double stiffness_of(const AnyLaw& any, double radius, double inverse_mass, doubl
         state.radius_i = state.radius_j = radius;
         state.constants = law.pair_constants({radius, radius, inverse_mass, inverse_mass});
         if constexpr (Law::traits.needs_particle_pass) {
-          const CrowdSum<3> sum = crowded(law, state);
+          const MultiContactSum<3> sum = crowded(law, state);
           state.sum_i = state.sum_j = &sum;
           return law.evaluate(state).normal_stiffness;
         } else if constexpr (Law::traits.acts_at_distance) {

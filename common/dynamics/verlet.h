@@ -26,7 +26,7 @@ class VelocityVerlet {
 
   void step(System<D>& system) { advance(system, 1); }
 
-  /// The same as so many single steps, bit for bit, with one pass over the bodies less per step.
+  /// Makes `steps` single steps, bit for bit, with one pass over the bodies less per step.
   void advance(System<D>& system, std::int64_t steps);
 
  private:
@@ -37,8 +37,8 @@ class VelocityVerlet {
 
   double dt_;
   ListWatch<D> watch_;
-  std::vector<Stored<D>> kick_;     ///< that the old forces gave the predicted velocities
-  std::vector<StoredRot<D>> turn_;  ///< likewise the spins
+  std::vector<Stored<D>> kick_;     ///< change that the old forces gave to the predicted velocities
+  std::vector<StoredRot<D>> turn_;  ///< change that the old torques gave to the predicted spins
 };
 
 /// Adds gravity to the forces of the last pass, for bodies moved by forces. A plane moved by forces feels no gravity:

@@ -35,7 +35,7 @@ void keep_as_previous(const std::string& path) {
   fs::remove(previous, trouble);
   fs::create_hard_link(path, previous, trouble);
   if (trouble) fs::rename(path, previous, trouble);
-  if (trouble) throw FileTrouble(previous + ": the old file cannot be kept: " + trouble.message());
+  if (trouble) throw IoError(previous + ": the old file cannot be kept: " + trouble.message());
 }
 
 }  // namespace
@@ -44,11 +44,10 @@ std::string system_message() { return std::generic_category().message(errno); }
 
 void rename_into_place(const std::string& path, bool keep_previous) {
   const std::string temporary = temporary_name(path);
-  if (!synchronise(temporary, O_RDWR))
-    throw FileTrouble(temporary + ": cannot be flushed to disk: " + system_message());
+  if (!synchronise(temporary, O_RDWR)) throw IoError(temporary + ": cannot be flushed to disk: " + system_message());
   if (keep_previous) keep_as_previous(path);
   if (std::rename(temporary.c_str(), path.c_str()) != 0)
-    throw FileTrouble(path + ": cannot be written: " + system_message());
+    throw IoError(path + ": cannot be written: " + system_message());
   const std::string parent = fs::path(path).parent_path().string();
   (void)synchronise(parent.empty() ? "." : parent, O_RDONLY | O_DIRECTORY);
 }

@@ -13,7 +13,7 @@ struct AttributeWriter {
   void operator()(const char* name, bool value) const { group.attribute(name, std::int64_t{value ? 1 : 0}); }
 };
 
-/// item(name, member) reads it. Throws FileTrouble when it is missing.
+/// item(name, member) reads it. Throws IoError when it is missing.
 struct AttributeReader {
   const h5::Group& group;
   void operator()(const char* name, double& value) const { value = group.number(name); }

@@ -168,15 +168,15 @@ std::optional<CsvSetting> CsvFile::word(const CsvNames& names) const {
   if (found.empty()) return std::nullopt;
   for (const CsvSetting& s : found)
     if (!same_text(s.value, found.front().value))
-      throw BadInput(where(s.line) + ": " + s.title + " = " + s.value + ": line " + std::to_string(found.front().line) +
-                     " says " + found.front().value +
-                     "; what a comment says holds for the whole file, so leave one of them out");
+      throw InputError(where(s.line) + ": " + s.title + " = " + s.value + ": line " +
+                       std::to_string(found.front().line) + " says " + found.front().value +
+                       "; what a comment says holds for the whole file, so leave one of them out");
   return found.front();
 }
 
 std::vector<double> CsvFile::values_of(const CsvSetting& s, Unit unit, std::size_t count) const {
   const auto complain = [&](const std::string& problem) {
-    throw BadInput(where(s.line) + ": " + s.title + " = " + s.value + ": " + problem);
+    throw InputError(where(s.line) + ": " + s.title + " = " + s.value + ": " + problem);
   };
   // Where the table itself has decimal commas, a comma between digits is one.
   std::string text = s.value;
@@ -204,7 +204,7 @@ std::vector<double> CsvFile::values_of(const CsvSetting& s, Unit unit, std::size
                                        : word + " " + given,
                                    unit) /
                     (percent ? 100.0 : 1.0));
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     const std::string what = e.what();
     if (what.starts_with(path_)) throw;
     complain(what);
@@ -218,9 +218,9 @@ std::optional<std::vector<double>> CsvFile::quantities(const CsvNames& names, Un
   const std::vector<double> first = values_of(found.front(), unit, count);
   for (const CsvSetting& s : found)
     if (!same_values(values_of(s, unit, count), first))
-      throw BadInput(where(s.line) + ": " + s.title + " = " + s.value + ": contradicts line " +
-                     std::to_string(found.front().line) + ", " + found.front().title + " = " + found.front().value +
-                     "; what a comment says holds for the whole file: leave one out, or write a file for each");
+      throw InputError(where(s.line) + ": " + s.title + " = " + s.value + ": contradicts line " +
+                       std::to_string(found.front().line) + ", " + found.front().title + " = " + found.front().value +
+                       "; what a comment says holds for the whole file: leave one out, or write a file for each");
   return first;
 }
 
@@ -236,7 +236,7 @@ std::optional<double> CsvFile::quantity(const CsvNames& names, Unit unit, const 
       std::string("must be ") + (range.low_open ? "above " : "at least ") + csv::short_number(range.low);
   if (std::isfinite(range.high))
     allowed += std::string(" and ") + (range.high_open ? "below " : "at most ") + csv::short_number(range.high);
-  throw BadInput(where(s.line) + ": " + s.title + " = " + s.value + ": " + allowed);
+  throw InputError(where(s.line) + ": " + s.title + " = " + s.value + ": " + allowed);
 }
 
 void CsvFile::require_known_comments(const std::vector<CsvNames>& known, const std::string& what) const {
@@ -255,13 +255,13 @@ void CsvFile::require_known_comments(const std::vector<CsvNames>& known, const s
     const bool slip = near.size() <= s.key.size() + 1 && s.key.size() <= near.size() + 1;  // of a word: "knid"
     if (!says_value && (near.empty() || !(number || (s.equals && slip)))) continue;
     const std::string meant = near.empty() ? nearest_word(s.key, names) : near;
-    throw BadInput(where(s.line) + ": comment \"" + s.title +
-                   (s.bare     ? " "
-                    : s.equals ? " = "
-                               : ": ") +
-                   s.value + "\" is not understood" + (meant.empty() ? "" : "; nearest is \"" + meant + "\"") +
-                   ": comments of " + what + (names.empty() ? " say no values" : " may say " + first_names) +
-                   "; write anything else as text without \"=\"");
+    throw InputError(where(s.line) + ": comment \"" + s.title +
+                     (s.bare     ? " "
+                      : s.equals ? " = "
+                                 : ": ") +
+                     s.value + "\" is not understood" + (meant.empty() ? "" : "; nearest is \"" + meant + "\"") +
+                     ": comments of " + what + (names.empty() ? " say no values" : " may say " + first_names) +
+                     "; write anything else as text without \"=\"");
   }
 }
 

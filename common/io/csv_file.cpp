@@ -126,8 +126,8 @@ CsvFile CsvFile::parse(const std::string& bytes, const std::string& path) {
     at = end + (pair ? 2 : 1);
   }
   if (file.columns_.empty())
-    throw BadInput(path +
-                   ":1: no header: the first line that is no comment names columns and units, e.g. hn [mm], Fn [N]");
+    throw InputError(path +
+                     ":1: no header: the first line that is no comment names columns and units, e.g. hn [mm], Fn [N]");
   return file;
 }
 
@@ -154,14 +154,16 @@ void CsvFile::read_header(const std::string& line, int number) {
   std::vector<std::string> titles = split(line, separator_);
   while (titles.size() > 1 && titles.back().empty()) titles.pop_back();
   for (const std::string& title : titles) {
-    if (title.empty()) throw BadInput(where(number) + ": header: a column has no name");
+    if (title.empty()) throw InputError(where(number) + ": header: a column has no name");
     columns_.push_back(csv::column_of(title));
     const std::string& name = columns_.back().name;
     if (!name.empty() && name.find_first_not_of("0123456789.+-e") == std::string::npos)
-      throw BadInput(where(number) + ": no header: \"" + title +
-                     "\" is a number; the first line that is no comment names columns and units, e.g. hn [mm], Fn [N]");
+      throw InputError(
+          where(number) + ": no header: \"" + title +
+          "\" is a number; the first line that is no comment names columns and units, e.g. hn [mm], Fn [N]");
     for (std::size_t k = 0; k + 1 < columns_.size(); ++k)
-      if (columns_[k].name == name) throw BadInput(where(number) + ": header: column \"" + title + "\" is there twice");
+      if (columns_[k].name == name)
+        throw InputError(where(number) + ": header: column \"" + title + "\" is there twice");
   }
 }
 
@@ -169,8 +171,8 @@ void CsvFile::read_row(const std::string& line, int number) {
   CsvRow row{split(line, separator_), number};
   while (row.cells.size() > columns_.size() && row.cells.back().empty()) row.cells.pop_back();
   if (row.cells.size() != columns_.size())
-    throw BadInput(where(number) + ": " + std::to_string(row.cells.size()) + " cells, the header (line " +
-                   std::to_string(header_line_) + ") has " + std::to_string(columns_.size()) + " columns");
+    throw InputError(where(number) + ": " + std::to_string(row.cells.size()) + " cells, the header (line " +
+                     std::to_string(header_line_) + ") has " + std::to_string(columns_.size()) + " columns");
   rows_.push_back(std::move(row));
 }
 
@@ -185,9 +187,9 @@ void CsvFile::require_known_columns(const CsvNames& known, const std::string& wh
     const std::string near = nearest_word(c.name, known);
     std::string list;
     for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
-    throw BadInput(where(header_line_) + ": column \"" + c.title + "\" is not understood" +
-                   (near.empty() ? "" : "; nearest is \"" + near + "\"") + ": columns of " + what + " are " + list +
-                   "; remove it, or rename it \"comment\"");
+    throw InputError(where(header_line_) + ": column \"" + c.title + "\" is not understood" +
+                     (near.empty() ? "" : "; nearest is \"" + near + "\"") + ": columns of " + what + " are " + list +
+                     "; remove it, or rename it \"comment\"");
   }
 }
 
@@ -205,15 +207,15 @@ std::optional<double> CsvFile::number(const CsvRow& row, std::size_t column, Uni
   const bool pure = unit == Unit::none || c.unit.empty();
   try {
     return parse_quantity(own_unit || pure ? cell : cell + " " + c.unit, unit) / part;
-  } catch (const BadInput& e) {
-    throw BadInput(where(row.line) + ": column \"" + c.title + "\": \"" + row.cells[column] + "\" " + e.what());
+  } catch (const InputError& e) {
+    throw InputError(where(row.line) + ": column \"" + c.title + "\": \"" + row.cells[column] + "\" " + e.what());
   }
 }
 
 void CsvFile::require_unit(std::size_t column, Unit unit, const char* example) const {
   const CsvColumn& c = columns_[column];
   const auto complain = [&](const std::string& problem) {
-    throw BadInput(where(header_line_) + ": column \"" + c.title + "\": " + problem);
+    throw InputError(where(header_line_) + ": column \"" + c.title + "\": " + problem);
   };
   if (unit == Unit::none) {
     if (!c.unit.empty() && c.unit != "1" && c.unit != "-" && !is_percent(c.unit))
@@ -223,7 +225,7 @@ void CsvFile::require_unit(std::size_t column, Unit unit, const char* example) c
   if (c.unit.empty()) complain(std::string("no unit; write it behind the name, e.g. ") + example);
   try {
     (void)parse_quantity("1 " + c.unit, unit);
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     complain(e.what());
   }
 }

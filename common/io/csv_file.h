@@ -12,7 +12,7 @@ namespace softgrain {
 
 /// "hn [mm]": name in lower case, unit as written (empty: none).
 struct CsvColumn {
-  std::string title;  ///< as in the header
+  std::string title;  ///< column title as in the header
   std::string name;
   std::string unit;
 };
@@ -38,12 +38,12 @@ using CsvNames = std::vector<std::string>;
 
 class CsvFile {
  public:
-  /// In any encoding that utf8_of() knows, with any line ends. The separator is what a first line "sep=;" says, else
-  /// the first of ";", tab, "," that the header has. With another one than the comma, a comma in a number is its
-  /// decimal mark. Cells may stand in double quotes; empty ones at the end of a line and empty lines count for nothing.
-  /// Throws BadInput (no header, a row of another length), FileTrouble.
+  /// Reads a file in any encoding that utf8_of() knows, with any line ends. The separator is what a first line "sep=;"
+  /// says, else the first of ";", tab, "," that the header has. With another separator than the comma, a comma in a
+  /// number is its decimal mark. Cells may stand in double quotes. Empty cells at the end of a line and empty lines
+  /// count for nothing. Throws InputError (no header, a row of another length), IoError.
   static CsvFile read(const std::string& path);
-  /// The same from a text.
+  /// Reads a table from a text in the same way; `path` stands for the file in messages.
   static CsvFile parse(const std::string& bytes, const std::string& path);
 
   [[nodiscard]] const std::string& path() const { return path_; }
@@ -55,25 +55,28 @@ class CsvFile {
 
   /// The first comment with one of these names.
   [[nodiscard]] std::optional<CsvSetting> setting(const CsvNames& names) const;
-  /// The same of a word. Throws BadInput where several comments say different ones.
+  /// The first comment with one of these names, as a word. Throws InputError where several comments say different
+  /// words.
   [[nodiscard]] std::optional<CsvSetting> word(const CsvNames& names) const;
-  /// SI value of the comment with one of these names. Throws BadInput for what is no such number or out of range, and
+  /// SI value of the comment with one of these names. Throws InputError for what is no such number or out of range, and
   /// where several comments contradict each other.
   [[nodiscard]] std::optional<double> quantity(const CsvNames& names, Unit unit, const Range& range) const;
-  /// As many numbers, apart by blanks or commas, with one unit for all. Likewise.
+  /// SI values of the comment with one of these names: `count` numbers, separated by blanks or commas, with one unit
+  /// for all. Throws InputError for what are no such numbers, and where several comments contradict each other.
   [[nodiscard]] std::optional<std::vector<double>> quantities(const CsvNames& names, Unit unit,
                                                               std::size_t count) const;
-  /// Throws BadInput for a comment "name [unit] = value" (or "name = value unit") with another name than the known
+  /// Throws InputError for a comment "name [unit] = value" (or "name = value unit") with another name than the known
   /// ones: whoever wrote it expects it to count. Other comments are free text. `what` the file is, as messages say it.
   void require_known_comments(const std::vector<CsvNames>& known, const std::string& what) const;
-  /// Throws BadInput for a column that is not among `known` names and no label of rows (id, name, comment, ...).
+  /// Throws InputError for a column that is not among `known` names and no label of rows (id, name, comment, ...).
   void require_known_columns(const CsvNames& known, const std::string& what) const;
 
   /// SI value of a cell in the unit of its column; a number with a unit of its own is fine too, and so are percents of
-  /// a number without unit. Empty cells, "-", "nan" and "NA" give nothing. Throws BadInput naming line and column.
+  /// a number without unit. Empty cells, "-", "nan" and "NA" give nothing. Throws InputError naming line and column.
   [[nodiscard]] std::optional<double> number(const CsvRow& row, std::size_t column, Unit unit) const;
 
-  /// Throws BadInput at the header unless the unit of the column is one of `unit` (Unit::none: none, "1", "-" or "%").
+  /// Throws InputError at the header unless the unit of the column is one of `unit` (Unit::none: none, "1", "-" or
+  /// "%").
   void require_unit(std::size_t column, Unit unit, const char* example) const;
 
  private:

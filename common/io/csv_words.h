@@ -10,7 +10,7 @@ namespace softgrain::csv {
 /// ASCII letters in lower case.
 std::string lower(std::string text);
 
-/// Without double quotes around it.
+/// The text without double quotes around it.
 std::string unquoted(const std::string& text);
 
 /// "hn [mm]", "hn(mm)" into its parts.

@@ -25,7 +25,7 @@ std::string holder(int descriptor) {
   return number.empty() ? "" : " (process " + number + ")";
 }
 
-/// For the message that another run gets; nothing depends on it.
+/// Writes the number of this process, for the message that another run gets; nothing depends on it.
 void sign(int descriptor) {
   const std::string text = std::to_string(::getpid()) + "\n";
   if (::ftruncate(descriptor, 0) == 0) (void)!::pwrite(descriptor, text.data(), text.size(), 0);
@@ -36,7 +36,7 @@ void sign(int descriptor) {
 DirectoryLock::DirectoryLock(const std::string& directory) {
   const std::string path = directory + "/.lock";
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) throw FileTrouble(path + ": cannot be created: " + system_message());
+  if (descriptor_ < 0) throw IoError(path + ": cannot be created: " + system_message());
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) {
     sign(descriptor_);
     return;
@@ -45,8 +45,8 @@ DirectoryLock::DirectoryLock(const std::string& directory) {
   const std::string who = holder(descriptor_);
   ::close(descriptor_);
   descriptor_ = -1;
-  throw FileTrouble(directory + ": another run" + who +
-                    " is at work in this directory; wait for it to end, or choose another with --out");
+  throw IoError(directory + ": another run" + who +
+                " is at work in this directory; wait for it to end, or choose another with --out");
 }
 
 DirectoryLock::~DirectoryLock() {

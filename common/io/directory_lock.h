@@ -10,7 +10,7 @@ namespace softgrain {
 /// the server's lock service; where there is none, or the file system knows no locks, nothing is held and nothing said.
 class DirectoryLock {
  public:
-  /// Throws FileTrouble when another process (or another run of this one) holds the directory, or when the file cannot
+  /// Throws IoError when another process (or another run of this one) holds the directory, or when the file cannot
   /// be made.
   explicit DirectoryLock(const std::string& directory);
   ~DirectoryLock();

@@ -29,11 +29,11 @@ using Stream = std::unique_ptr<std::FILE, Closer>;
 
 Stream open_stream(const std::string& path, const char* mode) {
   Stream file(std::fopen(path.c_str(), mode));
-  if (!file) throw FileTrouble(path + ": cannot be opened: " + system_message());
+  if (!file) throw IoError(path + ": cannot be opened: " + system_message());
   return file;
 }
 
-/// CRC-32 of the first `length` bytes beside that length. Throws FileTrouble.
+/// CRC-32 of the first `length` bytes beside that length. Throws IoError.
 std::uint64_t sum_of(std::FILE* file, std::uint64_t length, const std::string& path) {
   uLong sum = crc32_z(0, nullptr, 0);
   std::vector<unsigned char> block(kBlock);
@@ -41,7 +41,7 @@ std::uint64_t sum_of(std::FILE* file, std::uint64_t length, const std::string& p
   for (std::uint64_t left = length; left > 0;) {
     const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(left, kBlock));
     if (std::fread(block.data(), 1, wanted, file) != wanted)
-      throw FileTrouble(path + ": cannot be read: " + system_message());
+      throw IoError(path + ": cannot be read: " + system_message());
     sum = crc32_z(sum, block.data(), wanted);
     left -= wanted;
   }
@@ -49,7 +49,7 @@ std::uint64_t sum_of(std::FILE* file, std::uint64_t length, const std::string& p
 }
 
 std::uint64_t length_of(std::FILE* file, const std::string& path) {
-  if (std::fseek(file, 0, SEEK_END) != 0) throw FileTrouble(path + ": cannot be read: " + system_message());
+  if (std::fseek(file, 0, SEEK_END) != 0) throw IoError(path + ": cannot be read: " + system_message());
   return static_cast<std::uint64_t>(std::ftell(file));
 }
 
@@ -64,7 +64,7 @@ void seal_file(const std::string& path) {
   const bool written = std::fseek(file.get(), 0, SEEK_END) == 0 &&
                        std::fwrite(seal.data(), 1, seal.size(), file.get()) == seal.size() &&
                        std::fflush(file.get()) == 0;
-  if (!written) throw FileTrouble(path + ": cannot be written: " + system_message());
+  if (!written) throw IoError(path + ": cannot be written: " + system_message());
 }
 
 Seal check_seal(const std::string& path) {
@@ -74,11 +74,11 @@ Seal check_seal(const std::string& path) {
   std::array<char, kSealBytes> seal{};
   if (std::fseek(file.get(), -static_cast<long>(kSealBytes), SEEK_END) != 0 ||
       std::fread(seal.data(), 1, seal.size(), file.get()) != seal.size())
-    throw FileTrouble(path + ": cannot be read: " + system_message());
+    throw IoError(path + ": cannot be read: " + system_message());
   if (std::memcmp(seal.data(), kMark.data(), kMark.size()) != 0) return Seal::none;
   std::uint64_t kept = 0;
   std::memcpy(&kept, seal.data() + kMark.size(), sizeof kept);
-  return sum_of(file.get(), length - kSealBytes, path) == kept ? Seal::sound : Seal::broken;
+  return sum_of(file.get(), length - kSealBytes, path) == kept ? Seal::whole : Seal::broken;
 }
 
 }  // namespace softgrain

@@ -8,14 +8,14 @@ namespace softgrain {
 
 enum class Seal {
   none,   ///< the file ends without one: written by another program, or cut short
-  sound,  ///< every byte is as it was written
+  whole,  ///< every byte is as it was written
   broken  ///< some byte is not
 };
 
-/// Adds the seal to a complete file that has none. HDF5 does not mind bytes beyond its own end. Throws FileTrouble.
+/// Adds the seal to a complete file that has none. HDF5 does not mind bytes beyond its own end. Throws IoError.
 void seal_file(const std::string& path);
 
-/// Reads the whole file. Throws FileTrouble when it cannot be read.
+/// Reads the whole file. Throws IoError when it cannot be read.
 [[nodiscard]] Seal check_seal(const std::string& path);
 
 }  // namespace softgrain

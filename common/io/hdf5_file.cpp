@@ -49,7 +49,8 @@ Handle access_list() {
   return list;
 }
 
-/// For writing: closing the file closes every group that is still around, so that the file is complete on disk.
+/// Creates a file for writing. Closing it closes every group that is still around, so that the file is complete on
+/// disk.
 Handle create_file(const std::string& path) {
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
@@ -58,7 +59,7 @@ Handle create_file(const std::string& path) {
   Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
   if (file.id() < 0) {
     const std::string reason = library_message();
-    throw FileTrouble(path + (is_held_elsewhere(path) ? kHeldElsewhere : ": cannot be created") + reason);
+    throw IoError(path + (is_held_elsewhere(path) ? kHeldElsewhere : ": cannot be created") + reason);
   }
   return file;
 }
@@ -93,7 +94,7 @@ void silence_library() {
 }
 
 void Group::Impl::fail(const std::string& item, const std::string& problem) const {
-  throw FileTrouble(file->path + ": " + name + "/" + item + ": " + problem + library_message());
+  throw IoError(file->path + ": " + name + "/" + item + ": " + problem + library_message());
 }
 
 Handle Group::Impl::checked(hid_t id, Handle::Close close, const std::string& item, const std::string& problem) const {
@@ -103,7 +104,7 @@ Handle Group::Impl::checked(hid_t id, Handle::Close close, const std::string& it
 
 Group root_of(std::shared_ptr<File> file) {
   Handle root(H5Gopen2(file->handle.id(), "/", H5P_DEFAULT), H5Gclose);
-  if (root.id() < 0) throw FileTrouble(file->path + ": damaged, no root group" + library_message());
+  if (root.id() < 0) throw IoError(file->path + ": damaged, no root group" + library_message());
   return Group(std::make_shared<Group::Impl>(Group::Impl{std::move(file), std::move(root), ""}));
 }
 
@@ -114,9 +115,9 @@ Group open_file(const std::string& path) {
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
   if (file.id() < 0) {
     const std::string reason = library_message();
-    throw FileTrouble(
-        path + (is_held_elsewhere(path) ? kHeldElsewhere : ": cannot be read as HDF5, is it damaged or cut short?") +
-        reason);
+    throw IoError(path +
+                  (is_held_elsewhere(path) ? kHeldElsewhere : ": cannot be read as HDF5, is it damaged or cut short?") +
+                  reason);
   }
   return root_of(std::make_shared<File>(File{std::move(file), path}));
 }
@@ -145,13 +146,13 @@ AtomicFile::~AtomicFile() {
 Group AtomicFile::root() const { return root_of(impl_->file); }
 
 void AtomicFile::commit() {
-  if (impl_->committed) throw FileTrouble(impl_->path + ": already committed");
+  if (impl_->committed) throw IoError(impl_->path + ": already committed");
   Handle& handle = impl_->file->handle;
   const bool flushed = H5Fflush(handle.id(), H5F_SCOPE_GLOBAL) >= 0;
   std::string reason = library_message();
   const bool closed = handle.close();
   if (reason.empty()) reason = library_message();
-  if (!flushed || !closed) throw FileTrouble(impl_->path + ": cannot be written" + reason);
+  if (!flushed || !closed) throw IoError(impl_->path + ": cannot be written" + reason);
   if (impl_->sealed) seal_file(temporary_name(impl_->path));
   rename_into_place(impl_->path, impl_->keep_previous);
   impl_->committed = true;

@@ -1,4 +1,4 @@
-// The HDF5 C API behind one small RAII surface: groups, arrays of double/int64, attributes. Errors are FileTrouble with
+// The HDF5 C API behind one small RAII surface: groups, arrays of double/int64, attributes. Errors are IoError with
 // the path.
 #pragma once
 
@@ -25,7 +25,7 @@ class Group {
   [[nodiscard]] Group create(const std::string& name) const;  ///< new child group
   [[nodiscard]] Group open(const std::string& name) const;    ///< existing child group
   [[nodiscard]] bool has(const std::string& name) const;      ///< child group or data set
-  [[nodiscard]] std::vector<std::string> children() const;    ///< in order of creation
+  [[nodiscard]] std::vector<std::string> children() const;    ///< names of the children in order of creation
 
   /// Data sets; an empty shape means one-dimensional. Stored with a Fletcher-32 checksum so that damage is found.
   void write(const std::string& name, std::span<const double> values, const Shape& shape = {}) const;
@@ -52,7 +52,7 @@ class Group {
   std::shared_ptr<Impl> impl_;
 };
 
-/// Opens an existing file for reading. Throws FileTrouble (missing, not HDF5, truncated).
+/// Opens an existing file for reading. Throws IoError (missing, not HDF5, truncated).
 Group open_file(const std::string& path);
 
 /// A file that appears under its name only when complete: written to `path + ".tmp"`, flushed to disk, renamed by

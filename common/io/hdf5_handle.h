@@ -37,7 +37,7 @@ class Handle {
 /// An open file; groups hold it so that it outlives them.
 struct File {
   Handle handle;
-  std::string path;  ///< as shown in messages
+  std::string path;  ///< file path as shown in messages
 };
 
 struct Group::Impl {
@@ -45,7 +45,7 @@ struct Group::Impl {
   Handle handle;
   std::string name;  ///< "/a/b", for messages; empty for the root
 
-  /// Throws FileTrouble: "path: /group/item: problem (what HDF5 says)".
+  /// Throws IoError: "path: /group/item: problem (what HDF5 says)".
   [[noreturn]] void fail(const std::string& item, const std::string& problem) const;
   /// Returns a valid identifier as a handle, else fails.
   [[nodiscard]] Handle checked(hid_t id, Handle::Close close, const std::string& item,

@@ -4,8 +4,8 @@
 namespace softgrain {
 
 void install_interrupt_handler();
-/// For commands that have nothing to save: both signals end the program at once, with status 130, whatever it waits
-/// for.
+/// Makes both signals end the program at once, with status 130, whatever it waits for. For commands that have nothing
+/// to save.
 void end_at_once_on_signals();
 [[nodiscard]] bool interrupt_requested();
 void request_interrupt();  ///< what the handler does; for tests

@@ -1,6 +1,6 @@
 // A record as a JSON object and back, by its fields: fields(visit, record) calls visit(name, member), see
-// common/data/fields.h. A member may be a number (what is not finite is null), a flag, a text, a choice of words<Enum>,
-// a record, an optional of these (null when empty), a list or a map of them.
+// common/data/fields.h. A member may be a number (what is not finite is null), a flag, a text, a choice of
+// enum_names<Enum>, a record, an optional of these (null when empty), a list or a map of them.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "common/core/words.h"
+#include "common/core/enum_names.h"
 
 namespace softgrain {
 
@@ -82,7 +82,7 @@ nlohmann::json json_of(const T& value) {
     json out = json::object();
     for (const auto& [name, one] : value) out[name] = json_of(one);
     return out;
-  } else if constexpr (Worded<T>) {
+  } else if constexpr (NamedEnum<T>) {
     return to_string(value);
   } else if constexpr (std::is_floating_point_v<T>) {
     return std::isfinite(value) ? json(value) : json(nullptr);
@@ -129,8 +129,8 @@ bool read_json(const nlohmann::json& at, T& value) {
     if (!at.is_object()) return false;
     for (const auto& [name, one] : at.items()) (void)read_json(one, value[name]);
     return true;
-  } else if constexpr (Worded<T>) {
-    const auto word = at.is_string() ? from_word<T>(at.template get_ref<const std::string&>()) : std::nullopt;
+  } else if constexpr (NamedEnum<T>) {
+    const auto word = at.is_string() ? parse_enum<T>(at.template get_ref<const std::string&>()) : std::nullopt;
     if (word) value = *word;
     return word.has_value();
   } else if constexpr (std::is_same_v<T, bool>) {

@@ -17,10 +17,10 @@ struct AskedKey {
   KeyForm form = KeyForm::any;
   bool given = false;  ///< the scene has it
   Unit unit = Unit::none;
-  Range range{};                     ///< of numbers and counts
+  Range range{};                     ///< allowed range of numbers and counts
   std::vector<double> numbers{};     ///< what the reader got: numbers, counts, flags
-  std::vector<std::string> texts{};  ///< the same: texts, words
-  std::vector<std::string> words{};  ///< that a choice allows
+  std::vector<std::string> texts{};  ///< texts and words that the reader got
+  std::vector<std::string> words{};  ///< words that a choice allows
 };
 
 /// Takes down, while it lives, the keys that this thread asks scenes for. One at a time.
@@ -31,11 +31,11 @@ class KeyRecord {
   KeyRecord(const KeyRecord&) = delete;
   KeyRecord& operator=(const KeyRecord&) = delete;
 
-  /// Of the scene of this name, by path as --set writes it ("material.E", "variant.0.mu"). What a variant that is laid
-  /// over a scene (Scene::variant) is asked for counts for both places.
+  /// Keys of the scene of this name, by path as --set writes it ("material.E", "variant.0.mu"). What a variant that is
+  /// laid over a scene (Scene::variant) is asked for counts for both places.
   [[nodiscard]] const std::map<std::string, AskedKey>& keys(const std::string& scene) { return keys_[scene]; }
 
-  /// For the sources of common/io: what is known of a key is added to what was.
+  /// Adds what is known of a key to what was known before. For the sources of common/io.
   void note(const std::string& scene, const std::string& path, const AskedKey& asked);
   /// Null: nobody takes keys down.
   static KeyRecord* current();

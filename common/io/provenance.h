@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "common/core/words.h"
+#include "common/core/enum_names.h"
 #include "common/io/hdf5_file.h"
 
 namespace softgrain {
@@ -12,7 +12,7 @@ namespace softgrain {
 inline constexpr int kSchemaVersion = 1;
 
 struct Provenance {
-  std::string version;   ///< of softgrain
+  std::string version;   ///< version of softgrain
   std::string commit;    ///< git commit at build time, "unknown" without git
   std::string compiler;  ///< compiler and flags
   int threads = 1;

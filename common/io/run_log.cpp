@@ -14,7 +14,7 @@ struct Logs {
   std::mutex mutex;
   std::vector<std::pair<std::size_t, LogSink>> open;
   LogSink ended;                     ///< the last one of all
-  std::vector<std::string> waiting;  ///< for the first one
+  std::vector<std::string> waiting;  ///< lines that wait for the first log
   std::size_t number = 0;
 };
 

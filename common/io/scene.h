@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/enum_names.h"
 #include "common/core/error.h"
 #include "common/core/vec.h"
-#include "common/core/words.h"
 
 namespace softgrain {
 
@@ -51,24 +51,24 @@ struct Range {
   static Range above(double low) { return {low, std::numeric_limits<double>::infinity(), true, false}; }
 };
 
-/// One mistake: "file:line: key = value: what is wrong, allowed range".
-struct SceneMistake {
+/// One error: "file:line: key = value: what is wrong, allowed range".
+struct SceneError {
   std::size_t line = 0;  ///< 0: not of the file, but of the command line or of a file that the scene names
   std::string text{};
   std::string of{};  ///< what follows the text: " (in the variant ...)"
 };
 
 /// What is wrong with a scene: in the order of the file, one a line, the first twenty.
-class BadScene : public BadInput {
+class BadScene : public InputError {
  public:
-  BadScene(const std::string& file, std::vector<SceneMistake> mistakes);
+  BadScene(const std::string& file, std::vector<SceneError> errors);
   [[nodiscard]] const std::string& file() const { return file_; }
-  /// None of a complaint that only follows from a mistake that was noted before (Scene::read).
-  [[nodiscard]] const std::vector<SceneMistake>& mistakes() const { return mistakes_; }
+  /// None of a complaint that only follows from an error that was noted before (Scene::read).
+  [[nodiscard]] const std::vector<SceneError>& errors() const { return errors_; }
 
  private:
   std::string file_;
-  std::vector<SceneMistake> mistakes_;
+  std::vector<SceneError> errors_;
 };
 
 /// A table of a scene. Copies share the record of which keys were used.
@@ -80,7 +80,7 @@ class SceneTable {
   struct Impl;
   explicit SceneTable(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
-  [[nodiscard]] bool has(const std::string& key) const;  ///< also marks the key as known
+  [[nodiscard]] bool has(const std::string& key) const;  ///< whether the key is present; also marks it as known
   [[nodiscard]] bool is_text(
       const std::string& key) const;  ///< present and in quotes (a word such as "auto", or a number with unit)
   [[nodiscard]] bool is_list(const std::string& key) const;  ///< present and in brackets
@@ -99,18 +99,18 @@ class SceneTable {
   [[nodiscard]] std::string choice(const std::string& key, std::initializer_list<const char*> words,
                                    const std::string& fallback) const;
   /// The value behind one of the words of an enum, of some of its values, and with a value for an absent key.
-  template <Worded Enum>
+  template <NamedEnum Enum>
   [[nodiscard]] Enum choice(const std::string& key) const {
-    return *from_word<Enum>(choice(key, all_words<Enum>()));
+    return *parse_enum<Enum>(choice(key, all_enum_names<Enum>()));
   }
-  template <Worded Enum>
+  template <NamedEnum Enum>
   [[nodiscard]] Enum choice(const std::string& key, std::initializer_list<Enum> allowed) const {
     std::vector<const char*> some;
-    for (const Word<Enum>& w : words<Enum>)
+    for (const EnumName<Enum>& w : enum_names<Enum>)
       if (std::find(allowed.begin(), allowed.end(), w.value) != allowed.end()) some.push_back(w.text);
-    return *from_word<Enum>(choice(key, some));
+    return *parse_enum<Enum>(choice(key, some));
   }
-  template <Worded Enum>
+  template <NamedEnum Enum>
   [[nodiscard]] Enum choice(const std::string& key, std::type_identity_t<Enum> fallback) const {
     return has(key) ? choice<Enum>(key) : fallback;
   }
@@ -134,17 +134,19 @@ class SceneTable {
   [[nodiscard]] std::string where(const std::string& key) const;
   /// A path written in the scene, relative to the scene's own folder.
   [[nodiscard]] std::string resolve(const std::string& relative) const;
-  /// Throws BadScene at `key` with this text in the standard form; one without mistakes where a value of this table, or
+  /// Throws BadScene at `key` with this text in the standard form; one without errors where a value of this table, or
   /// of one below, is not that of the file, so that the complaint may come from that.
-  [[noreturn]] void reject(const std::string& key, const std::string& problem) const;
-  /// The same where reading can go on: within Scene::read it is noted.
-  void mistake(const std::string& key, const std::string& problem) const;
-  /// Whether nothing was found wrong so far in this table and all below; a check that takes values of several tables
-  /// asks them first.
-  [[nodiscard]] bool sound() const;
-  /// Reads this table, or a part of it; within Scene::read a BadInput that ends it is noted, and what follows is read.
-  void part(const std::function<void()>& read) const;
-  /// The same for what reads no keys of this table.
+  [[noreturn]] void throw_error(const std::string& key, const std::string& problem) const;
+  /// Adds an error as throw_error() does, where reading can go on: within Scene::read it is noted.
+  void add_error(const std::string& key, const std::string& problem) const;
+  /// Whether anything was found wrong so far in this table or one below. Ask this before a check that takes values of
+  /// several tables.
+  [[nodiscard]] bool has_errors() const;
+  /// Reads this table, or a part of it; within Scene::read an InputError that ends it is noted, and what follows is
+  /// read.
+  void section(const std::function<void()>& read) const;
+  /// Runs a rule that reads no keys of this table; within Scene::read an InputError that ends it is noted, and what
+  /// follows is read.
   void check(const std::function<void()>& rule) const;
 
   /// Throws BadScene for the keys of this table, or any table below, that nobody asked for.
@@ -159,15 +161,15 @@ struct SceneDocument;
 /// A scene file with its overrides applied.
 class Scene {
  public:
-  /// Reads `path`, then applies each "key.sub=value" (value in TOML, bare words taken as strings). Throws BadInput,
-  /// FileTrouble.
+  /// Reads `path`, then applies each "key.sub=value" (value in TOML, bare words taken as strings). Throws InputError,
+  /// IoError.
   static Scene load(const std::string& path, const std::vector<std::string>& overrides = {});
-  /// The same from a text (tests, embedded scenes); `name` stands for the file in messages.
+  /// Reads a scene from a text (tests, embedded scenes); `name` stands for the file in messages.
   static Scene parse(const std::string& text, const std::string& name, const std::vector<std::string>& overrides = {});
 
   [[nodiscard]] SceneTable root() const;
   /// What `reader` makes of the root, once all is read to the last key (SceneTable::finish). Throws BadScene with all
-  /// mistakes that were found on the way.
+  /// errors that were found on the way.
   template <class Reader>
   auto read(Reader&& reader) const {
     std::optional<std::invoke_result_t<Reader, SceneTable>> out;
@@ -193,7 +195,7 @@ class Scene {
   std::shared_ptr<SceneTable::Impl> root_;
 };
 
-/// Parses "16 mm" or "0.016" into SI. Throws BadInput with the units that are known for this dimension.
+/// Parses "16 mm" or "0.016" into SI. Throws InputError with the units that are known for this dimension.
 double parse_quantity(const std::string& text, Unit unit);
 
 /// Known word nearest to `word` by edit distance, empty when none is near.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/io/old_keys.h"
 #include "common/io/scene_impl.h"
 #include "common/io/text_file.h"
 #include "common/io/toml.h"
@@ -33,7 +34,7 @@ toml::table parse_value(const std::string& value, const std::string& setting) {
     problem = "not valid TOML";
   }
   if (!problem.empty() && !value.empty() && std::string("[{\"'").find(value.front()) != std::string::npos)
-    throw BadInput("--set " + setting + ": " + problem);
+    throw InputError("--set " + setting + ": " + problem);
   return toml::table{{"value", value}};
 }
 
@@ -43,12 +44,12 @@ toml::node& descend(toml::node& parent, const std::string& part, const std::stri
     const bool digits = !part.empty() && part.size() < 10 && part.find_first_not_of("0123456789") == std::string::npos;
     toml::node* element = digits ? array->get(std::stoul(part)) : nullptr;
     if (element == nullptr)
-      throw BadInput("--set " + setting + ": '" + part + "' must be a number from 0 to " +
-                     std::to_string(array->size()) + " - 1");
+      throw InputError("--set " + setting + ": '" + part + "' must be a number from 0 to " +
+                       std::to_string(array->size()) + " - 1");
     return *element;
   }
   toml::table* table = parent.as_table();
-  if (table == nullptr) throw BadInput("--set " + setting + ": what stands before '." + part + "' is not a table");
+  if (table == nullptr) throw InputError("--set " + setting + ": what stands before '." + part + "' is not a table");
   if (toml::node* child = table->get(part)) return *child;
   return table->insert(part, toml::table{}).first->second;
 }
@@ -59,7 +60,7 @@ const toml::node& assign(toml::node& parent, const std::string& key, toml::node&
     value.visit([&](auto& concrete) { table->insert_or_assign(key, std::move(concrete)); });
     return *table->get(key);
   }
-  if (!parent.is_array()) throw BadInput("--set " + setting + ": what stands before '." + key + "' is not a table");
+  if (!parent.is_array()) throw InputError("--set " + setting + ": what stands before '." + key + "' is not a table");
   descend(parent, key, setting);  // checks the index
   toml::array& array = *parent.as_array();
   const std::size_t index = std::stoul(key);
@@ -77,17 +78,18 @@ void note_overridden(SceneDocument& document, const toml::node& node) {
     for (const toml::node& child : *array) note_overridden(document, child);
 }
 
-/// Applies one "a.b.c=value". Elements of arrays are counted from 0: "contact.0.mu=0.5". Throws BadInput.
+/// Applies one "a.b.c=value". Elements of arrays are counted from 0: "contact.0.mu=0.5". Throws InputError.
 void apply_override(SceneDocument& document, const std::string& setting) {
   const std::size_t mark = setting.find('=');
   const std::string path = trimmed(setting.substr(0, mark));
-  if (mark == std::string::npos || path.empty()) throw BadInput("--set " + setting + ": must be of the form key=value");
-  const std::vector<std::string> parts = split(path);
+  if (mark == std::string::npos || path.empty())
+    throw InputError("--set " + setting + ": must be of the form key=value");
+  const std::vector<std::string> parts = split(current_key(path));
   for (const std::string& part : parts)
-    if (part.empty() || path.back() == '.') throw BadInput("--set " + setting + ": a part of the key is empty");
+    if (part.empty() || path.back() == '.') throw InputError("--set " + setting + ": a part of the key is empty");
   if (parts.size() > kMostKeyParts)
-    throw BadInput("--set " + path.substr(0, 20) + "...: a key of more than " + std::to_string(kMostKeyParts) +
-                   " parts");
+    throw InputError("--set " + path.substr(0, 20) + "...: a key of more than " + std::to_string(kMostKeyParts) +
+                     " parts");
   toml::table value = parse_value(trimmed(setting.substr(mark + 1)), setting);
   toml::node* parent = document.content.get();
   for (std::size_t k = 0; k + 1 < parts.size(); ++k) parent = &descend(*parent, parts[k], setting);
@@ -109,6 +111,7 @@ std::shared_ptr<SceneDocument> read_document(const std::string& text, const std:
   document->source = text;
   document->overrides = overrides;
   document->content = std::make_shared<toml::table>(parse_toml(text, name));
+  rename_old_keys(*document);
   for (const std::string& setting : overrides) apply_override(*document, setting);
   return document;
 }
@@ -116,7 +119,7 @@ std::shared_ptr<SceneDocument> read_document(const std::string& text, const std:
 Scene Scene::load(const std::string& path, const std::vector<std::string>& overrides) {
   const std::string text = read_text(path);
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
-    throw BadInput(path + ":1: the text is UTF-16; save it as UTF-8");
+    throw InputError(path + ":1: the text is UTF-16; save it as UTF-8");
   return parse(text, path, overrides);
 }
 

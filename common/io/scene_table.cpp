@@ -29,7 +29,7 @@ std::string cut(const std::string& text) {
   return text.size() <= kLongestShown ? text : text.substr(0, kLongestShown) + "...";
 }
 
-/// As much as there is room for.
+/// The list as text, as much of it as there is room for.
 std::string shown_list(const toml::array& list) {
   std::string text = "[";
   for (const toml::node& element : list) {
@@ -63,7 +63,7 @@ const toml::node* SceneTable::Impl::find(const std::string& key) {
 
 const toml::node& SceneTable::Impl::require(const std::string& key) {
   if (const toml::node* node = find(key)) return *node;
-  if (document->mistakes && (missing || misread)) throw BadScene(document->name, {});
+  if (document->errors && (missing || misread)) throw BadScene(document->name, {});
   std::string message = place + ": missing key '" + key + "' " + location();
   std::vector<std::string> unused;
   if (content != nullptr)
@@ -72,7 +72,7 @@ const toml::node& SceneTable::Impl::require(const std::string& key) {
   const std::string near = nearest_word(key, unused);
   if (!near.empty()) {
     message += "; did '" + near + "' at " + where(near, *content->get(near)) + " mean it?";
-    if (document->mistakes) document->mistakes->meant.insert(dotted(near));
+    if (document->errors) document->errors->meant.insert(dotted(near));
   }
   throw BadScene(document->name, {{.line = line, .text = message}});
 }
@@ -91,23 +91,23 @@ std::string SceneTable::Impl::where(const std::string& key, const toml::node& no
   return document->name + (at == 0 ? " (--set " + dotted(key) + ")" : ":" + std::to_string(at));
 }
 
-SceneMistake SceneTable::Impl::mistake(const std::string& key, const toml::node* node,
-                                       const std::string& problem) const {
+SceneError SceneTable::Impl::error_at(const std::string& key, const toml::node* node,
+                                      const std::string& problem) const {
   if (node == nullptr) return {.line = line, .text = place + ": " + key + ": " + problem};
   const std::string value = node->is_table() || node->is_array_of_tables() ? "" : " = " + shown(*node);
   return {.line = line_of(*node), .text = where(key, *node) + ": " + key + value + ": " + problem};
 }
 
-void SceneTable::Impl::reject(const std::string& key, const toml::node& node, const std::string& problem) const {
-  throw BadScene(document->name, {mistake(key, &node, problem)});
+void SceneTable::Impl::throw_error(const std::string& key, const toml::node& node, const std::string& problem) const {
+  throw BadScene(document->name, {error_at(key, &node, problem)});
 }
 
 void SceneTable::Impl::note(const Error& error) {
   const auto* own = dynamic_cast<const BadScene*>(&error);
   if (own != nullptr && own->file() == document->name)
-    for (const SceneMistake& m : own->mistakes()) document->mistakes->note(m);
+    for (const SceneError& m : own->errors()) document->errors->note(m);
   else if (!any(&Impl::replaced))
-    document->mistakes->note({.line = line, .text = error.what()});
+    document->errors->note({.line = line, .text = error.what()});
   wrong = true;
 }
 
@@ -132,7 +132,7 @@ std::shared_ptr<SceneTable::Impl> SceneTable::Impl::make_child(const std::string
   return child;
 }
 
-void SceneTable::Impl::find_unknown(std::vector<SceneMistake>& out) const {
+void SceneTable::Impl::find_unknown(std::vector<SceneError>& out) const {
   if (broken) return;
   const std::vector<std::string> asked(known.begin(), known.end());
   std::vector<std::string> absent;
@@ -142,7 +142,7 @@ void SceneTable::Impl::find_unknown(std::vector<SceneMistake>& out) const {
     for (const auto& [name_here, node] : *content) {
       const std::string key(name_here.str());
       if (known.contains(key)) continue;
-      if (document->mistakes && document->mistakes->meant.contains(dotted(key))) continue;
+      if (document->errors && document->errors->meant.contains(dotted(key))) continue;
       // With a word that is not that of the file other keys may have been asked for: then only typing errors count.
       if (misread && nearest_word(key, absent).empty()) continue;
       const std::string near = nearest_word(key, asked);
@@ -187,7 +187,7 @@ SceneTable SceneTable::table_or_empty(const std::string& key) const {
   const toml::table* table = impl_->value(
       [&] {
         if (node != nullptr && !node->is_table())
-          impl_->reject(key, *node, "must be a table [" + impl_->dotted(key) + "]");
+          impl_->throw_error(key, *node, "must be a table [" + impl_->dotted(key) + "]");
         return node == nullptr ? nullptr : node->as_table();
       },
       static_cast<const toml::table*>(nullptr));
@@ -208,9 +208,9 @@ std::vector<SceneTable> SceneTable::tables(const std::string& key) const {
   auto& made = impl_->children[key];
   const auto make = [&] {
     const std::string problem = "must be an array of tables [[" + impl_->dotted(key) + "]]";
-    if (array == nullptr) impl_->reject(key, *node, problem);
+    if (array == nullptr) impl_->throw_error(key, *node, problem);
     for (const toml::node& element : *array) {
-      if (!element.is_table()) impl_->reject(key, element, problem);
+      if (!element.is_table()) impl_->throw_error(key, element, problem);
       made.push_back(impl_->make_child(key, element.as_table(), true));
       made.back()->path += "." + std::to_string(made.size() - 1);
     }
@@ -236,20 +236,20 @@ std::string SceneTable::where(const std::string& key) const {
   return node == nullptr ? impl_->place : impl_->where(key, *node);
 }
 
-void SceneTable::reject(const std::string& key, const std::string& problem) const {
+void SceneTable::throw_error(const std::string& key, const std::string& problem) const {
   const toml::node* node = impl_->find(key);
-  const bool again = impl_->document->mistakes != nullptr && !impl_->blamed.insert(key).second;
+  const bool again = impl_->document->errors != nullptr && !impl_->blamed.insert(key).second;
   if (again || impl_->any(&Impl::replaced)) throw BadScene(impl_->document->name, {});
-  throw BadScene(impl_->document->name, {impl_->mistake(key, node, problem)});
+  throw BadScene(impl_->document->name, {impl_->error_at(key, node, problem)});
 }
 
-void SceneTable::mistake(const std::string& key, const std::string& problem) const {
-  check([&] { reject(key, problem); });
+void SceneTable::add_error(const std::string& key, const std::string& problem) const {
+  check([&] { throw_error(key, problem); });
 }
 
-bool SceneTable::sound() const { return !impl_->any(&Impl::wrong); }
+bool SceneTable::has_errors() const { return impl_->any(&Impl::wrong); }
 
-void SceneTable::part(const std::function<void()>& read) const {
+void SceneTable::section(const std::function<void()>& read) const {
   bool whole = false;
   check([&] {
     read();
@@ -261,14 +261,14 @@ void SceneTable::part(const std::function<void()>& read) const {
 void SceneTable::check(const std::function<void()>& rule) const {
   try {
     rule();
-  } catch (const BadInput& e) {
-    if (impl_->document->mistakes == nullptr) throw;
+  } catch (const InputError& e) {
+    if (impl_->document->errors == nullptr) throw;
     impl_->note(e);
   }
 }
 
 void SceneTable::finish() const {
-  std::vector<SceneMistake> unknown;
+  std::vector<SceneError> unknown;
   impl_->find_unknown(unknown);
   if (!unknown.empty()) throw BadScene(impl_->document->name, unknown);
 }

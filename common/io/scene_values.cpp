@@ -54,20 +54,20 @@ double raw_number(const Table& table, const std::string& key, const toml::node& 
   if (const auto integer = node.as_integer()) return static_cast<double>(integer->get());
   if (const auto number = node.as_floating_point()) return number->get();
   const auto text = node.as_string();
-  if (text == nullptr) table.reject(key, node, "must be a number" + also(range));
+  if (text == nullptr) table.throw_error(key, node, "must be a number" + also(range));
   try {
     return parse_quantity(text->get(), unit);
-  } catch (const BadInput& e) {
-    table.reject(key, node, e.what() + also(range));
+  } catch (const InputError& e) {
+    table.throw_error(key, node, e.what() + also(range));
   }
 }
 
 double number_of(const Table& table, const std::string& key, const toml::node& node, Unit unit, const Range& range) {
   const double value = raw_number(table, key, node, unit, range);
-  if (!std::isfinite(value)) table.reject(key, node, "must be a finite number" + also(range));
-  if (!holds(range, value)) table.reject(key, node, describe(range));
+  if (!std::isfinite(value)) table.throw_error(key, node, "must be a finite number" + also(range));
+  if (!holds(range, value)) table.throw_error(key, node, describe(range));
   if (unit != Unit::none && value != 0.0 && (std::abs(value) < kLeast || std::abs(value) > kMost))
-    table.reject(key, node, "must be 0 or from 1e-30 to 1e30 in SI units, either sign" + also(range));
+    table.throw_error(key, node, "must be 0 or from 1e-30 to 1e30 in SI units, either sign" + also(range));
   return value;
 }
 
@@ -84,16 +84,16 @@ std::int64_t count_of(const Table& table, const std::string& key, const toml::no
   } else {
     const auto number = node.as_floating_point();
     if (number == nullptr || std::trunc(number->get()) != number->get() || std::abs(number->get()) > 0x1p53)
-      table.reject(key, node, problem);
+      table.throw_error(key, node, problem);
     value = static_cast<std::int64_t>(number->get());
   }
-  if (value < low || value > high) table.reject(key, node, problem);
+  if (value < low || value > high) table.throw_error(key, node, problem);
   return value;
 }
 
 std::string text_of(const Table& table, const std::string& key, const toml::node& node) {
   const auto text = node.as_string();
-  if (text == nullptr) table.reject(key, node, "must be a text in quotes");
+  if (text == nullptr) table.throw_error(key, node, "must be a text in quotes");
   return text->get();
 }
 
@@ -101,29 +101,30 @@ std::string choice_of(const Table& table, const std::string& key, const toml::no
                       std::span<const char* const> words) {
   std::string value = text_of(table, key, node);
   const std::vector<std::string> known(words.begin(), words.end());
-  if (std::find(known.begin(), known.end(), value) != known.end()) return value;
+  for (const std::string_view name : {std::string_view(value), current_name(value)})
+    if (std::find(known.begin(), known.end(), name) != known.end()) return std::string(name);
   std::string problem = "must be ";
   for (const std::string& word : known)
     problem += (&word == &known.front() ? "\"" : &word == &known.back() ? " or \"" : ", \"") + word + "\"";
   const std::string near = nearest_word(value, known);
   if (!near.empty()) problem += "; nearest is \"" + near + "\"";
-  table.reject(key, node, problem);
+  table.throw_error(key, node, problem);
 }
 
 bool flag_of(const Table& table, const std::string& key, const toml::node& node) {
   const auto value = node.as_boolean();
-  if (value == nullptr) table.reject(key, node, "must be true or false");
+  if (value == nullptr) table.throw_error(key, node, "must be true or false");
   return value->get();
 }
 
 const toml::array& array_of(const Table& table, const std::string& key, const toml::node& node) {
   const toml::array* array = node.as_array();
-  if (array == nullptr) table.reject(key, node, "must be a list in brackets");
+  if (array == nullptr) table.throw_error(key, node, "must be a list in brackets");
   return *array;
 }
 
 /// What stands in for a number that is not there or not allowed: as little as the range allows.
-double stand_in(const Range& range) {
+double allowed_value(const Range& range) {
   if (std::isfinite(range.low)) {
     if (!range.low_open) return range.low;
     return std::isfinite(range.high) ? 0.5 * (range.low + range.high) : range.low + 1.0;
@@ -135,19 +136,19 @@ std::vector<double> numbers_of(Table& table, const std::string& key, const toml:
                                const Range& range) {
   std::vector<double> values;
   for (const toml::node& element : array_of(table, key, node))
-    values.push_back(table.value([&] { return number_of(table, key, element, unit, range); }, stand_in(range)));
+    values.push_back(table.value([&] { return number_of(table, key, element, unit, range); }, allowed_value(range)));
   return values;
 }
 
 Vec3 vector_of(Table& table, const std::string& key, const toml::node& node, Unit unit) {
   const std::vector<double> values = numbers_of(table, key, node, unit, Range::any());
-  if (values.size() != 3) table.reject(key, node, "must have three components");
+  if (values.size() != 3) table.throw_error(key, node, "must have three components");
   return {{values[0], values[1], values[2]}};
 }
 
 /// The value under a key, by `read(node)`; `fallback` where there is none and null where there must be one.
 template <class T, class Read>
-T value_of(Table& table, const std::string& key, Read read, const T& stand_in,
+T value_of(Table& table, const std::string& key, Read read, const T& substitute,
            std::type_identity_t<const T*> fallback = nullptr, bool word = false) {
   return table.value(
       [&]() -> T {
@@ -155,7 +156,7 @@ T value_of(Table& table, const std::string& key, Read read, const T& stand_in,
         const toml::node* node = table.find(key);
         return node == nullptr ? *fallback : read(*node);
       },
-      stand_in, word);
+      substitute, word);
 }
 
 /// The value, once who takes keys down knows of it.
@@ -194,7 +195,7 @@ double SceneTable::number(const std::string& key, Unit unit, const Range& range)
   return noted(
       *impl_, key, unit, range,
       value_of(
-          *impl_, key, [&](const toml::node& n) { return number_of(*impl_, key, n, unit, range); }, stand_in(range)));
+          *impl_, key, [&](const toml::node& n) { return number_of(*impl_, key, n, unit, range); }, allowed_value(range)));
 }
 double SceneTable::number(const std::string& key, Unit unit, const Range& range, double fallback) const {
   return noted(*impl_, key, unit, range,

@@ -27,7 +27,7 @@ void lay_over(SceneDocument& document, toml::table& base, toml::table& over) {
 toml::table take_variant(toml::table& root, std::size_t number) {
   toml::array* variants = root.get_as<toml::array>("variant");
   toml::node* one = variants == nullptr ? nullptr : variants->get(number);
-  if (one == nullptr || !one->is_table()) throw BadInput("no [[variant]] of number " + std::to_string(number));
+  if (one == nullptr || !one->is_table()) throw InputError("no [[variant]] of number " + std::to_string(number));
   toml::table taken = std::move(*one->as_table());
   root.erase("variant");
   return taken;

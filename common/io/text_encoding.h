@@ -12,7 +12,7 @@ bool is_utf8(const std::string& bytes);
 /// bytes; what is no UTF-8 counts as Windows-1252.
 std::string utf8_of(const std::string& bytes);
 
-/// The same text with every byte that is no UTF-8 replaced by U+FFFD, for files that must be UTF-8.
+/// The text with every byte that is no UTF-8 replaced by U+FFFD, for files that must be UTF-8.
 std::string replaced_utf8(const std::string& text);
 
 }  // namespace softgrain

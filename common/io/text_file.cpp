@@ -48,11 +48,11 @@ bool has_room(int descriptor) {
 
 void write_file(const std::string& path, const std::string& text) {
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor < 0) throw FileTrouble(path + ": cannot be created: " + system_message());
+  if (descriptor < 0) throw IoError(path + ": cannot be created: " + system_message());
   const bool good = write_all(descriptor, text);
   const std::string reason = system_message();
   const bool closed = ::close(descriptor) == 0;
-  if (!good || !closed) throw FileTrouble(path + ": cannot be written: " + (good ? system_message() : reason));
+  if (!good || !closed) throw IoError(path + ": cannot be written: " + (good ? system_message() : reason));
 }
 
 /// What a path names that is no plain file; empty for one.
@@ -82,22 +82,22 @@ void write_standard_output(std::string_view text) {
     good = write_all(STDOUT_FILENO, piece);
     text.remove_prefix(piece.size());
   }
-  if (!good) throw FileTrouble("standard output: cannot be written: " + system_message());
+  if (!good) throw IoError("standard output: cannot be written: " + system_message());
 }
 
 void require_readable_file(const std::string& path) {
   std::error_code trouble;
   const fs::file_status status = fs::status(path, trouble);
-  if (status.type() == fs::file_type::not_found) throw FileTrouble(path + ": no such file");
+  if (status.type() == fs::file_type::not_found) throw IoError(path + ": no such file");
   const std::string other = other_than_file(status.type());
-  if (!other.empty()) throw FileTrouble(path + ": is " + other + ", not a file");
+  if (!other.empty()) throw IoError(path + ": is " + other + ", not a file");
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0) throw FileTrouble(path + ": cannot be read: " + system_message());
+  if (descriptor < 0) throw IoError(path + ": cannot be read: " + system_message());
   char first = 0;
   const bool good = ::read(descriptor, &first, 1) >= 0;
   const std::string reason = system_message();
   ::close(descriptor);
-  if (!good) throw FileTrouble(path + ": cannot be read: " + reason);
+  if (!good) throw IoError(path + ": cannot be read: " + reason);
 }
 
 std::string trimmed(const std::string& text) {
@@ -120,22 +120,22 @@ void write_text_atomic(const std::string& path, const std::string& text) {
 std::string read_text(const std::string& path) {
   require_readable_file(path);
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw FileTrouble(path + ": cannot be read: " + system_message());
+  if (!file) throw IoError(path + ": cannot be read: " + system_message());
   std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.bad()) throw FileTrouble(path + ": reading failed: " + system_message());
+  if (file.bad()) throw IoError(path + ": reading failed: " + system_message());
   return text;
 }
 
 void require_writable_directory(const std::string& path) {
   std::error_code trouble;
   fs::create_directories(path, trouble);
-  if (trouble) throw FileTrouble(path + ": the directory cannot be made: " + trouble.message());
-  if (!fs::is_directory(path, trouble)) throw FileTrouble(path + ": is not a directory");
+  if (trouble) throw IoError(path + ": the directory cannot be made: " + trouble.message());
+  if (!fs::is_directory(path, trouble)) throw IoError(path + ": is not a directory");
   if (const int nameless = ::open(path.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666); nameless >= 0) {
     const bool good = write_all(nameless, "test\n");
     const std::string reason = system_message();
     ::close(nameless);
-    if (!good) throw FileTrouble(path + ": cannot be written: " + reason);
+    if (!good) throw IoError(path + ": cannot be written: " + reason);
     return;
   }
   // Not every file system knows files without a name; one with a name is left behind when the process is killed now.

@@ -6,45 +6,45 @@
 #include <string>
 #include <string_view>
 
-#include "common/core/words.h"
+#include "common/core/enum_names.h"
 
 namespace softgrain {
 
-/// Without the blanks at both ends.
+/// The text without the blanks at both ends.
 std::string trimmed(const std::string& text);
 
 /// Forms of files by their endings.
 enum class FileForm { hdf5, json, toml, csv, tsv, txt, dat };
 
 template <>
-inline constexpr auto words<FileForm> = word_list<FileForm>({{FileForm::hdf5, ".h5"},
-                                                             {FileForm::json, ".json"},
-                                                             {FileForm::toml, ".toml"},
-                                                             {FileForm::csv, ".csv"},
-                                                             {FileForm::tsv, ".tsv"},
-                                                             {FileForm::txt, ".txt"},
-                                                             {FileForm::dat, ".dat"}});
+inline constexpr auto enum_names<FileForm> = enum_name_list<FileForm>({{FileForm::hdf5, ".h5"},
+                                                                       {FileForm::json, ".json"},
+                                                                       {FileForm::toml, ".toml"},
+                                                                       {FileForm::csv, ".csv"},
+                                                                       {FileForm::tsv, ".tsv"},
+                                                                       {FileForm::txt, ".txt"},
+                                                                       {FileForm::dat, ".dat"}});
 
-/// By the ending of its name; empty for any other.
+/// Form of a file by the ending of its name; empty for any other ending.
 inline std::optional<FileForm> file_form(const std::string& path) {
-  return from_word<FileForm>(std::filesystem::path(path).extension().string());
+  return parse_enum<FileForm>(std::filesystem::path(path).extension().string());
 }
 
-/// Writes to `path + ".tmp"`, flushes to disk and renames. Throws FileTrouble.
+/// Writes to `path + ".tmp"`, flushes to disk and renames. Throws IoError.
 void write_text_atomic(const std::string& path, const std::string& text);
 
-/// Writes to standard output and flushes it. Throws FileTrouble: what nobody could read has not been said; and
+/// Writes to standard output and flushes it. Throws IoError: what nobody could read has not been said; and
 /// Interrupted when a signal comes while it waits for somebody to read.
 void write_standard_output(std::string_view text);
 
-/// Reads a whole file. Throws FileTrouble naming the path.
+/// Reads a whole file. Throws IoError naming the path.
 std::string read_text(const std::string& path);
 
 /// Proves that `path` is a file that can be read, before a library is asked to open it: no directory, pipe or device
-/// (which would keep the program waiting for ever), and its first byte comes. Throws FileTrouble naming the path.
+/// (which would keep the program waiting for ever), and its first byte comes. Throws IoError naming the path.
 void require_readable_file(const std::string& path);
 
-/// Creates the directory (and parents) and proves that a file can be written there. Throws FileTrouble.
+/// Creates the directory (and parents) and proves that a file can be written there. Throws IoError.
 void require_writable_directory(const std::string& path);
 
 /// 64-bit FNV-1a as 16 hexadecimal digits: the same on every machine. Not for security.

@@ -47,8 +47,8 @@ struct TomlAssertion {};
 
 namespace softgrain {
 
-/// A text as a table; `name` is what messages call it. Throws BadInput with name and line for what is no TOML, or has a
-/// key of very many parts (toml_keys.h).
+/// A text as a table; `name` is what messages call it. Throws InputError with name and line for what is no TOML, or has
+/// a key of very many parts (toml_keys.h).
 toml::table parse_toml(const std::string& text, const std::string& name);
 
 }  // namespace softgrain

@@ -36,16 +36,16 @@ std::size_t line_of_assertion(const std::string& text) {
 
 toml::table parse_toml(const std::string& text, const std::string& name) {
   if (const std::size_t line = line_of_long_key(text); line > 0)
-    throw BadInput(name + ":" + std::to_string(line) + ": a key of more than " + std::to_string(kMostKeyParts) +
-                   " parts");
+    throw InputError(name + ":" + std::to_string(line) + ": a key of more than " + std::to_string(kMostKeyParts) +
+                     " parts");
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& e) {
-    throw BadInput(name + ":" + std::to_string(e.source().begin.line) +
-                   ": not valid TOML: " + std::string(e.description()));
+    throw InputError(name + ":" + std::to_string(e.source().begin.line) +
+                     ": not valid TOML: " + std::string(e.description()));
   } catch (const TomlAssertion&) {
-    throw BadInput(name + ":" + std::to_string(line_of_assertion(text)) +
-                   ": not valid TOML: a key must begin with a letter, a digit, '_', '-' or a quotation mark");
+    throw InputError(name + ":" + std::to_string(line_of_assertion(text)) +
+                     ": not valid TOML: a key must begin with a letter, a digit, '_', '-' or a quotation mark");
   }
 }
 

@@ -20,7 +20,7 @@ struct KnownUnit {
   std::string_view name;
   int power = 0;
   double factor = 1.0;
-  bool listed = true;  ///< in messages; other spellings and rare ones are not
+  bool listed = true;  ///< whether messages list the unit; other spellings and rare units are not listed
 };
 
 constexpr bool kUnlisted = false;
@@ -110,7 +110,8 @@ std::size_t number_length(std::string_view text) {
   return error == std::errc::invalid_argument ? 0 : static_cast<std::size_t>(end - text.data());
 }
 
-/// As the tables above write it: one micro sign, powers as "^2". "kg/m³", "kg/m3" and "kg/m**3" are "kg/m^3".
+/// Name of a unit as the tables above write it: one micro sign, powers as "^2". "kg/m³", "kg/m3" and "kg/m**3" are
+/// "kg/m^3".
 std::string plain_unit(std::string_view name) {
   std::string out;
   const auto takes = [&](std::string_view from, std::string_view to) {
@@ -161,7 +162,7 @@ double parse_quantity(const std::string& text, Unit unit) {
   std::string_view rest = trim(text);
   if (rest.starts_with('+')) rest.remove_prefix(1);
   const std::size_t length = number_length(rest);
-  if (length == 0) throw BadInput("must be a number, or a number with a unit such as \"16 mm\"");
+  if (length == 0) throw InputError("must be a number, or a number with a unit such as \"16 mm\"");
   const std::string_view number = rest.substr(0, length);
   const std::string name = plain_unit(trim(rest.substr(length)));
 
@@ -172,9 +173,9 @@ double parse_quantity(const std::string& text, Unit unit) {
     found = u;
     known = true;
   }
-  if (!known) throw BadInput(unknown_unit(name, unit));
+  if (!known) throw InputError(unknown_unit(name, unit));
   const std::optional<double> value = scaled(number, found.power);
-  if (!value || !std::isfinite(*value * found.factor)) throw BadInput("is not representable as a number");
+  if (!value || !std::isfinite(*value * found.factor)) throw InputError("is not representable as a number");
   return *value * found.factor;
 }
 
@@ -184,7 +185,7 @@ std::optional<double> quantity_of_any_unit(const std::string& text) {
         Unit::velocity, Unit::angular_velocity, Unit::force, Unit::acceleration, Unit::stiffness, Unit::angle_degree}) {
     try {
       return parse_quantity(text, unit);
-    } catch (const BadInput&) {  // another one may know it
+    } catch (const InputError&) {  // another one may know it
     }
   }
   return std::nullopt;

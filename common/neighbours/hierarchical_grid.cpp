@@ -80,7 +80,7 @@ void require_at_home(const Particles<D>& p, const Cell<D>& cell, const Vec<D>& u
   constexpr double kRounding = 0.125;
   for (int k = 0; k < D; ++k)
     if (cell.periodic[static_cast<std::size_t>(k)] && !(std::abs(unit[k] - 0.5) <= 0.5 + kRounding))
-      throw NotUsable(grain_name(p, slot) + " is lost: it is outside of its periodic cell");
+      throw UnusableResult(grain_name(p, slot) + " is lost: it is outside of its periodic cell");
 }
 
 template <int D>
@@ -150,9 +150,9 @@ template <int D>
 void require_wide_cell(const Cell<D>& cell, double largest_reach) {
   const double period = shortest_period(cell);
   if (!(period >= 4.0 * largest_reach))
-    throw BadInput("cell: images of a body are " + std::to_string(period) +
-                   " m apart, less than two diameters of the largest grain with skin (" +
-                   std::to_string(4.0 * largest_reach) + " m)");
+    throw InputError("cell: images of a body are " + std::to_string(period) +
+                     " m apart, less than two diameters of the largest grain with skin (" +
+                     std::to_string(4.0 * largest_reach) + " m)");
 }
 
 /// The cells along one axis that a sphere reaches; beyond a periodic boundary they count on (-1, cells, ...).
@@ -299,10 +299,10 @@ double rows_seen(const Level<D>& from, const Level<D>& in, const SearchFrame<D>&
   return rows;
 }
 
-/// Which of two classes looks for partners in the other: the one that looks at fewer rows in all. A large grain sees
-/// many small cells, but there are few large ones. looks[a][b]: grains of class a look into b.
+/// Decides which of two classes looks for partners in the other: the one that looks at fewer rows in all. A large grain
+/// sees many small cells, but there are few large grains. looks[a][b]: grains of class a look into b.
 template <int D>
-std::vector<std::vector<bool>> who_looks(const std::vector<Level<D>>& levels, const SearchFrame<D>& frame) {
+std::vector<std::vector<bool>> search_directions(const std::vector<Level<D>>& levels, const SearchFrame<D>& frame) {
   std::vector<std::vector<bool>> looks(levels.size(), std::vector<bool>(levels.size(), false));
   for (std::size_t a = 0; a < levels.size(); ++a) {
     looks[a][a] = true;
@@ -348,7 +348,7 @@ std::vector<CandidatePair> candidate_pairs(const Particles<D>& particles, const 
   const auto levels = make_levels(particles, skin, frame, level_of);
   require_wide_cell(cell, levels.front().reach);
   const Search<D> search(particles, cell, skin, frame);
-  const auto looks = who_looks(levels, frame);
+  const auto looks = search_directions(levels, frame);
   const Slot pieces = (particles.grains + kPiece - 1) / kPiece;
   std::vector<std::vector<CandidatePair>> found(static_cast<std::size_t>(pieces));
 #pragma omp parallel for schedule(dynamic) if (particles.grains >= kParallelGrains && omp_in_parallel() == 0)

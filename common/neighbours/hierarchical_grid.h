@@ -28,13 +28,13 @@ double shortest_period(const Cell<D>& cell);
 /// Every pair of grains i < j (slots [0, grains)) with |x_i - x_j| < r_i + r_j + skin_i + skin_j, each once,
 /// sorted by i, then j. Size classes halve the radius; of two
 /// classes the one that has less to look at searches the other. Images of a body must be at least two diameters of the
-/// largest grain with skin apart (throws BadInput): a pair then meets in one image only. A grain that is not inside the
-/// cell along a periodic axis has diverged (throws NotUsable); along open ones it may be anywhere.
+/// largest grain with skin apart (throws InputError): a pair then meets in one image only. A grain that is not inside
+/// the cell along a periodic axis has diverged (throws UnusableResult); along open ones it may be anywhere.
 template <int D>
 std::vector<CandidatePair> candidate_pairs(const Particles<D>& particles, const Cell<D>& cell,
                                            const std::vector<double>& skin);
 
-/// The same by testing all pairs: the oracle of the tests.
+/// Finds the pairs of candidate_pairs() by testing all pairs: the reference of the tests.
 template <int D>
 std::vector<CandidatePair> candidate_pairs_brute_force(const Particles<D>& particles, const Cell<D>& cell,
                                                        const std::vector<double>& skin);

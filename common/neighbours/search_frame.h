@@ -12,7 +12,7 @@ struct SearchFrame {
   const Cell<D>* cell = nullptr;
   Vec<D> low{};     ///< lower corner of the box, fractional units
   Vec<D> extent{};  ///< its size; 1 along periodic axes
-  Vec<D> width{};   ///< the same in metres, perpendicular distance between faces
+  Vec<D> width{};   ///< size of the box in metres, perpendicular distance between faces
 
   [[nodiscard]] Vec<D> unit(const Vec<D>& x) const {
     Vec<D> s = cell->fractional(x);
@@ -23,7 +23,7 @@ struct SearchFrame {
   }
 };
 
-/// Of the grains as they are. There is at least one.
+/// Search frame of the grains as they are. There is at least one grain.
 template <int D>
 SearchFrame<D> search_frame(const Particles<D>& particles, const Cell<D>& cell);
 

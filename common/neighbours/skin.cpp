@@ -60,12 +60,12 @@ double image_drift(const System<D>& s) {
 
 /// Where places of the last list would be had all moved alike: F x + shift.
 template <int D>
-struct Carried {
+struct ReferenceMotion {
   Matrix<D> f;
   Vec<D> shift;
   bool moves = false;
 
-  Carried() {
+  ReferenceMotion() {
     for (int k = 0; k < D; ++k) f[k][k] = 1.0;
   }
 };
@@ -84,11 +84,11 @@ Slot plane_facing(const Particles<D>& p, int axis, double sign) {
   return found;
 }
 
-/// With the box, where two planes face each other along axes: what a packing that is pressed between walls does, but
-/// for its fluctuations. An open scene otherwise.
+/// Motion of the box along axes where two planes face each other. A packing that is pressed between walls moves like
+/// this, but for its fluctuations. No motion in a periodic scene.
 template <int D>
-Carried<D> carried_by_walls(const System<D>& s) {
-  Carried<D> out;
+ReferenceMotion<D> motion_of_walls(const System<D>& s) {
+  ReferenceMotion<D> out;
   if (s.cell.any_periodic() || s.particles.planes < 2) return out;
   for (int k = 0; k < D; ++k) {
     const Slot low = plane_facing(s.particles, k, 1.0);
@@ -105,10 +105,10 @@ Carried<D> carried_by_walls(const System<D>& s) {
   return out;
 }
 
-/// With a periodic cell that deforms, where bodies are followed relative to it.
+/// Motion of a periodic cell that deforms, where bodies are followed relative to it.
 template <int D>
-Carried<D> carried_by_cell(const System<D>& s) {
-  Carried<D> out;
+ReferenceMotion<D> motion_of_cell(const System<D>& s) {
+  ReferenceMotion<D> out;
   out.moves = follows_cell(s) && !(s.cell.edges == s.neighbours.reference_edges);
   if (out.moves) out.f = deformation(s.cell, s.neighbours.reference_edges);
   return out;
@@ -118,17 +118,17 @@ Carried<D> carried_by_cell(const System<D>& s) {
 template <int D>
 class Uses {
  public:
-  Uses(const System<D>& s, const Carried<D>& carried)
+  Uses(const System<D>& s, const ReferenceMotion<D>& motion)
       : s_(s),
         half_reach_(half_reach(s.laws)),
-        carried_(carried),
-        strain_(frobenius(without_unit(carried.f))),
+        motion_(motion),
+        strain_(frobenius(without_unit(motion.f))),
         drift_(follows_cell(s) ? 0.0 : 0.5 * image_drift(s)) {}
 
   [[nodiscard]] double of(std::size_t u) const {
     const auto& n = s_.neighbours;
     const Sphere<D>& sphere = s_.particles.sphere[u];
-    const Vec<D> from = carried_.moves ? carried_.f * n.reference[u] + carried_.shift : n.reference[u];
+    const Vec<D> from = motion_.moves ? motion_.f * n.reference[u] + motion_.shift : n.reference[u];
     const double used = (norm(sphere.x - from) + drift_ + strain_ * (sphere.r + half_reach_ + n.skin[u])) / n.skin[u];
     return std::isfinite(used) ? used : kNever;
   }
@@ -136,14 +136,14 @@ class Uses {
  private:
   const System<D>& s_;
   double half_reach_;
-  Carried<D> carried_;
+  ReferenceMotion<D> motion_;
   double strain_;
   double drift_;
 };
 
 template <int D>
-double largest_use(const System<D>& s, const Carried<D>& carried) {
-  const Uses<D> uses(s, carried);
+double largest_use(const System<D>& s, const ReferenceMotion<D>& motion) {
+  const Uses<D> uses(s, motion);
   return joined_in_pieces<double>(
       at(s.particles.size()),
       [&](std::size_t begin, std::size_t end) {
@@ -157,13 +157,13 @@ double largest_use(const System<D>& s, const Carried<D>& carried) {
 /// The motion relative to which bodies are followed, any that all share will do, and the largest share of a margin that
 /// is used up. With the walls only where a new list would be made else.
 template <int D>
-struct Followed {
-  Carried<D> with;
+struct BestReference {
+  ReferenceMotion<D> with;
   double largest = 0.0;
 
-  explicit Followed(const System<D>& s) : with(carried_by_cell(s)), largest(largest_use(s, with)) {
+  explicit BestReference(const System<D>& s) : with(motion_of_cell(s)), largest(largest_use(s, with)) {
     if (largest <= 1.0) return;
-    const Carried<D> walls = carried_by_walls(s);
+    const ReferenceMotion<D> walls = motion_of_walls(s);
     const double rest = walls.moves ? largest_use(s, walls) : kNever;
     if (!(rest < largest)) return;
     largest = rest;
@@ -212,10 +212,10 @@ double touching_pairs(const System<D>& s) {
 /// What bodies have used up of their margins [m]: of grains the largest of their size class, but for the few that fly,
 /// far ahead of the others: those go by themselves, as do walls.
 template <int D>
-class UsedUp {
+class SkinConsumption {
  public:
-  explicit UsedUp(const System<D>& s) : smallest_(smallest_radius(s.particles)), grains_(s.particles.grains) {
-    const Uses<D> uses(s, Followed<D>(s).with);
+  explicit SkinConsumption(const System<D>& s) : smallest_(smallest_radius(s.particles)), grains_(s.particles.grains) {
+    const Uses<D> uses(s, BestReference<D>(s).with);
     used_.resize(s.particles.sphere.size());
     in_pieces(used_.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t u = begin; u < end; ++u) used_[u] = uses.of(u) * s.neighbours.skin[u];
@@ -231,11 +231,11 @@ class UsedUp {
 
   [[nodiscard]] bool known() const { return known_; }
   [[nodiscard]] double smallest() const { return smallest_; }
-  [[nodiscard]] bool flies(std::size_t u, double r) const {
+  [[nodiscard]] bool is_outlier(std::size_t u, double r) const {
     return static_cast<Slot>(u) < grains_ && used_[u] > most_[class_of(r, smallest_)];
   }
   [[nodiscard]] double of(std::size_t u, double r) const {
-    return static_cast<Slot>(u) < grains_ && !flies(u, r) ? most_[class_of(r, smallest_)] : used_[u];
+    return static_cast<Slot>(u) < grains_ && !is_outlier(u, r) ? most_[class_of(r, smallest_)] : used_[u];
   }
 
  private:
@@ -277,23 +277,23 @@ constexpr double kFastestChange = 2.0;
 constexpr double kWidest = 0.5;            // of the radius ...
 constexpr double kWidestInSmallest = 1.0;  // ... and of the smallest one
 // A grain that flies has few neighbours, and few grains fly: wide margins cost little there.
-constexpr double kWidestOfFlyers = 8.0;  // of the smallest radius
-constexpr double kFastestOfFlyers = 16.0;
+constexpr double kWidestOfOutliers = 8.0;  // of the smallest radius
+constexpr double kFastestOfOutliers = 16.0;
 constexpr double kNarrowest = 0.01;  // of the radius of the smallest
 
 /// Margins that last `stretch` times as long as the last ones.
 template <int D>
-void set_margins(System<D>& s, const UsedUp<D>& used, double stretch) {
+void set_margins(System<D>& s, const SkinConsumption<D>& used, double stretch) {
   NeighbourState<D>& n = s.neighbours;
   const auto& p = s.particles;
   in_pieces(n.skin.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t u = begin; u < end; ++u) {
       const double r = p.sphere[u].r;
-      const bool flies = used.flies(u, r);
-      const double up = flies ? kFastestOfFlyers : kFastestChange;
+      const bool is_outlier = used.is_outlier(u, r);
+      const double up = is_outlier ? kFastestOfOutliers : kFastestChange;
       const double limited = std::clamp(used.of(u, r) * stretch, n.skin[u] / kFastestChange, n.skin[u] * up);
-      const double widest = flies ? kWidestOfFlyers * used.smallest()
-                                  : std::min(r > 0.0 ? kWidest * r : kNever, kWidestInSmallest * used.smallest());
+      const double widest = is_outlier ? kWidestOfOutliers * used.smallest()
+                                       : std::min(r > 0.0 ? kWidest * r : kNever, kWidestInSmallest * used.smallest());
       n.skin[u] = std::max(std::min(limited, widest), kNarrowest * used.smallest());
     }
   });
@@ -326,7 +326,7 @@ template <int D>
 double skin_used(const System<D>& s) {
   const auto bodies = static_cast<std::size_t>(s.particles.size());
   if (s.neighbours.reference.size() != bodies) return kNever;
-  return Followed<D>(s).largest;
+  return BestReference<D>(s).largest;
 }
 
 template <int D>
@@ -357,7 +357,7 @@ void adapt_skin(System<D>& s) {
   const auto& p = s.particles;
   const auto passes = static_cast<double>(s.cost.loop_passes - n.passes_at_build);
   if (n.reference.size() != p.sphere.size() || !(passes >= 2.0) || p.grains < 2) return;
-  const UsedUp<D> used(s);
+  const SkinConsumption<D> used(s);
   if (!used.known()) return;
   const auto listed = static_cast<double>(s.contacts.size());
   const double build = kPerGrain * static_cast<double>(p.grains) + kPerPair * listed;

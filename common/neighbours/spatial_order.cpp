@@ -85,7 +85,7 @@ struct RenamedPair {
   double memory = 0.0;
   Stored<D> roll{};
 
-  /// As in a list that has just been made.
+  /// Orders pairs as in a list that has just been made.
   friend bool operator<(const RenamedPair& a, const RenamedPair& b) {
     return std::tie(a.geometry, a.law, a.i, a.j) < std::tie(b.geometry, b.law, b.i, b.j);
   }

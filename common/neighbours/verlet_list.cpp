@@ -234,7 +234,7 @@ void size_history(ContactList<D>& list, const LawSet& laws, std::size_t bodies) 
   list.roll.assign(list.has_roll ? list.i.size() : 0, Vec<D>{});
   list.roll_next.clear();
   list.touched.assign(list.i.size(), 1);
-  list.particle_sum.assign(sums ? bodies : 0, CrowdSum<D>{});
+  list.particle_sum.assign(sums ? bodies : 0, MultiContactSum<D>{});
   list.lost_i.resize(sums ? list.i.size() : 0);
   list.lost_j.resize(sums ? list.i.size() : 0);
 }
@@ -256,9 +256,9 @@ void fill_constants(System<D>& s) {
 
 /// Soft particles go with the first section that lists them.
 template <int D>
-void note_crowd_bodies(System<D>& s) {
+void note_multi_contact_bodies(System<D>& s) {
   ContactList<D>& list = s.contacts;
-  list.crowd_bodies.clear();
+  list.multi_contact_bodies.clear();
   if (list.particle_sum.empty()) return;
   std::vector<std::int32_t> law_of(list.particle_sum.size(), LawSet::kNoContact);
   const auto note = [&](Slot body, std::int32_t law) {
@@ -275,7 +275,7 @@ void note_crowd_bodies(System<D>& s) {
   for (std::int32_t law = 0; law < s.laws.size(); ++law)
     if (traits_of(s.laws.law(law)).needs_particle_pass)
       for (std::size_t u = 0; u < law_of.size(); ++u)
-        if (law_of[u] == law) list.crowd_bodies.push_back({static_cast<Slot>(u), law});
+        if (law_of[u] == law) list.multi_contact_bodies.push_back({static_cast<Slot>(u), law});
 }
 
 /// Radii from the origin beyond which a grain is lost: its overlap with a neighbour would be no number of 53 bits.
@@ -285,17 +285,17 @@ template <int D>
 [[noreturn]] void lose(const Particles<D>& p, Slot i) {
   double farthest = 0.0;
   for (const double x : p.sphere[static_cast<std::size_t>(i)].x.v) {
-    if (!std::isfinite(x)) throw NotUsable("body " + std::to_string(i) + " has a position that is not finite");
+    if (!std::isfinite(x)) throw UnusableResult("body " + std::to_string(i) + " has a position that is not finite");
     farthest = std::max(farthest, std::abs(x));
   }
   std::ostringstream what;
   what << (i < p.grains ? grain_name(p, i) : "body " + std::to_string(i)) << " is lost: it is " << farthest
        << " m away";
-  throw NotUsable(what.str());
+  throw UnusableResult(what.str());
 }
 
 template <int D>
-void require_sound(const Particles<D>& p, const Cell<D>& cell, Slot begin, Slot end) {
+void require_valid(const Particles<D>& p, const Cell<D>& cell, Slot begin, Slot end) {
   for (Slot i = begin; i < end; ++i) {
     const auto u = static_cast<std::size_t>(i);
     const double distance2 = norm2(p.sphere[u].x);
@@ -307,17 +307,17 @@ void require_sound(const Particles<D>& p, const Cell<D>& cell, Slot begin, Slot 
       const Vec<D> image = cell.image_shift(cell.image_near(p.sphere[u].x, shell.x));
       const double outside = norm(p.sphere[u].x - shell.x - image) - p.sphere[u].r - shell.r;
       if (outside <= 0.0) continue;
-      throw NotUsable("grain " + std::to_string(i) + " (radius " + std::to_string(p.sphere[u].r) +
-                      " m) has been squeezed out of its shell (radius " + std::to_string(shell.r) +
-                      " m): " + std::to_string(outside) + " m lie between them");
+      throw UnusableResult("grain " + std::to_string(i) + " (radius " + std::to_string(p.sphere[u].r) +
+                           " m) has been squeezed out of its shell (radius " + std::to_string(shell.r) +
+                           " m): " + std::to_string(outside) + " m lie between them");
     }
   }
 }
 
 template <int D>
-void require_sound(const Particles<D>& p, const Cell<D>& cell) {
+void require_valid(const Particles<D>& p, const Cell<D>& cell) {
   in_pieces(at(p.size()), [&](std::size_t begin, std::size_t end) {
-    require_sound(p, cell, static_cast<Slot>(begin), static_cast<Slot>(end));
+    require_valid(p, cell, static_cast<Slot>(begin), static_cast<Slot>(end));
   });
 }
 
@@ -362,7 +362,7 @@ template <int D>
 void adopt_list(System<D>& s) {
   fill_constants(s);
   size_history(s.contacts, s.laws, static_cast<std::size_t>(s.particles.size()));
-  note_crowd_bodies(s);
+  note_multi_contact_bodies(s);
   note_skin(s);
   static std::atomic<std::uint64_t> builds{0};
   s.contacts.build = ++builds;
@@ -370,7 +370,7 @@ void adopt_list(System<D>& s) {
 
 template <int D>
 void rebuild_neighbours(System<D>& s) {
-  require_sound(s.particles, s.cell);
+  require_valid(s.particles, s.cell);
   NeighbourState<D>& n = s.neighbours;
   if (n.skin.size() != static_cast<std::size_t>(s.particles.size())) n.skin = default_skin(s.particles);
   adapt_skin(s);
@@ -387,7 +387,7 @@ void rebuild_neighbours(System<D>& s) {
     for (std::size_t u = begin; u < end; ++u) n.reference[u] = s.particles.sphere[u].x;
   });
   n.reference_edges = s.cell.edges;
-  if (n.rebuilds > 1 && s.cost.loop_passes - n.passes_at_build <= 1) ++n.hasty;
+  if (n.rebuilds > 1 && s.cost.loop_passes - n.passes_at_build <= 1) ++n.short_lived;
   n.passes_at_build = s.cost.loop_passes;
   ++n.rebuilds;
 }

@@ -7,8 +7,8 @@
 namespace softgrain {
 
 /// Makes the list valid for the positions as they are: rebuilds it when some body has moved its whole skin since the
-/// last build. Called before every pass, so no pair is ever missed. Returns whether it was rebuilt. Throws NotUsable
-/// naming the body when a position is not finite or a grain is outside its shell.
+/// last build. Called before every pass, so no pair is ever missed. Returns whether it was rebuilt. Throws
+/// UnusableResult naming the body when a position is not finite or a grain is outside its shell.
 template <int D>
 bool update_neighbours(System<D>& system);
 

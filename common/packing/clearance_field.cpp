@@ -33,7 +33,7 @@ void ClearanceField::append(const PackedSphere& sphere) {
     spheres_.push_back(sphere);
 }
 
-/// Those that come within `reach` of the cell; the one in it first.
+/// Appends the sphere and those of its images that come within `reach` of the cell; the one in the cell first.
 void ClearanceField::append_images(const PackedSphere& sphere, double far) {
   const Vec3 period = domain_.high - domain_.low;
   spheres_.push_back(sphere);
@@ -57,7 +57,7 @@ void ClearanceField::set_reach(double reach) {
     cells_[static_cast<std::size_t>(k)] = std::clamp(static_cast<int>(std::min(wanted, 1e6)), 1, kMostCells);
     total *= static_cast<std::size_t>(cells_[static_cast<std::size_t>(k)]);
   }
-  lists_.assign(total, {});
+  log_lists_.assign(total, {});
   for (std::size_t s = 0; s < spheres_.size(); ++s) list(static_cast<std::int32_t>(s));
 }
 
@@ -67,7 +67,7 @@ int ClearanceField::cell(double x, int axis) const {
   return static_cast<int>(std::clamp(share * n, 0.0, n - 1.0));
 }
 
-/// In every cell that comes within `reach` of its surface.
+/// Lists a sphere in every cell that comes within `reach` of its surface.
 void ClearanceField::list(std::int32_t sphere) {
   const PackedSphere& s = spheres_[static_cast<std::size_t>(sphere)];
   const double far = s.r + reach_;
@@ -79,7 +79,7 @@ void ClearanceField::list(std::int32_t sphere) {
   }
   for (int a = low[0]; a <= high[0]; ++a)
     for (int b = low[1]; b <= high[1]; ++b)
-      for (int c = low[2]; c <= high[2]; ++c) lists_[index(a, b, c)].push_back(sphere);
+      for (int c = low[2]; c <= high[2]; ++c) log_lists_[index(a, b, c)].push_back(sphere);
 }
 
 void ClearanceField::add(const PackedSphere& sphere) {

@@ -42,7 +42,7 @@ class ClearanceField {
            static_cast<std::size_t>(c);
   }
   [[nodiscard]] const std::vector<std::int32_t>& listed(const Vec3& x) const {
-    return lists_[index(cell(x[0], 0), cell(x[1], 1), cell(x[2], 2))];
+    return log_lists_[index(cell(x[0], 0), cell(x[1], 1), cell(x[2], 2))];
   }
   void list(std::int32_t sphere);
   void append(const PackedSphere& sphere);
@@ -50,11 +50,11 @@ class ClearanceField {
   void append_walls(const Vec3& x, double most, std::vector<NearSurface>& out) const;
   [[nodiscard]] double wall_clearance(const Vec3& x) const;
 
-  std::vector<PackedSphere> spheres_;  ///< of a periodic cell with those images that are near it
+  std::vector<PackedSphere> spheres_;  ///< spheres; in a periodic cell with those images that are near it
   VoidDomain domain_;
   double reach_ = 0.0;
   std::array<int, 3> cells_{1, 1, 1};
-  std::vector<std::vector<std::int32_t>> lists_;
+  std::vector<std::vector<std::int32_t>> log_lists_;
 };
 
 }  // namespace softgrain

@@ -64,12 +64,12 @@ Grading::Grading(GradingForm form, std::string text, std::vector<SizePiece> piec
   double all = 0.0;
   for (const SizePiece& p : pieces_) {
     if (!(p.low > 0.0) || !(p.high >= p.low) || !std::isfinite(p.high) || !std::isfinite(p.exponent))
-      throw BadInput(fmt::format("sizes: from {:g} to {:g} m; sizes must be positive and ascend", p.low, p.high));
+      throw InputError(fmt::format("sizes: from {:g} to {:g} m; sizes must be positive and ascend", p.low, p.high));
     if (!(p.volume >= 0.0) || !std::isfinite(p.volume))
-      throw BadInput(fmt::format("sizes: {:g} is no share of the volume", p.volume));
+      throw InputError(fmt::format("sizes: {:g} is no share of the volume", p.volume));
     all += p.volume;
   }
-  if (!(all > 0.0)) throw BadInput("sizes: no grain has any of them");
+  if (!(all > 0.0)) throw InputError("sizes: no grain has any of them");
   std::erase_if(pieces_, [](const SizePiece& p) { return p.volume == 0.0; });
   double number = 0.0;
   double below = 0.0;
@@ -80,7 +80,7 @@ Grading::Grading(GradingForm form, std::string text, std::vector<SizePiece> piec
     below += p.volume;
   }
   if (!(number > 0.0) || !std::isfinite(number))
-    throw BadInput("sizes: so small, or so far apart, that their numbers are no numbers");
+    throw InputError("sizes: so small, or so far apart, that their numbers are no numbers");
   for (double& n : number_) n /= number;
   number_.back() = 1.0;
   for (std::size_t k = 1; k < pieces_.size(); ++k)
@@ -104,8 +104,9 @@ Grading Grading::fuller(double q, double rmin, double rmax, int dimension) {
 Grading Grading::log_normal(double median, double geometric_deviation, double rmin, double rmax, int dimension) {
   constexpr int kPieces = 400;
   const double sigma = std::log(geometric_deviation);
-  if (!(sigma > 0.0) || !(median > 0.0)) throw BadInput("sizes: a log-normal distribution needs a deviation above 1");
-  if (!(rmax > rmin) || !(rmin > 0.0)) throw BadInput("sizes: radius_max must be above radius_min, and both positive");
+  if (!(sigma > 0.0) || !(median > 0.0)) throw InputError("sizes: a log-normal distribution needs a deviation above 1");
+  if (!(rmax > rmin) || !(rmin > 0.0))
+    throw InputError("sizes: radius_max must be above radius_min, and both positive");
   const auto below = [&](double r) { return gsl_cdf_ugaussian_P(std::log(r / median) / sigma); };
   std::vector<SizePiece> pieces;
   double low = rmin;
@@ -140,7 +141,7 @@ Grading Grading::sieve_curve(const std::vector<double>& sieve_radius, const std:
 
 Grading Grading::list(std::vector<double> radii, int dimension, std::vector<double> counts) {
   if (!counts.empty() && counts.size() != radii.size())
-    throw BadInput(fmt::format("sizes: {} counts of {} radii: one for each", counts.size(), radii.size()));
+    throw InputError(fmt::format("sizes: {} counts of {} radii: one for each", counts.size(), radii.size()));
   if (std::all_of(counts.begin(), counts.end(), [](double n) { return n == 1.0; })) counts.clear();
   std::vector<std::pair<double, double>> grains;
   for (std::size_t k = 0; k < radii.size(); ++k) grains.emplace_back(radii[k], counts.empty() ? 1.0 : counts[k]);

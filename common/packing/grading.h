@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/core/words.h"
+#include "common/core/enum_names.h"
 
 namespace softgrain {
 
@@ -14,12 +14,12 @@ class RandomStream;
 enum class GradingForm { power_law, fuller, log_normal, classes, sieve_curve, list };
 
 template <>
-inline constexpr auto words<GradingForm> = word_list<GradingForm>({{GradingForm::power_law, "power-law"},
-                                                                   {GradingForm::fuller, "fuller"},
-                                                                   {GradingForm::log_normal, "log-normal"},
-                                                                   {GradingForm::classes, "classes"},
-                                                                   {GradingForm::sieve_curve, "sieve-curve"},
-                                                                   {GradingForm::list, "list"}});
+inline constexpr auto enum_names<GradingForm> = enum_name_list<GradingForm>({{GradingForm::power_law, "power-law"},
+                                                                             {GradingForm::fuller, "fuller"},
+                                                                             {GradingForm::log_normal, "log-normal"},
+                                                                             {GradingForm::classes, "classes"},
+                                                                             {GradingForm::sieve_curve, "sieve-curve"},
+                                                                             {GradingForm::list, "list"}});
 
 /// Radii between low and high [m] with number density ~ r^-exponent; low = high: all alike.
 struct SizePiece {
@@ -39,7 +39,7 @@ struct SizePiece {
 /// are areas of disks, as masses are.
 class Grading {
  public:
-  /// P(r) ~ r^-exponent by number [SP 1.1]. All of these throw BadInput for sizes that are not positive or fall.
+  /// P(r) ~ r^-exponent by number [SP 1.1]. All of these throw InputError for sizes that are not positive or fall.
   static Grading power_law(double exponent, double rmin, double rmax, int dimension = 3);
   /// Volume passing ((r^q - rmin^q)/(rmax^q - rmin^q)): Fuller's curve with q = 1/2 and rmin = 0, Andreasen's and
   /// Andersen's with a least size [Dinger and Funk]. q != 0.
@@ -53,8 +53,7 @@ class Grading {
   /// to 1.
   static Grading sieve_curve(const std::vector<double>& sieve_radius, const std::vector<double>& passing,
                              int dimension = 3);
-  /// These grains, in these numbers: `counts` of each radius (weights by number, any sum), one of each where it is
-  /// empty.
+  /// Grading of given grains: `counts` of each radius (weights by number, any sum), one of each where it is empty.
   static Grading list(std::vector<double> radii, int dimension = 3, std::vector<double> counts = {});
 
   [[nodiscard]] GradingForm form() const { return form_; }
@@ -85,7 +84,7 @@ class Grading {
   friend bool operator==(const Grading& a, const Grading& b) {
     return a.dimension_ == b.dimension_ && a.text_ == b.text_;
   }
-  /// The same law for other units of length.
+  /// Whether both are the same law, each in its own unit of length.
   [[nodiscard]] bool same_shape(double unit, const Grading& other, double other_unit) const;
 
  private:

@@ -13,7 +13,7 @@ namespace softgrain {
 std::vector<SizePiece> pieces_between(const Grading& grading, double low, double high);
 
 /// Both together; the fines have this share of the volume, and each part keeps its own distribution. One part may be
-/// empty when its share is 0. Throws BadInput as Grading does.
+/// empty when its share is 0. Throws InputError as Grading does.
 Grading mixture_of(std::vector<SizePiece> coarse, std::vector<SizePiece> fines, double fines_share);
 
 /// The sizes, or where there are none P(r) ~ r^-exponent up to `largest`, `ratio` times the smallest.

@@ -27,7 +27,7 @@ struct Ends {
 Ends read_ends(const SceneTable& t) {
   const double low = t.number("radius_min", Unit::length, Range::positive());
   const double high = t.number("radius_max", Unit::length, Range::positive());
-  if (t.sound() && !(high > low)) t.reject("radius_max", "must be above radius_min");
+  if (!t.has_errors() && !(high > low)) t.throw_error("radius_max", "must be above radius_min");
   return {low, high};
 }
 
@@ -52,9 +52,9 @@ Grading read_classes(const SceneTable& t, int dimension) {
     pieces.push_back(read_class(c, dimension));
     sum += pieces.back().volume;
   }
-  if (pieces.empty()) t.reject("class", "needs at least one [[class]] with a size and volume_share");
-  if (t.sound() && std::abs(sum - 1.0) > 1e-6)
-    t.reject("class", fmt::format("the shares add up to {:g}; they must add up to 1", sum));
+  if (pieces.empty()) t.throw_error("class", "needs at least one [[class]] with a size and volume_share");
+  if (!t.has_errors() && std::abs(sum - 1.0) > 1e-6)
+    t.throw_error("class", fmt::format("the shares add up to {:g}; they must add up to 1", sum));
   return Grading::classes(std::move(pieces), dimension);
 }
 
@@ -75,17 +75,17 @@ bool in_inches(std::string unit) {
 
 std::size_t length_column(const CsvFile& csv, std::initializer_list<const char*> names, const char* example) {
   const int k = column_of(csv, names);
-  if (k < 0) throw BadInput(fmt::format("{}needs a column \"{}\"", head_of(csv), example));
+  if (k < 0) throw InputError(fmt::format("{}needs a column \"{}\"", head_of(csv), example));
   const auto column = static_cast<std::size_t>(k);
   if (in_inches(csv.columns()[column].unit))
-    throw BadInput(
+    throw InputError(
         fmt::format("{}sizes in inches are not read; give them in mm (1 in = 25.4 mm): \"{}\"", head_of(csv), example));
   csv.require_unit(column, Unit::length, example);
   return column;
 }
 
 double must(const std::optional<double>& value, const CsvFile& csv, const CsvRow& row, const char* what) {
-  if (!value) throw BadInput(fmt::format("{}: {} is missing", csv.where(row.line), what));
+  if (!value) throw InputError(fmt::format("{}: {} is missing", csv.where(row.line), what));
   return *value;
 }
 
@@ -108,7 +108,7 @@ bool passes_in_percent(const CsvFile& csv, std::size_t column) {
   const CsvColumn& c = csv.columns()[column];
   if (is_percent(c.unit)) return true;
   if (!c.unit.empty() && c.unit != "1" && c.unit != "-")
-    throw BadInput(
+    throw InputError(
         fmt::format("{}passing is in percent of mass or a share: \"passing [%]\", not [{}]", head_of(csv), c.unit));
   return c.name.find('%') != std::string::npos || c.name.find("percent") != std::string::npos;
 }
@@ -117,8 +117,8 @@ std::size_t passing_column(const CsvFile& csv) {
   for (const std::string& name : kPassing)
     if (const int k = column_of(csv, {name.c_str()}); k >= 0) return static_cast<std::size_t>(k);
   const bool retained = std::any_of(csv.columns().begin(), csv.columns().end(), is_retained);
-  throw BadInput(fmt::format("{}needs a column \"passing [%]\", cumulative, of mass{}", head_of(csv),
-                             retained ? "; passing is 100 % less what is retained in all" : ""));
+  throw InputError(fmt::format("{}needs a column \"passing [%]\", cumulative, of mass{}", head_of(csv),
+                               retained ? "; passing is 100 % less what is retained in all" : ""));
 }
 
 /// What a column says that is none of those that count; masses and what is retained only say the same another way.
@@ -149,12 +149,12 @@ std::vector<SieveRow> sieve_rows(const CsvFile& csv) {
     s.passing = must(csv.number(row, column, Unit::none), csv, row, "what passes");
     if (by_name && row.cells[column].back() != '%') s.passing /= 100.0;
     if (!(s.opening > 0.0))
-      throw BadInput(s.where + ": an opening must be positive; for a pan give the size of the smallest grains");
+      throw InputError(s.where + ": an opening must be positive; for a pan give the size of the smallest grains");
     for (const double end : {0.0, 1.0})
       if (std::abs(s.passing - end) < kRounding) s.passing = end;
     if (s.passing < 0.0 || s.passing > 1.0)
-      throw BadInput(fmt::format("{}: {} passes; allowed: 0 to {}", s.where, row.cells[column],
-                                 percent ? "100 %" : "1 (a share; write \"passing [%]\" for percent)"));
+      throw InputError(fmt::format("{}: {} passes; allowed: 0 to {}", s.where, row.cells[column],
+                                   percent ? "100 %" : "1 (a share; write \"passing [%]\" for percent)"));
     rows.push_back(s);
   }
   return rows;
@@ -173,9 +173,9 @@ std::string guess(const std::vector<SieveRow>& rows) {
          "retain";
 }
 
-/// From the smallest sieve to the largest.
+/// Grading of a sieve curve, from the smallest sieve to the largest.
 Grading curve_of(std::vector<SieveRow> rows, int dimension) {
-  if (rows.size() < 2) throw BadInput("a sieve curve needs at least two sieves");
+  if (rows.size() < 2) throw InputError("a sieve curve needs at least two sieves");
   std::stable_sort(rows.begin(), rows.end(), [](auto& a, auto& b) { return a.opening < b.opening; });
   std::vector<double> radius{0.5 * rows[0].opening};
   std::vector<double> passing{rows[0].passing};
@@ -183,19 +183,19 @@ Grading curve_of(std::vector<SieveRow> rows, int dimension) {
     const SieveRow& before = rows[k - 1];
     const SieveRow& row = rows[k];
     if (row.opening == before.opening)
-      throw BadInput(
+      throw InputError(
           fmt::format("{}: the sieve of {:g} mm is there twice ({})", row.where, 1e3 * row.opening, before.where));
     if (row.passing < before.passing - kRounding)
-      throw BadInput(fmt::format("{}: passing falls to {} on a wider sieve ({}: {}){}", row.where, percent(row.passing),
-                                 before.where, percent(before.passing), guess(rows)));
+      throw InputError(fmt::format("{}: passing falls to {} on a wider sieve ({}: {}){}", row.where,
+                                   percent(row.passing), before.where, percent(before.passing), guess(rows)));
     radius.push_back(0.5 * row.opening);
     passing.push_back(std::max(row.passing, before.passing));
   }
   for (const auto& [row, wanted] : {std::pair{rows.front(), 0.0}, std::pair{rows.back(), 1.0}})
     if (row.passing != wanted)
-      throw BadInput(fmt::format("{}: the curve goes from {} to {}; it must go from 0 to 100 %: add the {} grains",
-                                 row.where, percent(rows.front().passing), percent(rows.back().passing),
-                                 wanted == 0.0 ? "size that is below all" : "size that is above all"));
+      throw InputError(fmt::format("{}: the curve goes from {} to {}; it must go from 0 to 100 %: add the {} grains",
+                                   row.where, percent(rows.front().passing), percent(rows.back().passing),
+                                   wanted == 0.0 ? "size that is below all" : "size that is above all"));
   return Grading::sieve_curve(radius, passing, dimension);
 }
 
@@ -207,7 +207,8 @@ Grading read_curve(const SceneTable& t, int dimension) {
     for (const double end : {0.0, 1.0})
       if (std::abs(share - end) < kRounding) share = end;
   if (openings.size() != passing.size())
-    t.reject("passing", fmt::format("has {} values; openings has {}: one for each", passing.size(), openings.size()));
+    t.throw_error("passing",
+                  fmt::format("has {} values; openings has {}: one for each", passing.size(), openings.size()));
   std::vector<SieveRow> rows;
   for (std::size_t k = 0; k < openings.size(); ++k) rows.push_back({openings[k], passing[k], t.where("passing")});
   return curve_of(std::move(rows), dimension);
@@ -216,14 +217,14 @@ Grading read_curve(const SceneTable& t, int dimension) {
 Grading read_list(const SceneTable& t, int dimension) {
   if (t.has("file")) return read_radii(t.resolve(t.text("file")), dimension);
   std::vector<double> radii = t.numbers("radii", Unit::length, Range::positive());
-  if (radii.empty()) t.reject("radii", "at least one radius is needed");
+  if (radii.empty()) t.throw_error("radii", "at least one radius is needed");
   std::vector<double> counts;
   if (t.has("counts")) {
     counts = t.numbers("counts", Unit::none, Range::not_negative());
     if (counts.size() != radii.size())
-      t.reject("counts", fmt::format("has {} values; radii has {}: one for each", counts.size(), radii.size()));
+      t.throw_error("counts", fmt::format("has {} values; radii has {}: one for each", counts.size(), radii.size()));
     if (std::none_of(counts.begin(), counts.end(), [](double n) { return n > 0.0; }))
-      t.reject("counts", "at least one must be above 0");
+      t.throw_error("counts", "at least one must be above 0");
   }
   return Grading::list(std::move(radii), dimension, std::move(counts));
 }
@@ -233,9 +234,9 @@ Grading read_list(const SceneTable& t, int dimension) {
 Grading read_sieve_curve(const std::string& path, int dimension) {
   try {
     return curve_of(sieve_rows(CsvFile::read(path)), dimension);
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     const std::string what = e.what();
-    throw BadInput(what.starts_with(path) ? what : path + ": " + what);
+    throw InputError(what.starts_with(path) ? what : path + ": " + what);
   }
 }
 
@@ -254,14 +255,14 @@ Grading read_radii(const std::string& path, int dimension) {
   std::vector<double> counts;
   for (const CsvRow& row : csv.rows()) {
     radii.push_back((diameters ? 0.5 : 1.0) * must(csv.number(row, column, Unit::length), csv, row, "the size"));
-    if (!(radii.back() > 0.0)) throw BadInput(fmt::format("{}: a size must be positive", csv.where(row.line)));
+    if (!(radii.back() > 0.0)) throw InputError(fmt::format("{}: a size must be positive", csv.where(row.line)));
     if (count < 0) continue;
     counts.push_back(must(csv.number(row, static_cast<std::size_t>(count), Unit::none), csv, row, "the count"));
-    if (!(counts.back() >= 0.0)) throw BadInput(fmt::format("{}: a count must not be negative", csv.where(row.line)));
+    if (!(counts.back() >= 0.0)) throw InputError(fmt::format("{}: a count must not be negative", csv.where(row.line)));
   }
-  if (radii.empty()) throw BadInput(path + ": no sizes");
+  if (radii.empty()) throw InputError(path + ": no sizes");
   if (count >= 0 && std::none_of(counts.begin(), counts.end(), [](double n) { return n > 0.0; }))
-    throw BadInput(path + ": no size has a count above 0");
+    throw InputError(path + ": no size has a count above 0");
   return Grading::list(std::move(radii), dimension, std::move(counts));
 }
 
@@ -284,8 +285,8 @@ Grading read_grading(const SceneTable& t, int dimension) {
 Grading stored_grading(const std::string& text, int dimension) {
   try {
     return read_grading(Scene::parse(text, "sizes").root(), dimension);
-  } catch (const BadInput& e) {
-    throw FileTrouble(std::string("attribute 'sizes': ") + e.what());
+  } catch (const InputError& e) {
+    throw IoError(std::string("attribute 'sizes': ") + e.what());
   }
 }
 
@@ -293,10 +294,10 @@ std::optional<Grading> read_sizes(const SceneTable& t, const std::string& key,
                                   std::initializer_list<const char*> instead, int dimension) {
   if (!t.has(key)) return std::nullopt;
   for (const char* other : instead)
-    if (t.has(other)) t.mistake(other, "goes without " + key + ", which says all sizes");
+    if (t.has(other)) t.add_error(other, "goes without " + key + ", which says all sizes");
   const SceneTable sizes = t.table(key);
   std::optional<Grading> out;
-  sizes.part([&] { out = read_grading(sizes, dimension); });
+  sizes.section([&] { out = read_grading(sizes, dimension); });
   return out;
 }
 

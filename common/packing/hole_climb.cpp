@@ -94,7 +94,7 @@ bool move_to_touch(const std::vector<NearSurface>& surfaces, std::size_t n, doub
   return true;
 }
 
-/// From x to a place where the n nearest surfaces are touched and none is overlapped; false when there is none near.
+/// Moves x to a place where the n nearest surfaces are touched and none is overlapped; false when there is none near.
 bool touch(const ClearanceField& field, Vec3& x, double r, std::size_t n) {
   std::vector<NearSurface> surfaces;
   Vec3 y = x;

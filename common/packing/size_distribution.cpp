@@ -70,11 +70,11 @@ double root_of_score(Score& s) {
 }  // namespace
 
 ExponentFit fit_exponent(const std::vector<double>& radii) {
-  if (radii.size() < 3) throw BadInput("exponent of a size distribution: fewer than three radii");
+  if (radii.size() < 3) throw InputError("exponent of a size distribution: fewer than three radii");
   const auto [low, high] = std::minmax_element(radii.begin(), radii.end());
   Score s;
   s.length = std::log(*high / *low);
-  if (!(s.length > 0.0)) throw BadInput("exponent of a size distribution: all radii are equal");
+  if (!(s.length > 0.0)) throw InputError("exponent of a size distribution: all radii are equal");
   for (const double r : radii) s.mean += std::log(r / *low) / static_cast<double>(radii.size());
   const double q = root_of_score(s);
   const double variance = log_moments(q, s.length).variance;

@@ -19,7 +19,7 @@ struct PowerLawRadii {
 };
 
 /// Maximum-likelihood exponent of radii, truncated at the smallest and largest of them, with its standard error
-/// (Fisher information). Throws BadInput with fewer than 3 different radii.
+/// (Fisher information). Throws InputError with fewer than 3 different radii.
 struct ExponentFit {
   double exponent = 0.0;
   double standard_error = 0.0;

@@ -74,7 +74,7 @@ class HoleSearch {
   }
 
  private:
-  static constexpr double kReach = 1.5;  ///< over the largest radius of interest: settling looks at neighbours that far
+  static constexpr double kReach = 1.5;  ///< reach over the largest radius of interest, which settling needs
   static constexpr int kMostParts = 48;  ///< per axis, at the start
   static constexpr int kMostLevels = 24;
 
@@ -144,17 +144,17 @@ double half_extent(const VoidDomain& domain) {
   return 0.5 * std::min({size[0], size[1], size[2]});
 }
 
-void require_sound(const VoidDomain& domain, double r_min, double r_max) {
-  if (!(half_extent(domain) > 0.0)) throw BadInput("filling of voids: the domain is empty");
-  if (!(r_min > 0.0)) throw BadInput("filling of voids: the smallest radius must be positive");
-  if (!(r_max >= r_min)) throw BadInput("filling of voids: the largest radius must not be below the smallest");
+void require_valid(const VoidDomain& domain, double r_min, double r_max) {
+  if (!(half_extent(domain) > 0.0)) throw InputError("filling of voids: the domain is empty");
+  if (!(r_min > 0.0)) throw InputError("filling of voids: the smallest radius must be positive");
+  if (!(r_max >= r_min)) throw InputError("filling of voids: the largest radius must not be below the smallest");
 }
 
 }  // namespace
 
 VoidFilling fill_voids(const std::vector<PackedSphere>& placed, const VoidDomain& domain,
                        const VoidFillingOptions& options) {
-  require_sound(domain, options.r_min, options.r_max);
+  require_valid(domain, options.r_min, options.r_max);
   VoidFilling out;
   double cap = std::min(options.r_max, half_extent(domain));
   if (cap < options.r_min) return out;
@@ -179,7 +179,7 @@ VoidFilling fill_voids(const std::vector<PackedSphere>& placed, const VoidDomain
 
 PackedSphere largest_void(const std::vector<PackedSphere>& placed, const VoidDomain& domain, double r_min,
                           double tolerance) {
-  require_sound(domain, r_min, std::numeric_limits<double>::infinity());
+  require_valid(domain, r_min, std::numeric_limits<double>::infinity());
   HoleSearch search(placed, domain, r_min, half_extent(domain), tolerance);
   return search.find(std::numeric_limits<double>::infinity()).value_or(PackedSphere{});
 }

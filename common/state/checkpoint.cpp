@@ -26,8 +26,8 @@ std::int64_t fingerprint(const std::string& text) {
 /// A file of another schema is refused as such even when this program cannot tell whether it is whole.
 void require_schema(const h5::Group& root, const std::string& path) {
   if (root.integer("schema") != kCheckpointSchema)
-    throw BadInput(path + ": checkpoint of schema " + std::to_string(root.integer("schema")) + ", this program reads " +
-                   std::to_string(kCheckpointSchema) + "; run without --resume");
+    throw InputError(path + ": checkpoint of schema " + std::to_string(root.integer("schema")) +
+                     ", this program reads " + std::to_string(kCheckpointSchema) + "; run without --resume");
 }
 
 /// Opens a file that was read to its end already. Throws DamagedCheckpoint.
@@ -35,15 +35,15 @@ h5::Group open_whole(const std::string& path) {
   try {
     h5::Group root = h5::open_file(path);
     if (root.has_attribute("kind") && root.text("kind") == kKind) return root;
-  } catch (const FileTrouble& e) {
+  } catch (const IoError& e) {
     throw DamagedCheckpoint(e.what());
   }
   throw DamagedCheckpoint(path + ": is not a checkpoint");
 }
 
-/// Opens a checkpoint of which every byte is as it was written. Throws FileTrouble when the disk does not give them,
+/// Opens a checkpoint of which every byte is as it was written. Throws IoError when the disk does not give them,
 /// and DamagedCheckpoint when they are others.
-h5::Group open_sound(const std::string& path) {
+h5::Group open_valid(const std::string& path) {
   const Seal seal = check_seal(path);
   if (seal == Seal::broken) throw DamagedCheckpoint(path + ": damaged, its checksum does not fit its content");
   h5::Group root = open_whole(path);
@@ -54,7 +54,7 @@ h5::Group open_sound(const std::string& path) {
 
 void require_match(const h5::Group& root, const std::string& path, const std::string& scene_text) {
   if (root.integer("fingerprint") != fingerprint(scene_text))
-    throw BadInput(
+    throw InputError(
         path +
         ": belongs to another scene (or other --set values, or another file that goes with the scene); run without "
         "--resume, or into another directory");
@@ -82,18 +82,18 @@ std::optional<h5::Group> open_checkpoint(const std::string& path, const std::str
     std::error_code ignored;
     if (!fs::exists(candidate, ignored)) continue;
     try {
-      h5::Group root = open_sound(candidate);
+      h5::Group root = open_valid(candidate);
       require_match(root, candidate, scene_text);
       if (!trouble.empty()) note = trouble + "; continuing from the checkpoint before it, " + candidate;
       return root;
-    } catch (const FileTrouble& e) {
+    } catch (const IoError& e) {
       damaged = damaged && dynamic_cast<const DamagedCheckpoint*>(&e) != nullptr;
       trouble += (trouble.empty() ? "" : "; ") + std::string(e.what());
     }
   }
   if (trouble.empty()) return std::nullopt;
   if (damaged) throw DamagedCheckpoint(trouble + "; no sound checkpoint is left");
-  throw FileTrouble(trouble + "; no checkpoint can be read");
+  throw IoError(trouble + "; no checkpoint can be read");
 }
 
 void remove_checkpoint(const std::string& path) {

@@ -12,9 +12,9 @@
 namespace softgrain {
 
 /// The disk gives every byte of a checkpoint, but not those that were written.
-class DamagedCheckpoint : public FileTrouble {
+class DamagedCheckpoint : public IoError {
  public:
-  using FileTrouble::FileTrouble;
+  using IoError::IoError;
 };
 
 /// Writes `path` (temporary file, flush, rename; the old one stays as path.previous), with schema and a fingerprint of
@@ -23,8 +23,8 @@ void write_checkpoint(const std::string& path, const std::string& scene_text,
                       const std::function<void(const h5::Group&)>& content);
 
 /// Opens the newest sound checkpoint for this scene: `path`, else path.previous (then `note` says so). Nothing when
-/// neither exists. Throws BadInput when it belongs to another scene or schema, DamagedCheckpoint when all
-/// copies are damaged, FileTrouble when one cannot be read.
+/// neither exists. Throws InputError when it belongs to another scene or schema, DamagedCheckpoint when all
+/// copies are damaged, IoError when one cannot be read.
 std::optional<h5::Group> open_checkpoint(const std::string& path, const std::string& scene_text, std::string& note);
 
 /// Removes the checkpoint and its previous copy after a run has ended well.

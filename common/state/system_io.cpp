@@ -31,7 +31,7 @@ void write_slots(const h5::Group& g, const std::string& name, const std::vector<
 }
 
 [[noreturn]] void damaged(const std::string& name) {
-  throw FileTrouble("saved state: '" + name + "' does not fit the rest of the file");
+  throw IoError("saved state: '" + name + "' does not fit the rest of the file");
 }
 
 std::vector<double> read_numbers(const h5::Group& g, const std::string& name, std::size_t size) {
@@ -196,7 +196,7 @@ void write_neighbours(const h5::Group& g, const NeighbourState<D>& n) {
   write_vectors(g, "reference_edges", rows(n.reference_edges));
   g.attribute("rebuilds", n.rebuilds);
   g.attribute("passes_at_build", n.passes_at_build);
-  g.attribute("hasty", n.hasty);
+  g.attribute("hasty", n.short_lived);
 }
 
 template <int D>
@@ -209,7 +209,7 @@ void read_neighbours(const h5::Group& g, NeighbourState<D>& n, std::size_t bodie
   n.reference_edges = read_matrix<D>(g, "reference_edges");
   n.rebuilds = g.integer("rebuilds");
   n.passes_at_build = g.integer("passes_at_build");
-  n.hasty = g.has_attribute("hasty") ? g.integer("hasty") : 0;
+  n.short_lived = g.has_attribute("hasty") ? g.integer("hasty") : 0;
 }
 
 template <int D>
@@ -232,9 +232,9 @@ void read_sections(const h5::Group& g, std::vector<ContactSection>& sections, Co
   Count end = 0;
   sections.clear();
   for (std::size_t k = 0; k < values.size(); k += 4) {
-    const bool sound = values[k] == end && values[k + 1] > end && values[k + 2] >= 0 && values[k + 2] < 3 &&
+    const bool valid = values[k] == end && values[k + 1] > end && values[k + 2] >= 0 && values[k + 2] < 3 &&
                        values[k + 3] >= 0 && values[k + 3] < laws;
-    if (!sound) damaged("sections");
+    if (!valid) damaged("sections");
     end = values[k + 1];
     sections.push_back({static_cast<std::int32_t>(values[k]), static_cast<std::int32_t>(end),
                         static_cast<Geometry>(values[k + 2]), static_cast<std::int32_t>(values[k + 3])});

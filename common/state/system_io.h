@@ -14,7 +14,7 @@ void write_system(const h5::Group& group, const System<D>& system);
 
 /// Restores what write_system wrote into a system that already has its materials and laws. The neighbour list is taken
 /// over as it was, so that later rebuilds fall on the same steps; constants of the pairs come from the laws. Needs no
-/// force pass before the next step. Throws FileTrouble.
+/// force pass before the next step. Throws IoError.
 template <int D>
 void read_system(const h5::Group& group, System<D>& system);
 

@@ -24,7 +24,7 @@ struct FrictionConstants {
   double twist = 0.0;            ///< k_t*/a^3 = 16/3 /(1/G_i + 1/G_j) [Pa]
   double friction = 0.0;         ///< mu
   bool fresh = false;            ///< apart in the reference state
-  double overlap0 = 0.0;         ///< of the reference state, negative when apart [m]
+  double overlap0 = 0.0;         ///< overlap in the reference state, negative when apart [m]
   double contact_radius0 = 0.0;  ///< a0 [m]
   double limit0 = 0.0;           ///< mu P0 [N]
   Vec3 tangential0{};            ///< Q0 [N]; above mu P0 where P fell in the increment that led here
@@ -102,7 +102,7 @@ struct TangentialForce {
   Vec3 force{};
   double work = 0.0;
   double limit = 0.0;      ///< Qmax
-  double stiffness = 0.0;  ///< in slip, lowered so that |Q| = Qmax
+  double stiffness = 0.0;  ///< secant stiffness, in slip lowered so that |Q| = Qmax
   double stick = 0.0;      ///< the stiffness without slip
   bool follows = false;    ///< |Q| is mu P of the state as it is
 };

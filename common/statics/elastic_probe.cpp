@@ -19,14 +19,14 @@ constexpr std::int64_t kLinearIterations = 20000;
 
 /// Widths of the box; throws when the walls are not six planes in the order -x +x -y +y -z +z.
 Vec3 box_of(const GrainPack& pack) {
-  if (pack.walls.size() != 6) throw BadInput("elastic probe: needs a box of six walls");
+  if (pack.walls.size() != 6) throw InputError("elastic probe: needs a box of six walls");
   Vec3 width;
   for (int k = 0; k < 3; ++k) {
     const PackWall& low = pack.walls[static_cast<std::size_t>(2 * k)];
     const PackWall& high = pack.walls[static_cast<std::size_t>(2 * k + 1)];
     width[k] = high.point[k] - low.point[k];
     if (!(low.normal[k] > 0.999 && high.normal[k] < -0.999 && width[k] > 0.0))
-      throw BadInput("elastic probe: walls come in the order -x +x -y +y -z +z");
+      throw InputError("elastic probe: walls come in the order -x +x -y +y -z +z");
   }
   return width;
 }
@@ -101,7 +101,7 @@ ElasticResponse elastic_probe(const GrainPack& pack, const LeastWorkOptions& opt
   ElasticResponse out;
   const Vec3 width = box_of(pack);
   if (std::any_of(pack.walls.begin(), pack.walls.end(), [](const PackWall& w) { return w.symmetry; }))
-    throw BadInput("elastic probe: not between symmetry planes");
+    throw InputError("elastic probe: not between symmetry planes");
   PackProblem problem(pack, std::vector<Vec3>(6), options.coulomb, options.torsion);
   const std::vector<LinkTangent> tangents = stuck_contacts(problem);
   statics::BlockJacobi inverse;

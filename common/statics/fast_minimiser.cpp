@@ -234,8 +234,8 @@ class Stepper {
 
 namespace {
 
-/// With strong friction (mu = 5) relaxing grains alone and mixing the steps of all can undo each other for ever, so the
-/// first pauses every now and then.
+/// Whether rattlers are relaxed one by one in this iteration. With strong friction (mu = 5) this and mixing the steps
+/// of all grains can undo each other for ever, so it pauses every now and then.
 bool rattlers_turn(std::int64_t iteration) {
   constexpr std::int64_t kTurn = 200;
   return iteration > 0 && (iteration / kTurn) % 2 == 0;

@@ -36,7 +36,7 @@ struct PackContact {
 };
 
 struct GrainPack {
-  std::vector<Vec3> position;  ///< of the centres [m]
+  std::vector<Vec3> position;  ///< centres of the grains [m]
   std::vector<double> radius;  ///< [m]
   std::vector<double> youngs_modulus;
   std::vector<double> poisson_ratio;
@@ -44,7 +44,7 @@ struct GrainPack {
   Vec3 gravity{};              ///< unit direction
   double friction = 0.0;       ///< between grains; infinity: contacts never slide
   std::vector<PackWall> walls;
-  std::vector<PackContact> contacts;  ///< of the reference state, sorted by (i, j)
+  std::vector<PackContact> contacts;  ///< contacts of the reference state, sorted by (i, j)
 
   [[nodiscard]] std::int32_t grains() const { return static_cast<std::int32_t>(position.size()); }
 };

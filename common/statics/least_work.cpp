@@ -21,7 +21,8 @@ void require_walls_apart(const GrainPack& pack, const std::vector<Vec3>& moves) 
       if (dot(n, pack.walls[b].normal) > -1.0 + 1e-9) continue;
       const Vec3 across = pack.walls[b].point + moves[b] - pack.walls[a].point - moves[a];
       if (!(dot(across, n) > 0.0))
-        throw NotUsable("least work: walls " + std::to_string(a) + " and " + std::to_string(b) + " pass each other");
+        throw UnusableResult("least work: walls " + std::to_string(a) + " and " + std::to_string(b) +
+                             " pass each other");
     }
 }
 
@@ -29,7 +30,7 @@ void require_inside(const std::vector<Vec3>& positions, const std::vector<Vec3>&
   for (std::size_t g = 0; g < positions.size(); ++g)
     for (std::size_t w = 0; w < wall_points.size(); ++w)
       if (dot(positions[g] - wall_points[w], pack.walls[w].normal) <= 0.0 && !statics::centred_on(pack, g, w))
-        throw NotUsable("least work: grain " + std::to_string(g) + " is beyond wall " + std::to_string(w));
+        throw UnusableResult("least work: grain " + std::to_string(g) + " is beyond wall " + std::to_string(w));
 }
 
 /// What symmetry planes take from the grains that they hold: the normal part of all other forces on them.
@@ -62,10 +63,10 @@ std::int64_t floppy_grains(const GrainPack& pack) {
 
 void check(const LeastWorkOptions& o) {
   if (o.refresh < 1 || o.sub_increment_interval < 1 || o.sub_increments < 1 || o.max_iterations < 0)
-    throw BadInput("least work: refresh, sub-increments and their interval are 1 or more, the cap 0 or more");
+    throw InputError("least work: refresh, sub-increments and their interval are 1 or more, the cap 0 or more");
   if (!(o.max_move > 0.0 && o.work_tolerance >= 0.0 && o.force_tolerance >= 0.0 && o.residual_tolerance > 0.0 &&
         o.force_floor >= 0.0))
-    throw BadInput("least work: the largest move and the residual tolerance are above 0, other tolerances 0 or more");
+    throw InputError("least work: the largest move and the residual tolerance are above 0, other tolerances 0 or more");
 }
 
 /// Makes theta the reference state.
@@ -82,7 +83,7 @@ void commit(GrainPack& pack, PackProblem& problem, const Unknowns& theta) {
 
 LeastWorkResult advance(GrainPack& pack, const std::vector<Vec3>& wall_moves, const LeastWorkOptions& options) {
   check(options);
-  if (wall_moves.size() != pack.walls.size()) throw BadInput("least work: one move per wall");
+  if (wall_moves.size() != pack.walls.size()) throw InputError("least work: one move per wall");
   require_walls_apart(pack, wall_moves);
   PackProblem problem(pack, wall_moves, options.coulomb, options.torsion);
   require_inside(pack.position, problem.wall_points(), pack);

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "common/core/words.h"
+#include "common/core/enum_names.h"
 #include "common/statics/grain_pack.h"
 
 namespace softgrain {
 
-/// Which normal force limits friction within an increment.
+/// Normal force that limits friction within an increment.
 ///
 /// The published rule [QS 2.1] need not have an equilibrium, for two reasons, so `reference` deviates from it twice,
 /// each time by as much as makes the tangential force continuous enough:
@@ -28,7 +28,7 @@ enum class CoulombRule {
 
 enum class LeastWorkMethod {
   published,  ///< nonlinear conjugate gradient (Fletcher-Reeves with refresh), bounded line search, wall sub-increments
-  fast        ///< the same equilibrium with fewer passes
+  fast        ///< finds the same equilibrium with fewer passes
 };
 
 struct LeastWorkOptions {
@@ -54,12 +54,13 @@ struct LeastWorkOptions {
 enum class LeastWorkEnd { work, force, residual, cap, no_descent, not_finite };
 
 template <>
-inline constexpr auto words<LeastWorkEnd> = word_list<LeastWorkEnd>({{LeastWorkEnd::work, "work"},
-                                                                     {LeastWorkEnd::force, "force"},
-                                                                     {LeastWorkEnd::residual, "residual"},
-                                                                     {LeastWorkEnd::cap, "cap"},
-                                                                     {LeastWorkEnd::no_descent, "no descent"},
-                                                                     {LeastWorkEnd::not_finite, "not finite"}});
+inline constexpr auto enum_names<LeastWorkEnd> = enum_name_list<LeastWorkEnd>({{LeastWorkEnd::work, "work"},
+                                                                               {LeastWorkEnd::force, "force"},
+                                                                               {LeastWorkEnd::residual, "residual"},
+                                                                               {LeastWorkEnd::cap, "cap"},
+                                                                               {LeastWorkEnd::no_descent, "no descent"},
+                                                                               {LeastWorkEnd::not_finite,
+                                                                                "not finite"}});
 
 struct LeastWorkResult {
   bool converged = false;
@@ -67,8 +68,8 @@ struct LeastWorkResult {
   std::int64_t iterations = 0;
   std::int64_t loop_passes = 0;  ///< evaluations of all contacts
   std::int64_t contact_evaluations = 0;
-  std::int64_t factorisations = 0;     ///< of the preconditioner: all grains' own stiffness
-  std::int64_t linear_iterations = 0;  ///< of inner linear solves
+  std::int64_t factorisations = 0;     ///< factorisations of the preconditioner: all grains' own stiffness
+  std::int64_t linear_iterations = 0;  ///< iterations of inner linear solves
   double worst_residual = 0.0;         ///< largest over grains: net force (or moment/R) over its largest contact force
   double residual_energy = 0.0;        ///< |grad|^2 [N^2]
   double work = 0.0;                   ///< Pi of the increment [J]
@@ -77,7 +78,7 @@ struct LeastWorkResult {
 
 /// Moves every wall by its entry of `wall_moves` [m], finds the equilibrium of all grains, and makes it the reference
 /// state. When it does not converge the pack is left as it was. Deterministic for any number of threads.
-/// Throws NotUsable when walls pass each other or a grain leaves the pack.
+/// Throws UnusableResult when walls pass each other or a grain leaves the pack.
 LeastWorkResult advance(GrainPack& pack, const std::vector<Vec3>& wall_moves, const LeastWorkOptions& options);
 
 /// Contacts from geometry alone, without tangential forces (after placing or resizing grains): finds all overlaps,
@@ -93,7 +94,7 @@ struct ElasticResponse {
   std::int64_t linear_iterations = 0;
   bool solved = false;
   [[nodiscard]] double bulk_modulus() const;   ///< sum of all entries / 9
-  [[nodiscard]] double shear_modulus() const;  ///< from the three uniaxial probes: (mean C_aa - mean C_ab)/2
+  [[nodiscard]] double shear_modulus() const;  ///< (mean C_aa - mean C_ab)/2 from the three uniaxial probes
 };
 ElasticResponse elastic_probe(const GrainPack& pack, const LeastWorkOptions& options);
 

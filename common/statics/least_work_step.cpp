@@ -187,7 +187,7 @@ RelaxationResult LeastWorkStep::advance(System3& s, Moves& moves) {
   RelaxationResult result;
   try {
     result = minimise(s);
-  } catch (const NotUsable&) {  // a try that throws a grain out of its shell is a try that failed, no more
+  } catch (const UnusableResult&) {  // a try that throws a grain out of its shell is a try that failed, no more
     result.end = RelaxationEnd::diverged;
   }
   result.passes = passes_;

@@ -57,13 +57,13 @@ class LeastWorkStep {
   std::vector<double> inverse_rotation_;
   Moves origin_;                                   ///< positions of the reference state
   std::vector<Stored<3>> velocity_, rate_;         ///< its velocities and spins
-  Moves shift_, turn_;                             ///< since the reference state
-  Moves direction_, spin_;                         ///< of the search
-  std::vector<Stored<3>> old_force_, old_torque_;  ///< at the last iterate
-  Moves base_shift_, base_turn_;                   ///< where the line search starts
+  Moves shift_, turn_;                             ///< displacements and rotations since the reference state
+  Moves direction_, spin_;                         ///< search direction
+  std::vector<Stored<3>> old_force_, old_torque_;  ///< forces and torques at the last iterate
+  Moves base_shift_, base_turn_;                   ///< displacements and rotations where the line search starts
   double old_product_ = 0.0;                       ///< preconditioned residual product at the last iterate
   double slope_ = 0.0;                             ///< residual . direction where the line search starts
-  double step_ = 1.0;                              ///< that served last
+  double step_ = 1.0;                              ///< step that served last
 };
 
 }  // namespace softgrain

@@ -90,7 +90,7 @@ void index_by_grain(Links& links, std::size_t grains) {
 }
 
 void require(bool good, const char* what) {
-  if (!good) throw BadInput(what);
+  if (!good) throw InputError(what);
 }
 
 bool in_range(double youngs_modulus, double nu) { return youngs_modulus > 0.0 && is_poisson_ratio(nu); }

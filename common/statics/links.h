@@ -28,8 +28,8 @@ struct Links {
 /// Whether any contact of the pack can carry a tangential force.
 bool has_friction(const GrainPack& pack);
 
-/// Searches pairs at `positions`; the reference state comes from the contacts of `pack`. Throws BadInput for arrays of
-/// different length and values outside their range.
+/// Searches pairs at `positions`; the reference state comes from the contacts of `pack`. Throws InputError for arrays
+/// of different length and values outside their range.
 Links find_links(const GrainPack& pack, const std::vector<Vec3>& positions, const std::vector<Vec3>& wall_points);
 
 /// True while no pair outside the list can have come into contact.

@@ -8,7 +8,7 @@ namespace softgrain::statics {
 /// Forces and lengths that a minimiser measures with.
 struct Scales {
   double energy = 0.0;       ///< mean E times mean R^2 [N]
-  double floor_force = 0.0;  ///< of worst_residual [N]
+  double floor_force = 0.0;  ///< floor_force of worst_residual [N]
 };
 Scales scales_of(const GrainPack& pack, const LeastWorkOptions& options);
 

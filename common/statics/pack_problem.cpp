@@ -11,7 +11,7 @@ namespace softgrain::statics {
 
 namespace {
 
-/// Below this many links one thread is faster than two.
+/// Number of links below which one thread is faster than two.
 constexpr std::int32_t kParallelLinks = 16000;
 constexpr std::int32_t kChunk = 1024;
 
@@ -19,12 +19,12 @@ std::size_t slot(std::int32_t k) { return static_cast<std::size_t>(k); }
 
 /// What a link does to its grains.
 struct LinkForce {
-  Vec3 force{};        ///< on i
+  Vec3 force{};        ///< force on i
   Vec3 roll{};         ///< n x Q
   Vec3 twist{};        ///< M n [N m]
-  double arm_i = 0.0;  ///< over R_i
+  double arm_i = 0.0;  ///< arm over R_i
   double arm_j = 0.0;
-  double size2 = 0.0;  ///< of the contact force; 0: apart
+  double size2 = 0.0;  ///< square of the contact force; 0: apart
   double normal = 0.0;
   double work = 0.0;
 };
@@ -172,7 +172,7 @@ Sums scatter(const View& v, std::size_t begin, std::size_t end, PackForces& out)
   return sums;
 }
 
-/// The same sums in the same order: all links first, then every grain gathers its own.
+/// Computes the sums of scatter() in the same order: all links first, then every grain gathers its own.
 template <class Law>
 void gather_all(const View& v, std::vector<Sums>& sums, PackForces& out) {
   const auto links = static_cast<std::size_t>(v.links.size());
@@ -220,7 +220,7 @@ PackProblem::PackProblem(const GrainPack& pack, std::vector<Vec3> wall_moves, Co
       torsion_(torsion),
       friction_(has_friction(pack)),
       symmetry_(pack) {
-  if (wall_moves_.size() != pack.walls.size()) throw BadInput("pack: one move per wall");
+  if (wall_moves_.size() != pack.walls.size()) throw InputError("pack: one move per wall");
   set_walls(0.0);
   links_ = find_links(pack_, pack_.position, wall_points_);
 }

@@ -30,11 +30,11 @@ struct LinkTangent {
   Vec3 normal{};
   double normal_stiffness = 0.0;  ///< dP/dh [N/m]
   double tangential = 0.0;        ///< [N/m]
-  double stick = 0.0;             ///< the same if the contact did not slide
+  double stick = 0.0;             ///< tangential stiffness if the contact did not slide [N/m]
   Vec3 slip{};                    ///< Q/|Q| where |Q| follows mu P, else 0
   double drag = 0.0;              ///< mu dP/dh there, else 0 [N/m]
-  double arm_i = 0.0;             ///< over R_i
-  double arm_j = 0.0;             ///< over R_j; 0 for walls
+  double arm_i = 0.0;             ///< arm over R_i
+  double arm_j = 0.0;             ///< arm over R_j; 0 for walls
   double curvature_i = 0.0;       ///< 1/R_i
   double curvature_j = 0.0;       ///< 1/R_j; 0 for walls
   double twist = 0.0;             ///< k_t [N m]
@@ -43,10 +43,10 @@ struct LinkTangent {
 
 /// Forces on one grain, and its closed contacts linearised.
 struct GrainForces {
-  Unknowns force;         ///< as in PackForces, of this grain
+  Unknowns force;         ///< force of this grain, as in PackForces
   double largest2 = 0.0;  ///< square of its largest contact force [N^2]
   std::vector<std::size_t> links;
-  std::vector<LinkTangent> tangents;  ///< of `links`
+  std::vector<LinkTangent> tangents;  ///< linearised contacts of `links`
 };
 
 class PackProblem {

@@ -12,7 +12,7 @@ namespace softgrain::statics {
 
 namespace {
 
-/// Below this many links one thread is faster than two.
+/// Number of links below which one thread is faster than two.
 constexpr std::int32_t kParallelBlocks = 8000;
 
 /// What a link answers to a displacement of its grains: minus the change of the force on i, and of the moments.
@@ -81,7 +81,7 @@ void scatter(const PackProblem& problem, const std::vector<LinkTangent>& tangent
   }
 }
 
-/// The same sums in the same order.
+/// Computes the sums of scatter() in the same order.
 template <int kStride, Sliding kSliding>
 void gather(const PackProblem& problem, const std::vector<LinkTangent>& tangents, const Unknowns& in, Unknowns& out) {
   const Links& links = problem.links();
@@ -160,7 +160,7 @@ void add_link(const LinkTangent& t, double arm, double twist, Block<kWidth>& out
   }
 }
 
-/// The same for grain i (`first`) or j of a link.
+/// Adds the stiffness of a link to the block of its grain i (`first`) or j.
 template <int kWidth>
 void add_to_block(const LinkTangent& t, bool first, Block<kWidth>& out) {
   const double curvature = first ? t.curvature_i : t.curvature_j;

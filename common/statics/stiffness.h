@@ -33,7 +33,7 @@ class BlockJacobi {
   /// out = inverse * in
   void apply(const Unknowns& in, Unknowns& out) const;
 
-  /// Per unknown, the largest diagonal entry of its grain's own stiffness [N/m].
+  /// Largest diagonal entry of its grain's own stiffness, per unknown [N/m].
   [[nodiscard]] Unknowns stiffness() const;
   /// out += share * (largest diagonal entry of the grain's own stiffness) * in
   void add_diagonal(const Unknowns& in, double share, Unknowns& out) const;

@@ -25,12 +25,12 @@ bool centred_on(const GrainPack& pack, std::size_t g, std::size_t w) {
 SymmetryPlanes::SymmetryPlanes(const GrainPack& pack) {
   for (const PackWall& w : pack.walls) normal_.push_back(w.normal);
   for (std::size_t g = 0; g < pack.position.size(); ++g) {
-    Held held{g, {}};
+    HeldGrain held{g, {}};
     for (std::size_t w = 0; w < pack.walls.size(); ++w) {
       if (!centred_on(pack, g, w)) continue;
       for (const std::size_t other : held.walls)
         if (std::abs(softgrain::dot(normal_[other], normal_[w])) > 1e-9)
-          throw BadInput("pack: symmetry planes that share a grain are at right angles");
+          throw InputError("pack: symmetry planes that share a grain are at right angles");
       held.walls.push_back(w);
     }
     if (!held.walls.empty()) held_.push_back(std::move(held));
@@ -38,7 +38,7 @@ SymmetryPlanes::SymmetryPlanes(const GrainPack& pack) {
 }
 
 void SymmetryPlanes::project(Unknowns& v, int stride) const {
-  for (const Held& held : held_) {
+  for (const HeldGrain& held : held_) {
     const std::size_t at = held.grain * static_cast<std::size_t>(stride);
     Vec3 move = triple(v, at);
     for (const std::size_t w : held.walls) move -= normal_[w] * softgrain::dot(normal_[w], move);
@@ -50,7 +50,7 @@ void SymmetryPlanes::project(Unknowns& v, int stride) const {
 }
 
 void SymmetryPlanes::carry(Unknowns& displacement, int stride, const std::vector<Vec3>& wall_moves, double part) const {
-  for (const Held& held : held_) {
+  for (const HeldGrain& held : held_) {
     const std::size_t at = held.grain * static_cast<std::size_t>(stride);
     Vec3 move = triple(displacement, at);
     for (const std::size_t w : held.walls) move += normal_[w] * softgrain::dot(normal_[w], wall_moves[w] * part - move);

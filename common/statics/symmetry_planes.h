@@ -18,7 +18,7 @@ bool centred_on(const GrainPack& pack, std::size_t g, std::size_t w);
 class SymmetryPlanes {
  public:
   SymmetryPlanes() = default;
-  /// Throws BadInput when planes that share a grain are not at right angles (projections would not commute).
+  /// Throws InputError when planes that share a grain are not at right angles (projections would not commute).
   explicit SymmetryPlanes(const GrainPack& pack);
 
   [[nodiscard]] bool empty() const { return held_.empty(); }
@@ -28,12 +28,12 @@ class SymmetryPlanes {
   void carry(Unknowns& displacement, int stride, const std::vector<Vec3>& wall_moves, double part) const;
 
  private:
-  struct Held {
+  struct HeldGrain {
     std::size_t grain;
     std::vector<std::size_t> walls;
   };
-  std::vector<Held> held_;
-  std::vector<Vec3> normal_;  ///< of the walls
+  std::vector<HeldGrain> held_;
+  std::vector<Vec3> normal_;  ///< normals of the walls
 };
 
 }  // namespace softgrain::statics

@@ -46,7 +46,7 @@ using LinearMap = std::function<void(const Unknowns& in, Unknowns& out)>;
 
 struct KrylovResult {
   std::int64_t iterations = 0;
-  double reduction = 1.0;   ///< of the residual norm
+  double reduction = 1.0;   ///< residual norm at the end over that at the start
   bool indefinite = false;  ///< conjugate gradient met a direction without stiffness and stopped before it
 };
 

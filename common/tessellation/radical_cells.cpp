@@ -19,7 +19,7 @@ namespace {
 constexpr double kCoincident = 1e-9;
 constexpr double kSmallestFace = 1e-10;  ///< squared spacings
 constexpr double kSideMismatch = 1e-7;   ///< squared spacings: areas of the two sides of a face, faces seen once
-/// Of fractional coordinates, and of the sum of volumes.
+/// Tolerances of fractional coordinates, and of the sum of volumes.
 constexpr double kOutside = 1e-9;
 constexpr double kVolumeMismatch = 1e-9;
 
@@ -48,7 +48,7 @@ struct Room {
 struct Candidate {
   std::int32_t j = 0;
   Steps steps{};
-  Vec3 separation;     ///< from the site
+  Vec3 separation;     ///< vector from the site
   double plane = 0.0;  ///< distance of the radical plane from the site along `separation`
 };
 
@@ -135,16 +135,16 @@ struct HalfFace {
   std::int32_t j = 0;
   int image = 0;
   double area = 0.0;
-  Vec3 centroid;  ///< from the site
+  Vec3 centroid;  ///< centroid relative to the site
   Vec3 separation;
 };
 
-enum class Trouble { none, coincident, far_image, open };
+enum class CellFault { none, coincident, far_image, open };
 
 struct OneCell {
   double volume = 0.0;
   std::vector<HalfFace> halves;
-  Trouble trouble = Trouble::none;
+  CellFault fault = CellFault::none;
   std::int32_t with = 0;
 };
 
@@ -173,7 +173,7 @@ class Cutter {
         return a.plane != b.plane ? a.plane < b.plane : (a.j != b.j ? a.j < b.j : a.steps < b.steps);
       });
       for (const Candidate& c : found_) {
-        if (c.plane == kTogether) return {0.0, {}, Trouble::coincident, c.j};
+        if (c.plane == kTogether) return {0.0, {}, CellFault::coincident, c.j};
         if (c.plane > radius) break;
         if (!cut(c)) return out;
       }
@@ -216,7 +216,7 @@ class Cutter {
       at += n + 1;
       if (half.area < kSmallestFace * spacing_ * spacing_) continue;
       if (id <= 0) {  // voro++ names the faces that it began with -1 to -6
-        if (room_.periodic) out.trouble = Trouble::open;
+        if (room_.periodic) out.fault = CellFault::open;
         half.j = id;
       } else {
         const Candidate& c = tried_[static_cast<std::size_t>(id) - 1];
@@ -224,7 +224,7 @@ class Cutter {
         half.separation = c.separation;
         for (int k = 2; k >= 0; --k) {
           if (std::abs(c.steps[static_cast<std::size_t>(k)]) > 1) {
-            out.trouble = Trouble::far_image;
+            out.fault = CellFault::far_image;
             out.with = c.j;
           }
           half.image = 3 * half.image + c.steps[static_cast<std::size_t>(k)] + 1;
@@ -274,33 +274,33 @@ class Cutter {
 };
 
 void require_sites(const std::vector<Sphere<3>>& sites, const Room& room) {
-  if (sites.empty()) throw BadInput("cells: no sites");
+  if (sites.empty()) throw InputError("cells: no sites");
   const double volume = room.cell.volume();
   if (!(volume > 0.0) || !std::isfinite(volume))
-    throw BadInput(fmt::format("cells: a room of volume {} m^3; it must be above 0", volume));
+    throw InputError(fmt::format("cells: a room of volume {} m^3; it must be above 0", volume));
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const auto& [x, r] = sites[i];
     if (!std::isfinite(r) || r < 0.0 || !std::isfinite(norm2(x)))
-      throw BadInput(
+      throw InputError(
           fmt::format("cells: site {} at ({}, {}, {}) with radius {}: numbers, and radii from 0 on, are needed", i,
                       x[0], x[1], x[2], r));
     const Vec3 s = room.cell.fractional(x - room.origin);
     for (int k = 0; k < 3; ++k)
       if (s[k] < -kOutside || s[k] > 1.0 + kOutside)
-        throw BadInput(fmt::format("cells: site {} lies outside the {} along axis {} (at {} of its length)", i,
-                                   room.periodic ? "periodic cell" : "box", k, s[k]));
+        throw InputError(fmt::format("cells: site {} lies outside the {} along axis {} (at {} of its length)", i,
+                                     room.periodic ? "periodic cell" : "box", k, s[k]));
   }
 }
 
-void require_sound(const OneCell& cell, std::size_t i) {
-  if (cell.trouble == Trouble::coincident)
-    throw BadInput(fmt::format("cells: sites {} and {} are at the same place", i, cell.with));
-  if (cell.trouble == Trouble::far_image)
-    throw NotUsable(
+void require_valid(const OneCell& cell, std::size_t i) {
+  if (cell.fault == CellFault::coincident)
+    throw InputError(fmt::format("cells: sites {} and {} are at the same place", i, cell.with));
+  if (cell.fault == CellFault::far_image)
+    throw UnusableResult(
         fmt::format("cells: site {} meets an image of site {} beyond the neighbouring ones: too few sites for a cell "
                     "of this shape",
                     i, cell.with));
-  if (cell.trouble == Trouble::open) throw NotUsable(fmt::format("cells: the cell of site {} does not close", i));
+  if (cell.fault == CellFault::open) throw UnusableResult(fmt::format("cells: the cell of site {} does not close", i));
 }
 
 const HalfFace* find(const OneCell& cell, std::int32_t j, int image) {
@@ -317,7 +317,7 @@ RadicalCells join(const std::vector<Sphere<3>>& sites, const std::vector<OneCell
   const double allowed = kSideMismatch * spacing * spacing;
   double total = 0.0;
   for (std::size_t u = 0; u < cells.size(); ++u) {
-    require_sound(cells[u], u);
+    require_valid(cells[u], u);
     total += cells[u].volume;
     out.volume.push_back(cells[u].volume);
     const auto i = static_cast<std::int32_t>(u);
@@ -331,7 +331,7 @@ RadicalCells join(const std::vector<Sphere<3>>& sites, const std::vector<OneCell
       const bool first = i != half.j ? i < half.j : half.image > home_image<3>();
       const HalfFace* other = find(cells[static_cast<std::size_t>(half.j)], i, image_count<3>() - 1 - half.image);
       if (std::abs(half.area - (other != nullptr ? other->area : 0.0)) > allowed)
-        throw NotUsable(fmt::format("cells: sites {} and {} do not agree about their face", i, half.j));
+        throw UnusableResult(fmt::format("cells: sites {} and {} do not agree about their face", i, half.j));
       if (first)
         out.faces.push_back({i, half.j, half.image, half.area, norm(half.separation), centroid, half.separation});
     }
@@ -341,7 +341,7 @@ RadicalCells join(const std::vector<Sphere<3>>& sites, const std::vector<OneCell
   });
   const double volume = room.cell.volume();
   if (!(std::abs(total - volume) <= kVolumeMismatch * volume))
-    throw NotUsable(fmt::format("cells: their volumes add up to {} of the room", total / volume));
+    throw UnusableResult(fmt::format("cells: their volumes add up to {} of the room", total / volume));
   return out;
 }
 
@@ -364,7 +364,7 @@ RadicalCells radical_cells_in(const std::vector<Sphere<3>>& sites, const Room& r
 
 RadicalCells radical_cells(const std::vector<Sphere<3>>& sites, const Cell<3>& cell) {
   if (!(cell.periodic[0] && cell.periodic[1] && cell.periodic[2]))
-    throw BadInput("cells: the cell must be periodic along every axis (or else be given as a box of planes)");
+    throw InputError("cells: the cell must be periodic along every axis (or else be given as a box of planes)");
   return radical_cells_in(sites, {Vec3{}, cell, true});
 }
 

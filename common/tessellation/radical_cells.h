@@ -15,7 +15,7 @@ namespace softgrain {
 struct CellFace {
   std::int32_t i = 0;
   std::int32_t j = 0;  ///< i < j; or i = j, then image > home_image<3>()
-  int image = 0;       ///< of j as i sees it, numbered as in Cell::image_shift
+  int image = 0;       ///< periodic image of j as i sees it, numbered as in Cell::image_shift
   double area = 0.0;   ///< [m^2]
   double distance = 0.0;
   Vec3 centroid;    ///< beside x_i, as i sees the face; beside x_j it lies at centroid - Cell::image_shift(image)
@@ -35,7 +35,7 @@ struct WallFace {
 };
 
 struct RadicalCells {
-  std::vector<double> volume;      ///< of each site [m^3]; 0 where larger neighbours leave it nothing (it has no faces)
+  std::vector<double> volume;      ///< volume of each cell [m^3]; 0 where larger neighbours leave it nothing (no faces)
   std::vector<CellFace> faces;     ///< ordered by (i, j, image)
   std::vector<WallFace> at_walls;  ///< ordered by (site, plane); empty in a periodic cell
 };
@@ -51,13 +51,13 @@ struct PlaneBox {
 /// Cells in a cell that is periodic along every axis; centres lie within it (fractional coordinates in [0, 1], up to
 /// 1e-9). Faces of less than 1e-10 of the squared spacing (V/N)^(2/3) are left out. The same bits for any number of
 /// threads.
-/// Throws BadInput for no sites, values that are not finite, radii below 0, centres outside, centres closer than 1e-9
-/// spacings, a cell without volume or with an open axis; NotUsable where a cell sees an image beyond the neighbouring
-/// ones (few sites in a strongly sheared or very flat cell), and where the volumes do not add up to the cell within
-/// 1e-9, or the two sides of a face do not agree.
+/// Throws InputError for no sites, values that are not finite, radii below 0, centres outside, centres closer than 1e-9
+/// spacings, a cell without volume or with an open axis; UnusableResult where a cell sees an image beyond the
+/// neighbouring ones (few sites in a strongly sheared or very flat cell), and where the volumes do not add up to the
+/// cell within 1e-9, or the two sides of a face do not agree.
 RadicalCells radical_cells(const std::vector<Sphere<3>>& sites, const Cell<3>& cell);
 
-/// The same between planes.
+/// Radical cells between planes, otherwise as in a periodic cell.
 RadicalCells radical_cells(const std::vector<Sphere<3>>& sites, const PlaneBox& box);
 
 }  // namespace softgrain

@@ -94,7 +94,7 @@ class CellPacking::Axes {
   void hold(Vec3& a) const {
     const double mean = (a[0] + a[1] + a[2]) / 3.0;
     for (int k = 0; k < 3; ++k)
-      a[k] = !control_.by_stress[static_cast<std::size_t>(k)] ? 0.0 : control_.alike ? mean : a[k];
+      a[k] = !control_.by_stress[static_cast<std::size_t>(k)] ? 0.0 : control_.isotropic ? mean : a[k];
   }
 
   BoxControl control_;

@@ -122,15 +122,15 @@ std::array<double, 6> wall_loads(const RadicalCells& cells, const std::vector<Ce
   return out;
 }
 
-void require_sound(const CellLaw& law, const std::vector<CellContent>& content, std::size_t sites) {
-  require_sound(law.equation, law.guard);
+void require_valid(const CellLaw& law, const std::vector<CellContent>& content, std::size_t sites) {
+  require_valid(law.equation, law.guard);
   const auto& f = law.friction;
   if (!(f.coefficient >= 0.0 && f.stiffness >= 0.0) || !std::isfinite(f.coefficient) || !std::isfinite(f.stiffness))
-    throw BadInput("cells: friction and stiffness of faces are numbers from 0 on");
-  if (content.size() != sites) throw BadInput(fmt::format("cells: {} contents for {} sites", content.size(), sites));
+    throw InputError("cells: friction and stiffness of faces are numbers from 0 on");
+  if (content.size() != sites) throw InputError(fmt::format("cells: {} contents for {} sites", content.size(), sites));
   for (std::size_t i = 0; i < content.size(); ++i)
     if (!(content[i].solid > 0.0 && content[i].pores > 0.0) || !std::isfinite(content[i].solid + content[i].pores))
-      throw BadInput(fmt::format(
+      throw InputError(fmt::format(
           "cells: cell {} holds {} m^3 of solid and {} m^3 of pores where pressure begins; both must be above 0", i,
           content[i].solid, content[i].pores));
 }

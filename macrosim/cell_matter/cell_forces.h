@@ -38,15 +38,15 @@ struct FaceSlopes {
 struct CellForces {
   std::vector<CellResponse> response;
   std::vector<FaceSpring> springs;  ///< trial springs of the faces, in their order
-  std::vector<Vec3> force;          ///< [N]
-  std::vector<double> mass;         ///< of relaxations: half the sum of a row of the stiffness matrix [N/m]
-  Matrix<3> stress;                 ///< of a periodic cell; between planes see wall_loads [Pa]
-  double energy = 0.0;              ///< of the cells [J]
-  double spring_energy = 0.0;       ///< [J]
+  std::vector<Vec3> force;          ///< net forces on the sites [N]
+  std::vector<double> mass;         ///< masses in relaxations: half the sum of a row of the stiffness matrix [N/m]
+  Matrix<3> stress;                 ///< stress of a periodic cell [Pa]; between planes see wall_loads()
+  double energy = 0.0;              ///< energy of the cells [J]
+  double spring_energy = 0.0;       ///< energy of the springs [J]
   double mean_load = 0.0;           ///< mean of p A over the faces [N]
-  double largest_force = 0.0;       ///< [N]
-  int guarded = 0;  ///< cells that only the guard keeps from collapse: beyond what the law was measured for
-  int sliding = 0;  ///< faces at the Coulomb limit
+  double largest_force = 0.0;       ///< largest net force on a site [N]
+  int guarded = 0;  ///< number of cells that only the guard keeps from collapse: beyond what the law was measured for
+  int sliding = 0;  ///< number of faces at the Coulomb limit
 
   /// Largest net force over the mean load of a face; 0 where nothing bears.
   [[nodiscard]] double residual() const { return mean_load > 0.0 ? largest_force / mean_load : 0.0; }
@@ -54,20 +54,21 @@ struct CellForces {
   [[nodiscard]] bool possible() const;
 };
 
-/// `volume` of the room, `keys` of the faces as springs remember them.
+/// Forces, stress and energies of one state. `volume`: of the room; `keys`: of the faces, as springs remember them.
 CellForces cell_forces(const CellLaw& law, const std::vector<CellContent>& content, const std::vector<Sphere<3>>& sites,
                        const RadicalCells& cells, double volume, const std::vector<FaceKey>& keys,
                        const FaceSprings& springs);
 
 /// Keys of faces whose sites stay at one image (between planes, or where nobody moves far).
 std::vector<FaceKey> face_keys(const RadicalCells& cells);
-/// The same where site i has been moved back by periods[i] periods.
+/// Keys of faces where site i has been moved back by periods[i] periods.
 std::vector<FaceKey> face_keys(const RadicalCells& cells, const std::vector<std::array<std::int32_t, 3>>& periods);
 
 /// Outward force on each of the six planes: the sum of p_i A over the cells at it. No excess pores beside a wall.
 std::array<double, 6> wall_loads(const RadicalCells& cells, const std::vector<CellResponse>& response);
 
-/// Throws BadInput for what no state can be made of, with the cell: contents without pores or solid, sizes that differ.
-void require_sound(const CellLaw& law, const std::vector<CellContent>& content, std::size_t sites);
+/// Throws InputError for what no state can be made of, with the cell: contents without pores or solid, sizes that
+/// differ.
+void require_valid(const CellLaw& law, const std::vector<CellContent>& content, std::size_t sites);
 
 }  // namespace softgrain

@@ -26,14 +26,14 @@ CellRoom room_of(const CellState& state, bool periodic) {
 CellPacking::CellPacking(CellLaw law, const std::vector<Sphere<3>>& sites, std::vector<CellContent> content,
                          const CellRoom& room)
     : law_(std::move(law)), sites_(sites), content_(std::move(content)), room_(room), periods_(sites.size()) {
-  require_sound(law_, content_, sites_.size());
+  require_valid(law_, content_, sites_.size());
   room_.bring_home(sites_, periods_);
-  if (!room_.holds(sites_)) throw BadInput("cells: a site lies outside the planes");
+  if (!room_.holds(sites_)) throw InputError("cells: a site lies outside the planes");
   if (!evaluate())
     for (std::size_t i = 0; i < sites_.size(); ++i)
       if (!(cells_.volume[i] > content_[i].solid))
-        throw BadInput(fmt::format("cells: cell {} has a volume of {:.4g} m^3 and holds {:.4g} m^3 of solid", i,
-                                   cells_.volume[i], content_[i].solid));
+        throw InputError(fmt::format("cells: cell {} has a volume of {:.4g} m^3 and holds {:.4g} m^3 of solid", i,
+                                     cells_.volume[i], content_[i].solid));
   springs_.keep(forces_.springs);
 }
 
@@ -43,10 +43,10 @@ CellPacking::CellPacking(CellLaw law, const CellState& state, bool periodic)
       content_(state.content),
       room_(room_of(state, periodic)),
       periods_(state.periods) {
-  require_sound(law_, content_, sites_.size());
-  if (periods_.size() != sites_.size()) throw FileTrouble("cells: periods of other sites");
+  require_valid(law_, content_, sites_.size());
+  if (periods_.size() != sites_.size()) throw IoError("cells: periods of other sites");
   springs_.keep(state.springs);
-  if (!room_.holds(sites_) || !evaluate()) throw FileTrouble("cells: a state that cannot be");
+  if (!room_.holds(sites_) || !evaluate()) throw IoError("cells: a state that cannot be");
 }
 
 CellState CellPacking::state() const {
@@ -75,7 +75,7 @@ Matrix<3> CellPacking::stress() const {
   return out;
 }
 
-/// The room and its sites.
+/// Stretches the room and moves its sites along affinely.
 void CellPacking::stretch(const Vec3& factor) {
   const Vec3 c = room_.centre();
   room_.stretch(factor);
@@ -85,7 +85,8 @@ void CellPacking::stretch(const Vec3& factor) {
 
 namespace {
 
-/// Of the relaxations of the parts of a strain the one that ended farthest from rest, with the passes of all.
+/// Adds the relaxation of one part of a strain to `all`: the one that ended farthest from rest is kept, with the passes
+/// of all parts.
 void add_part(const RelaxationResult& part, RelaxationResult& all) {
   const std::int64_t passes = all.passes + part.passes;
   if (all.end == RelaxationEnd::not_run || farther_from_rest(part, all)) all = part;
@@ -94,11 +95,12 @@ void add_part(const RelaxationResult& part, RelaxationResult& all) {
 
 }  // namespace
 
-/// The affine part of a strain, then to rest; where that leaves a cell without pores, in parts.
+/// Applies the affine part of a strain, then relaxes. Where this leaves a cell without pores, the strain is applied in
+/// parts.
 CellPoint CellPacking::step(const Vec3& factor, const BoxControl* control, const CellRelaxation& options) {
   for (int k = 0; k < 3; ++k)
     if (!(factor[k] > 0.0) || !std::isfinite(factor[k]))
-      throw BadInput(fmt::format("cells: axis {} stretched by a factor of {}; it must be above 0", k, factor[k]));
+      throw InputError(fmt::format("cells: axis {} stretched by a factor of {}; it must be above 0", k, factor[k]));
   const CellPacking before = *this;
   tessellations_ = faces_ = 0;
   RelaxationResult end;
@@ -117,7 +119,7 @@ CellPoint CellPacking::step(const Vec3& factor, const BoxControl* control, const
       left *= 2;
       if (parts > kMostParts) {
         *this = before;
-        throw NotUsable("cells: even a small part of this strain leaves a cell without pores");
+        throw UnusableResult("cells: even a small part of this strain leaves a cell without pores");
       }
       continue;
     }

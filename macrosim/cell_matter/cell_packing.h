@@ -15,20 +15,20 @@ namespace softgrain {
 
 struct CellRelaxation {
   double tolerance = 1e-3;         ///< largest net force over the mean load of a face
-  double largest_move = 0.05;      ///< of a site in one pass, over the spacing (V/N)^(1/3)
-  std::int64_t max_passes = 2000;  ///< each is a tessellation
-  bool by_tangent = true;          ///< false: by Fire alone, the slow reference
+  double largest_move = 0.05;      ///< largest move of a site in one pass, over the spacing (V/N)^(1/3)
+  std::int64_t max_passes = 2000;  ///< largest number of passes; each is a tessellation
+  bool by_tangent = true;          ///< whether steps of the tangent are used; false: Fire alone, the slow reference
 };
 
-/// After one strain step.
+/// State after one strain step.
 struct CellPoint {
   RelaxationResult relaxation;
-  std::int64_t tessellations = 0;  ///< of this step
-  std::int64_t faces = 0;          ///< whose forces were worked out in it
-  double volume = 0.0;             ///< of the room [m^3]
+  std::int64_t tessellations = 0;  ///< number of tessellations in this step
+  std::int64_t faces = 0;          ///< number of faces whose forces were computed in this step
+  double volume = 0.0;             ///< volume of the room [m^3]
   Matrix<3> stress;                ///< compression positive; between planes their loads over their areas [Pa]
-  double energy = 0.0;             ///< of cells and springs [J]
-  int guarded = 0;                 ///< cells held by the guard alone
+  double energy = 0.0;             ///< energy of cells and springs [J]
+  int guarded = 0;                 ///< number of cells held by the guard alone
   double sliding = 0.0;            ///< share of the faces at the Coulomb limit
 };
 
@@ -44,27 +44,29 @@ struct CellState {
 
 /// Sites, contents and springs in one room. Strains are diagonal: every axis is stretched by a factor, sites go along
 /// (affine guess) and then come to rest at fixed strain; or the lengths of axes that are held by stress do with them,
-/// their logarithmic strains as coordinates (as in PressedBox). To rest by steps of the tangent (CellTangent) that are
-/// mixed (StepMixer), two to five tessellations in all; where these do not get on, by Fire, with masses as the
-/// stiffness of the faces of each site. Trial states leave the springs alone; they are kept where the relaxation ends,
-/// so what is kept depends on the end alone. A move that would leave a cell without pores, or a site outside planes, is
-/// taken back, and smaller ones follow; a strain whose affine guess would is taken in smaller parts. No randomness; the
-/// same bits for any number of threads.
+/// their logarithmic strains as coordinates (as in PressedBox). The relaxation takes steps of the tangent (CellTangent)
+/// that are mixed (StepMixer), two to five tessellations in all. Where these do not converge, it uses Fire, with the
+/// stiffness of the faces of each site as its mass. Trial states leave the springs alone; they are kept where the
+/// relaxation ends, so what is kept depends on the end alone. A move that would leave a cell without pores, or a site
+/// outside planes, is taken back, and smaller ones follow; a strain whose affine guess would do so is applied in
+/// smaller parts. There is no randomness, and the results are bitwise the same for any number of threads.
 class CellPacking {
  public:
   /// Centres anywhere (they are brought into a periodic cell). Springs begin without force at these places. Throws
-  /// BadInput for contents that do not fit, cells that are smaller than their solid, sites that are not between planes.
+  /// InputError for contents that do not fit, cells that are smaller than their solid, sites that are not between
+  /// planes.
   CellPacking(CellLaw law, const std::vector<Sphere<3>>& sites, std::vector<CellContent> content, const CellRoom& room);
 
   /// Goes on from a state() of a rectangular room.
   CellPacking(CellLaw law, const CellState& state, bool periodic);
 
-  /// Lengths along the axes times `stretch` (below 1 compresses), then to rest; springs are kept. A step whose
-  /// relaxation was capped or diverged is kept too, and says so. Throws BadInput for factors that are not above 0, and
-  /// NotUsable where even a small part of the strain leaves a cell without pores.
+  /// Multiplies the lengths along the axes by `stretch` (below 1 compresses), then relaxes the sites; springs are kept.
+  /// A step whose relaxation was capped or diverged is kept too, and says so. Throws InputError for factors that are
+  /// not above 0, and UnusableResult where even a small part of the strain leaves a cell without pores.
   CellPoint strain(const Vec3& stretch, const CellRelaxation& options = {});
 
-  /// The same, then to rest together with the lengths of the axes that `control` holds by stress.
+  /// Stretches as strain() does. Then the sites come to rest together with the lengths of the axes that `control` holds
+  /// by stress.
   CellPoint press(const Vec3& stretch, const BoxControl& control, const CellRelaxation& options = {});
 
   [[nodiscard]] CellPoint now() const;
@@ -93,7 +95,7 @@ class CellPacking {
   std::vector<Sphere<3>> sites_;
   std::vector<CellContent> content_;
   CellRoom room_;
-  std::vector<std::array<std::int32_t, 3>> periods_;  ///< by which sites were moved back
+  std::vector<std::array<std::int32_t, 3>> periods_;  ///< number of periods by which each site was moved back, per axis
   FaceSprings springs_;
   RadicalCells cells_;
   CellForces forces_;

@@ -107,7 +107,7 @@ RelaxationResult CellPacking::settle(const CellRelaxation& options, Axes* axes) 
   return result;
 }
 
-/// By Fire, with masses as the stiffness of the faces of each site.
+/// Relaxes by Fire, with the stiffness of the faces of each site as its mass.
 RelaxationResult CellPacking::glide(const CellRelaxation& options, Axes* axes) {
   RelaxationResult result;
   Fire fire;

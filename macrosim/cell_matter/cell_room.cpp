@@ -34,7 +34,7 @@ void CellRoom::stretch(const Vec3& factor) {
 void CellRoom::bring_home(std::vector<Sphere<3>>& sites, std::vector<std::array<std::int32_t, 3>>& periods) const {
   for (std::size_t i = 0; i < sites.size(); ++i) {
     for (int k = 0; k < 3; ++k)
-      if (!std::isfinite(sites[i].x[k])) throw BadInput(fmt::format("cells: site {} has no place", i));
+      if (!std::isfinite(sites[i].x[k])) throw InputError(fmt::format("cells: site {} has no place", i));
     if (!periodic()) continue;
     const Vec3 s = cell().fractional(sites[i].x);
     Vec3 back;

@@ -29,10 +29,10 @@ class CellRoom {
   void stretch(const Vec3& factor);
 
   /// Sites that left a periodic cell come back into it; `periods` counts the periods they were moved back by. Throws
-  /// BadInput for a site without a place.
+  /// InputError for a site without a place.
   void bring_home(std::vector<Sphere<3>>& sites, std::vector<std::array<std::int32_t, 3>>& periods) const;
 
-  /// Between planes a site may go astray.
+  /// Whether all sites are inside the room; only between planes may a site be outside.
   [[nodiscard]] bool holds(const std::vector<Sphere<3>>& sites) const;
 
   [[nodiscard]] RadicalCells cells_of(const std::vector<Sphere<3>>& sites) const;

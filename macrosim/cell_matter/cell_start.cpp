@@ -39,26 +39,26 @@ struct Mixture {
     }
     excess = coarse > 0.0 ? law.excess.volume(fines, coarse) : 0.0;
     if (!(room > coarse + fines))
-      throw BadInput(
+      throw InputError(
           fmt::format("start of cells: coarse grains and fines fill {:.4g} of the room, which leaves no pores",
                       (coarse + fines) / room));
   }
 
   void require_values() const {
-    require_sound(law.equation, {});
+    require_valid(law.equation, {});
     if (!(law.void_ratio > 0.0))
-      throw BadInput(fmt::format("start of cells: void ratio of the fines {}; it must be above 0", law.void_ratio));
+      throw InputError(fmt::format("start of cells: void ratio of the fines {}; it must be above 0", law.void_ratio));
     if (!(law.excess.alone >= 0.0 && law.excess.many >= 0.0 && law.excess.decay > 0.0))
-      throw BadInput("start of cells: excess pores need void ratios from 0 on and a decay above 0");
+      throw InputError("start of cells: excess pores need void ratios from 0 on and a decay above 0");
     if (!(fines >= 0.0) || !std::isfinite(fines))
-      throw BadInput(fmt::format("start of cells: {} m^3 of fines; a volume from 0 on is needed", fines));
+      throw InputError(fmt::format("start of cells: {} m^3 of fines; a volume from 0 on is needed", fines));
     if (volume.empty() || volume.size() != bodies.radius.size() ||
         (!bodies.soft.empty() && bodies.soft.size() != volume.size()))
-      throw BadInput("start of cells: one volume, one radius and one kind for each body are needed");
+      throw InputError("start of cells: one volume, one radius and one kind for each body are needed");
     for (std::size_t i = 0; i < volume.size(); ++i)
       if (!(volume[i] > bodies.grain(i)) || !std::isfinite(volume[i]))
-        throw BadInput(fmt::format("start of cells: cell {} has a volume of {:.6g} m^3 and its grain {:.6g} m^3", i,
-                                   volume[i], bodies.grain(i)));
+        throw InputError(fmt::format("start of cells: cell {} has a volume of {:.6g} m^3 and its grain {:.6g} m^3", i,
+                                     volume[i], bodies.grain(i)));
   }
 
   [[nodiscard]] double excess_of(std::size_t i, double s) const {
@@ -84,7 +84,8 @@ struct Mixture {
     const double pores = volume[i] - bodies.grain(i);
     if (std::holds_alternative<PoreForm>(law.equation)) return pores / (1.0 - state);
     const double onset = (bodies.grain(i) / volume[i] - state) / (1.0 - state);
-    if (!(onset > 0.0)) throw BadInput(fmt::format("start of cells: cell {} is too wide for a grain without fines", i));
+    if (!(onset > 0.0))
+      throw InputError(fmt::format("start of cells: cell {} is too wide for a grain without fines", i));
     return bodies.grain(i) * (1.0 - onset) / onset;
   }
 
@@ -106,7 +107,7 @@ struct Mixture {
     }
     constexpr double kMostWithout = 0.25;
     if (out.without_fines > kMostWithout * static_cast<double>(volume.size()))
-      throw BadInput(fmt::format(
+      throw InputError(fmt::format(
           "start of cells: {} of {} cells are too small for their grain and the excess pores beside it, and "
           "would hold no fines; take a lower pressure, more fines, fewer coarse bodies, or places where "
           "they are less close",
@@ -143,15 +144,15 @@ CellStart start_at_pressure(const FinesLaw& law, const CoarseBodies& bodies, con
   const Mixture mixture(law, bodies, volume, fines);
   const double state = state_at(law.equation, pressure);
   if (!(pressure > 0.0) || !(state < 1.0))
-    throw BadInput(
+    throw InputError(
         fmt::format("start of cells: start pressure {} Pa; it must be above 0 and below {} Pa, where no pores are left",
                     pressure, modulus(law.equation)));
   if (!(mixture.excess > 0.0))
-    throw BadInput(
+    throw InputError(
         "start of cells: a start pressure sets the excess pores of coarse grains, and there are none; give the density "
         "alone");
   if (!(mixture.fines_of_all(0.0, state) >= fines))
-    throw BadInput(fmt::format(
+    throw InputError(fmt::format(
         "start of cells: at {} Pa there is no room for {:.6g} m^3 of fines even without excess pores (at most {:.6g} "
         "m^3): the start pressure is too low, or the fines jam denser than their void ratio says",
         pressure, fines, mixture.fines_of_all(0.0, state)));
@@ -170,7 +171,7 @@ double room_at_pressure(const FinesLaw& law, double fines, double coarse, double
   const double state = state_at(law.equation, pressure);
   const double solid = coarse + fines;
   if (!(pressure > 0.0) || !(state < 1.0) || !(solid > 0.0))
-    throw BadInput(fmt::format("start of cells: no room for {} m^3 of solid at {} Pa", solid, pressure));
+    throw InputError(fmt::format("start of cells: no room for {} m^3 of solid at {} Pa", solid, pressure));
   const double pores = law.void_ratio * fines + (coarse > 0.0 ? law.excess.volume(fines, coarse) : 0.0);
   if (std::holds_alternative<PoreForm>(law.equation)) return solid + (1.0 - state) * pores;
   const double onset = solid / (solid + pores);
@@ -184,7 +185,7 @@ CellStart start_at_density(const FinesLaw& law, const CoarseBodies& bodies, cons
   const double jammed = mixture.excess + fines * law.void_ratio;
   const auto too_few = [&](double state) { return fines - mixture.fines_of_all(1.0, state); };
   if (!(pores < jammed) || !(too_few(0.0) > 0.0))
-    throw BadInput(fmt::format(
+    throw InputError(fmt::format(
         "start of cells: the mixture does not jam at this density: its pores are {:.4g} of those at which it would",
         pores / jammed));
   if (std::holds_alternative<PoreForm>(law.equation) && mixture.all_hold_fines(1.0, 1.0 - pores / jammed))

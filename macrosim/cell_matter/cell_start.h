@@ -26,15 +26,15 @@ struct FinesLaw {
   ExcessPores excess;
 };
 
-/// Which solid a site stands for: grains bring their own volume and surface; a soft body is fines alone (no solid, no
-/// excess pores).
+/// The solid that each site represents. A grain has its own volume and surface. A soft body is fines alone (no solid,
+/// no excess pores).
 struct CoarseBodies {
-  std::vector<double> radius;  ///< [m]
-  std::vector<bool> soft;      ///< empty: none
+  std::vector<double> radius;  ///< radii of the bodies [m]
+  std::vector<bool> soft;      ///< whether a body is soft; empty: none is
 
   [[nodiscard]] bool is_soft(std::size_t i) const { return !soft.empty() && soft[i]; }
   [[nodiscard]] double grain(std::size_t i) const;    ///< solid volume [m^3]
-  [[nodiscard]] double surface(std::size_t i) const;  ///< [m^2]
+  [[nodiscard]] double surface(std::size_t i) const;  ///< surface of the grain [m^2]
 };
 
 struct CellStart {
@@ -51,18 +51,18 @@ struct CellStart {
 /// as they are from there on.
 /// A cell that is too small for its grain and the excess pores beside it (v_i < 0: coarse grains that touch) holds no
 /// fines, and what pores it has; the others share them.
-/// Throws BadInput, with the cell and what would help, for s < 0 (the fines fit only denser than this pressure), where
-/// more than a quarter of the cells would hold no fines, without coarse grains (s then means nothing), for a pressure
-/// that is not above 0 or beyond the state 1, volumes that do not fit together.
+/// Throws InputError, with the cell and what would help, for s < 0 (the fines fit only denser than this pressure),
+/// where more than a quarter of the cells would hold no fines, without coarse grains (s then means nothing), for a
+/// pressure that is not above 0 or beyond the state 1, volumes that do not fit together.
 CellStart start_at_pressure(const FinesLaw& law, const CoarseBodies& bodies, const std::vector<double>& volume,
                             double fines, double pressure);
 
-/// Volume of the room in which a mixture bears the pressure, excess pores as ExcessPores says. Throws BadInput for
+/// Volume of the room in which a mixture bears the pressure, excess pores as ExcessPores says. Throws InputError for
 /// pressures beyond the state 1 or not above 0, and a mixture that is empty.
 double room_at_pressure(const FinesLaw& law, double fines, double coarse, double pressure);
 
 /// Excess pores as ExcessPores says (s = 1), and the pressure that follows from the density: in the pore form
-/// 1 - y0 = (V - sum Vs - V_f)/(W + V_f e_J). Throws BadInput where the mixture does not jam (y0 <= 0), and as above.
+/// 1 - y0 = (V - sum Vs - V_f)/(W + V_f e_J). Throws InputError where the mixture does not jam (y0 <= 0), and as above.
 CellStart start_at_density(const FinesLaw& law, const CoarseBodies& bodies, const std::vector<double>& volume,
                            double fines);
 

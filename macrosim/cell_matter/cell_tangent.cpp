@@ -7,10 +7,10 @@ namespace softgrain {
 
 namespace {
 
-/// Of the turning of a face, in parts of |p_i - p_j| A/d.
+/// Stiffness against the turning of a face, in parts of |p_i - p_j| A/d.
 constexpr double kTurn = 0.5;
-/// What a sliding spring is taken to resist along its force: nothing would be true and let steps of soft modes
-/// overshoot.
+/// Share of its stiffness that a sliding spring is taken to have along its force. The true value is 0, which would let
+/// steps of soft modes overshoot.
 constexpr double kSlide = 0.3;
 /// Least diagonal of a block, in parts of the mean one: sites that nothing holds stay where they are.
 constexpr double kLeast = 1e-3;
@@ -26,7 +26,7 @@ Matrix<3> sum(Matrix<3> a, const Matrix<3>& b) {
 
 double trace(const Matrix<3>& m) { return m[0][0] + m[1][1] + m[2][2]; }
 
-/// Of a symmetric positive matrix.
+/// Inverse of a symmetric positive matrix.
 Matrix<3> inverse(const Matrix<3>& m) {
   Matrix<3> out;
   for (int k = 0; k < 3; ++k) {

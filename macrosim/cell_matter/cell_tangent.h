@@ -37,7 +37,7 @@ class CellTangent {
   const std::vector<Vec3>* force_;
   std::vector<Face> faces_;
   std::vector<double> stiffness_;   ///< -dp/dV of cells
-  std::vector<Matrix<3>> inverse_;  ///< of the diagonal blocks
+  std::vector<Matrix<3>> inverse_;  ///< inverses of the diagonal blocks
   std::vector<Vec3> own_;           ///< dV_i/dx_i
   double ridge_ = 0.0;
 };

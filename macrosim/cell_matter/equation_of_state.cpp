@@ -75,16 +75,16 @@ CellResponse respond(const EquationOfState& equation, const PoreGuard& guard, co
   return out;
 }
 
-void require_sound(const EquationOfState& equation, const PoreGuard& guard) {
+void require_valid(const EquationOfState& equation, const PoreGuard& guard) {
   const double a = modulus(equation);
   const double n = exponent(equation);
   if (!(a > 0.0) || !std::isfinite(a))
-    throw BadInput(fmt::format("equation of state: modulus {} Pa; it must be above 0", a));
+    throw InputError(fmt::format("equation of state: modulus {} Pa; it must be above 0", a));
   if (!(n > 1.0) || !std::isfinite(n))
-    throw BadInput(
+    throw InputError(
         fmt::format("equation of state: exponent {}; it must be above 1, or stiffness jumps at the onset", n));
   if (!(guard.from >= 0.0 && guard.from < 1.0))
-    throw BadInput(
+    throw InputError(
         fmt::format("equation of state: guard from {} of the pores on; it must be within [0, 1)", guard.from));
 }
 

@@ -11,9 +11,9 @@ struct CellContent {
   double pores = 0.0;  ///< VpJ: volume of its pores where pressure begins [m^3], above 0
 };
 
-/// At one volume V of the cell. The energy is that of compression from V = solid + pores, so dU/dV = -pressure.
+/// Response of a cell at one volume V. The energy is that of compression from V = solid + pores, so dU/dV = -pressure.
 struct CellResponse {
-  double pressure = 0.0;   ///< [Pa], 0 beyond solid + pores
+  double pressure = 0.0;   ///< [Pa]; 0 for volumes beyond solid + pores
   double stiffness = 0.0;  ///< -dp/dV [Pa/m^3], not negative
   double energy = 0.0;     ///< [J]; infinite for V <= solid (with guard)
 };
@@ -43,8 +43,9 @@ struct PorosityForm {
   double exponent = 0.0;  ///< n > 1
 
   [[nodiscard]] CellResponse at(const CellContent& c, double volume) const;
-  /// As in PoreForm, for the state x: with m = Vs + v the larger root of m (m + VpJ) = V (m + x VpJ), quadratic in v.
-  /// Not a number where there is none.
+  /// Solid volume of fines v with which a cell of volume V around a grain of volume Vs has the state x, for VpJ = e_J v
+  /// + w. It follows from m = Vs + v, the larger root of m (m + VpJ) = V (m + x VpJ), quadratic in v. Not a number
+  /// where there is none.
   [[nodiscard]] double fines(double volume, double grain, double excess, double void_ratio, double x) const;
 };
 
@@ -60,7 +61,7 @@ double state_at(const EquationOfState& equation, double pressure);
 /// both grow without bound as q -> 0, and begin with slope 0, so forces have no kink. It is no measured law: a cell in
 /// it is beyond what the law was fitted to, and is counted.
 struct PoreGuard {
-  double from = 0.25;  ///< in [0, 1); 0: none
+  double from = 0.25;  ///< relative pores below which the guard acts, in [0, 1); 0: no guard
 
   [[nodiscard]] CellResponse at(const CellContent& c, double volume, double modulus) const;
 };
@@ -68,8 +69,8 @@ struct PoreGuard {
 /// Equation and guard together. `volume` <= c.solid: energy and pressure are infinite.
 CellResponse respond(const EquationOfState& equation, const PoreGuard& guard, const CellContent& c, double volume);
 
-/// Throws BadInput for a modulus that is not above 0, an exponent not above 1 (the stiffness would jump at the onset),
-/// a guard outside [0, 1), values that are not finite.
-void require_sound(const EquationOfState& equation, const PoreGuard& guard);
+/// Throws InputError for a modulus that is not above 0, an exponent not above 1 (the stiffness would jump at the
+/// onset), a guard outside [0, 1), values that are not finite.
+void require_valid(const EquationOfState& equation, const PoreGuard& guard);
 
 }  // namespace softgrain

@@ -12,7 +12,7 @@
 namespace softgrain {
 
 struct FaceFriction {
-  double coefficient = 0.0;  ///< mu_f; 0: none
+  double coefficient = 0.0;  ///< friction coefficient mu_f; 0: no friction
   double stiffness = 1.0;    ///< chi: spring stiffness over B A/d, B the mean of -V dp/dV of both cells
 };
 
@@ -27,12 +27,12 @@ struct FaceKey {
 
 struct FaceSpring {
   FaceKey key;
-  Vec3 force;              ///< on j from i, in the plane of the face [N]
+  Vec3 force;              ///< force on j from i, in the plane of the face [N]
   double stiffness = 0.0;  ///< k [N/m]
-  Vec3 separation;         ///< x_j - x_i when it was kept [m]
-  bool slides = false;     ///< at the Coulomb limit
-  double tangent = 0.0;    ///< of a trial spring: how the force answers a motion in the face, before the limit [N/m]
-  double kept = 1.0;       ///< of a trial spring: share of its force that the limit leaves
+  Vec3 separation;         ///< x_j - x_i when the spring was kept [m]
+  bool slides = false;     ///< whether the force is at the Coulomb limit
+  double tangent = 0.0;    ///< trial spring: stiffness against a motion in the face, before the limit [N/m]
+  double kept = 1.0;       ///< trial spring: share of its force that the limit leaves
 
   [[nodiscard]] double energy() const { return stiffness > 0.0 ? norm2(force) / (2.0 * stiffness) : 0.0; }
 };
@@ -40,9 +40,9 @@ struct FaceSpring {
 /// Springs of the last kept state. A trial state never changes them, so a relaxation may try what it likes and friction
 /// depends on where it ends alone.
 ///
-/// From a kept spring (T0, k0, D0) the trial spring of a face with separation D, stiffness k = chi B A/d and limit
-/// mu_f p A is T = P [T0 min(1, k/k0) - min(k, (k + k0)/2) (D - D0)], cut to the limit; P projects on the face
-/// (perpendicular to D), B and p are means of both cells. So
+/// The trial spring T of a face follows from its kept spring (T0, k0, D0). For separation D, stiffness k = chi B A/d
+/// and limit mu_f p A it is T = P [T0 min(1, k/k0) - min(k, (k + k0)/2) (D - D0)], cut to the limit. P projects on the
+/// face (perpendicular to D); B and p are means of both cells. So
 /// - the motion counts as the bodies move, the affine part of an imposed strain included (D holds it);
 /// - the face may turn: T turns with it by projection, which only takes energy away;
 /// - a face that shrinks or unloads (k < k0) keeps its displacement, T = k u (as the rescaled Mindlin springs of

@@ -24,8 +24,8 @@ class StepMixer {
   std::size_t depth_;
   std::vector<Vec3> f_;
   std::vector<Vec3> step_;
-  std::deque<std::vector<Vec3>> changes_;  ///< of f
-  std::deque<std::vector<Vec3>> steps_;    ///< that made them
+  std::deque<std::vector<Vec3>> changes_;  ///< changes of f in the last steps
+  std::deque<std::vector<Vec3>> steps_;    ///< steps that caused these changes
 };
 
 }  // namespace softgrain

@@ -22,7 +22,7 @@ namespace LAMMPS_NS {
 using softgrain::ContactGeometry;
 using softgrain::ContactResponse;
 using softgrain::ContactState;
-using softgrain::CrowdSum;
+using softgrain::MultiContactSum;
 using softgrain::Vec;
 namespace bridge = softgrain::lammps;
 
@@ -35,10 +35,10 @@ enum Value {
   kFabric,
   kVirial,
   kOverlap = 10,
-  kAsked,
+  kEvaluations,
   kBeyond,
   kLargest,
-  kRefused,
+  kRejected,
   kClamped,
   kBehind
 };
@@ -77,18 +77,18 @@ void ComputeSoftgrainContacts::init() {
   looked_ = -1;
 }
 
-/// As the watch of the program counts: pair laws per contact, crowd laws per body.
+/// Counts the uses of fitted laws as the program's own watch does: pair laws per contact, multi-contact laws per body.
 template <class Law>
 void ComputeSoftgrainContacts::note_use(const Law& law, const ContactState<3>& state, int i, int j, bool mine) {
-  if constexpr (Law::traits.is_fitted && !Law::traits.is_crowd) {
+  if constexpr (Law::traits.is_fitted && !Law::traits.is_multi_contact) {
     if (mine) use_.add(state.overlap / (state.constants.a * law.range.end), law.range.beyond);
-  } else if constexpr (Law::traits.is_crowd) {
+  } else if constexpr (Law::traits.is_multi_contact) {
     if constexpr (Law::traits.needs_particle_pass) {
       if (law.i_is_soft) form_[static_cast<std::size_t>(i)] = &law.form;
       if (law.j_is_soft && j < atom->nlocal) form_[static_cast<std::size_t>(j)] = &law.form;
     } else if (mine) {
       for (const bool of_i : {true, false}) {
-        CrowdSum<3> own;
+        MultiContactSum<3> own;
         law.share(state, of_i, own);
         const auto& range = law.form.pressure.range;
         if (own.square > 0.0) use_.add(own.volume / range.end, range.beyond);
@@ -211,10 +211,10 @@ void ComputeSoftgrainContacts::look() {
     before += static_cast<int>(wall->planes.size());
   }
   note_sums();
-  values_[kAsked] = static_cast<double>(use_.asked);
+  values_[kEvaluations] = static_cast<double>(use_.evaluations);
   values_[kBeyond] = static_cast<double>(use_.beyond);
-  values_[kLargest] = use_.largest;
-  values_[kRefused] = static_cast<double>(use_.refused);
+  values_[kLargest] = use_.max_range_ratio;
+  values_[kRejected] = static_cast<double>(use_.rejected);
   values_[kClamped] = static_cast<double>(use_.clamped);
 }
 

@@ -60,15 +60,15 @@ class ComputeSoftgrainContacts : public Compute {
 
   PairSoftgrain* pair_ = nullptr;
   bigint looked_ = -1;
-  std::array<double, kValues> values_{};  ///< of this rank; fabric as a sum
-  double pairs_ = 0.0;                    ///< contacts between bodies, of this rank
+  std::array<double, kValues> values_{};  ///< values of the vector on this rank; fabric as a sum
+  double pairs_ = 0.0;                    ///< number of contacts between bodies on this rank
   softgrain::LawUse use_;
-  std::vector<const softgrain::CrowdForm*> form_;  ///< per own atom: of the law that serves its sum
-  int least_ = 0;                                  ///< contacts of a body that is held; 0: grains are not asked for
-  std::vector<double> coarse_;                     ///< radii from which bodies are coarse [m]
-  std::vector<double> grain_values_;               ///< of this rank
-  std::vector<Hold> holds_;                        ///< contacts of own atoms
-  std::vector<double> loose_;                      ///< per atom, ghosts included: 1 where it rattles
+  std::vector<const softgrain::MultiContactForm*> form_;  ///< form of the law for the sum of an own atom
+  int least_ = 0;                     ///< contacts of a body that is held; 0: grains are not asked for
+  std::vector<double> coarse_;        ///< radii from which bodies are coarse [m]
+  std::vector<double> grain_values_;  ///< values for `grains` on this rank
+  std::vector<Hold> holds_;           ///< contacts of own atoms
+  std::vector<double> loose_;         ///< per atom, ghosts included: 1 where it rattles
   std::vector<std::array<double, kColumns>> rows_;
   std::vector<double*> row_pointers_;
 };

@@ -25,7 +25,7 @@ struct Bodies {
   Vec<3> rate{};
   Vec<3> centre{};
 
-  /// By its own motion and that of the box.
+  /// Velocity of a body by its own motion and that of the box.
   [[nodiscard]] Vec<3> velocity(int i) const {
     Vec<3> out = vec(v[i]);
     if (flows)
@@ -77,9 +77,9 @@ struct PlaneSurface {
 
 /// What a pass does.
 struct Pass {
-  bool advance = false;         ///< the history goes on; else it is left alone
-  double dt = 0.0;              ///< for it [s]
-  CrowdSum<3>* sums = nullptr;  ///< per atom, ghosts included; of laws with a particle pass
+  bool advance = false;                ///< whether the history goes on; else it is left alone
+  double dt = 0.0;                     ///< time step of the history [s]
+  MultiContactSum<3>* sums = nullptr;  ///< sums of laws with a particle pass, per atom, ghosts included
 };
 
 /// A law of two dimensions asked about bodies in the plane z = 0.
@@ -116,7 +116,7 @@ ContactResponse<3> evaluate_flat(const Law& law, const ContactState<3>& s) {
   return out;
 }
 
-/// Of laws in space: those in the plane keep an angle as their memory.
+/// Whether a law keeps a rolling history. Only laws in space do; those in the plane keep an angle as their memory.
 template <class Law>
 inline constexpr bool kRolls = law_serves<Law, 3>() && has_roll_history<3>(Law::traits);
 
@@ -161,7 +161,7 @@ struct StorePairs {
     s.sum_i = &pass.sums[p.i];
     if constexpr (kAtoms) s.sum_j = &pass.sums[p.j];
   }
-  /// Ghosts get theirs from their rank.
+  /// Works on the sums of own atoms. Ghosts get theirs from their rank.
   template <class Work>
   void sums_of(const Pair& p, Work&& work) const {
     work(true, pass.sums[p.i]);

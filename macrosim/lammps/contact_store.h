@@ -28,9 +28,9 @@ struct ContactStore {
   std::vector<int> i;
   std::vector<int> j;
   std::vector<PairConstants> constants;
-  std::vector<Vec<3>> spring;  ///< of i against j
+  std::vector<Vec<3>> spring;  ///< tangential spring of i against j
   std::vector<double> memory;
-  std::vector<Vec<3>> roll;   ///< of i against j
+  std::vector<Vec<3>> roll;   ///< rolling history of i against j
   std::vector<char> touched;  ///< 0: the history is known to be empty
   std::vector<Section> sections;
 

@@ -19,7 +19,7 @@ namespace bridge = softgrain::lammps;
 
 namespace {
 
-constexpr int kWords = 8;  ///< of one remembered contact
+constexpr int kWords = 8;  ///< number of values per remembered contact
 
 double* put(const bridge::AtomMemory& memory, double* buf) {
   *buf++ = static_cast<double>(memory.size());
@@ -100,7 +100,7 @@ void FixSoftgrainHistory::read_springs(const std::string& file) {
   }
 }
 
-/// From the list to the atoms.
+/// Copies the history of contacts from the list to the atoms.
 void FixSoftgrainHistory::store() {
   const auto own = static_cast<std::size_t>(atom->nlocal);
   for (std::size_t i = 0; i < own; ++i) memory_[i].clear();

@@ -46,7 +46,7 @@ FixSoftgrainRelax::FixSoftgrainRelax(LAMMPS* engine, int count, char** words) : 
   time_integrate = 1;
   nevery = 1;
   scalar_flag = vector_flag = 1;
-  size_vector = 10;
+  size_vector = 9;
   global_freq = 1;
   extscalar = extvector = 0;
   restart_global = 1;
@@ -57,9 +57,21 @@ FixSoftgrainRelax::FixSoftgrainRelax(LAMMPS* engine, int count, char** words) : 
   atom->add_callback(Atom::GROW);
 }
 
+/// Names of earlier versions are read too.
+std::string current_key(const std::string& key) {
+  constexpr std::array<std::array<const char*, 2>, 5> kOld{{{"restless", "unbalanced_fraction"},
+                                                            {"lead", "max_displacement_ratio"},
+                                                            {"alike", "isotropic"},
+                                                            {"lists", "log_lists"},
+                                                            {"follow", "track_box"}}};
+  for (const auto& [before, now] : kOld)
+    if (key == before) return now;
+  return key;
+}
+
 /// One key and what belongs to it; how many words that were.
 int FixSoftgrainRelax::set(int count, char** words) {
-  const std::string key = words[0];
+  const std::string key = current_key(words[0]);
   const int values = key == "stress" ? 3 : 1;
   if (count < 1 + values)
     error->all(FLERR, "fix softgrain/relax: '" + key + "' needs " + (values == 3 ? "three values" : "a value"));
@@ -72,9 +84,9 @@ int FixSoftgrainRelax::set(int count, char** words) {
 }
 
 void FixSoftgrainRelax::set_number(const std::string& key, const std::string& word) {
-  if ((key == "follow" || key == "alike" || key == "lists") && (word == "yes" || word == "no")) {
-    (key == "alike" ? alike_ : key == "lists" ? lists_ : follow_) = word == "yes";
-    force_reneighbor = lists_ ? 1 : 0;
+  if ((key == "track_box" || key == "isotropic" || key == "log_lists") && (word == "yes" || word == "no")) {
+    (key == "isotropic" ? isotropic_ : key == "log_lists" ? log_lists_ : track_box_) = word == "yes";
+    force_reneighbor = log_lists_ ? 1 : 0;
     next_reneighbor = -1;
     return;
   }
@@ -87,10 +99,10 @@ void FixSoftgrainRelax::set_number(const std::string& key, const std::string& wo
     max_passes_ = value;
   else if (key == "max_move" && value > 0.0)
     limit_.most = value;
-  else if (key == "lead" && value > 0.0)
+  else if (key == "max_displacement_ratio" && value > 0.0)
     limit_.lead = value;
-  else if (key == "restless" && value >= 0.0 && value < 1.0)
-    restless_ = value;
+  else if (key == "unbalanced_fraction" && value >= 0.0 && value < 1.0)
+    unbalanced_fraction_ = value;
   else if (key == "least_stiffness" && value >= 0.0)
     least_stiffness_ = value;
   else if (key == "stress_tolerance" && value > 0.0)
@@ -100,11 +112,12 @@ void FixSoftgrainRelax::set_number(const std::string& key, const std::string& wo
   else if (key == "farthest" && value > 0.0)
     farthest_ = value;
   else
-    error->all(FLERR,
-               "fix softgrain/relax: '" + key + " " + word +
-                   "': known are tolerance > 0, floor >= 0, max_passes >= 1, max_move > 0, lead > 0, 0 <= restless "
-                   "< 1, least_stiffness >= 0, follow yes|no, lists yes|no, stress SX|no SY|no SZ|no, alike yes|no, "
-                   "stress_tolerance > 0, least_stress >= 0 and farthest > 0");
+    error->all(
+        FLERR,
+        "fix softgrain/relax: '" + key + " " + word +
+            "': known are tolerance > 0, floor >= 0, max_passes >= 1, max_move > 0, max_displacement_ratio > 0, "
+            "0 <= unbalanced_fraction < 1, least_stiffness >= 0, track_box yes|no, log_lists yes|no, "
+            "stress SX|no SY|no SZ|no, isotropic yes|no, stress_tolerance > 0, least_stress >= 0 and farthest > 0");
 }
 
 int FixSoftgrainRelax::modify_param(int count, char** words) {
@@ -129,7 +142,7 @@ int FixSoftgrainRelax::setmask() {
 void FixSoftgrainRelax::init() {
   pair_ = dynamic_cast<PairSoftgrain*>(force->pair);
   if (pair_ == nullptr) error->all(FLERR, std::string("fix softgrain/relax needs pair style softgrain"));
-  pair_->box_followed = lists_;
+  pair_->box_followed = log_lists_;
   bool before = true;
   for (int k = 0; k < modify->nfix; ++k) {
     if (modify->fix[k] == this) before = false;
@@ -152,12 +165,13 @@ void FixSoftgrainRelax::note_box() {
   for (int k = 0; k < 3; ++k) box_[k] = domain->boxhi[k] - domain->boxlo[k];
 }
 
-/// Before ghosts are made, which need the velocities too.
+/// Stops all motion and finds the strain of the box since the last run. Ghosts, which are made afterwards, need the
+/// velocities too.
 void FixSoftgrainRelax::setup_pre_exchange() {
   const softgrain::Vec<3> before = box_;
   note_box();
   stop_motion();
-  pair_->strained = pair_->flows = follow_ && before != box_;
+  pair_->strained = pair_->flows = track_box_ && before != box_;
   for (int k = 0; k < 3; ++k) pair_->flow[k] = 0.0;
   if (!pair_->strained) return;
   for (int k = 0; k < 3; ++k) {
@@ -166,7 +180,7 @@ void FixSoftgrainRelax::setup_pre_exchange() {
   }
 }
 
-/// Before the pass of the setup.
+/// Resets the relaxation before the force pass of the setup.
 void FixSoftgrainRelax::setup_pre_force(int) {
   pair_->gathered.wanted = true;
   pair_->gathered.pressed = pressed();
@@ -186,7 +200,8 @@ void FixSoftgrainRelax::setup(int) {
   if (update->nsteps > 0) judge();
 }
 
-/// Squared; infinite where it is not finite.
+/// Square of the net force on a body, or of its moment over its radius where that is larger; infinite where it is not
+/// finite.
 double FixSoftgrainRelax::net_force2(int i) const {
   const double f2 = norm2(atom->f[i]);
   const double m2 = norm2(atom->torque[i]) / (atom->radius[i] * atom->radius[i]);
@@ -203,7 +218,7 @@ double FixSoftgrainRelax::worst_net_force() const {
 
 /// The largest but for those of the restless few: of every rank as many as might be among them, and the one after.
 double FixSoftgrainRelax::settled_net_force() const {
-  const auto few = static_cast<std::size_t>(restless_ * static_cast<double>(atom->natoms));
+  const auto few = static_cast<std::size_t>(unbalanced_fraction_ * static_cast<double>(atom->natoms));
   if (few == 0) return worst_net_force();
   std::vector<double> own(static_cast<std::size_t>(atom->nlocal));
   for (int i = 0; i < atom->nlocal; ++i) own[static_cast<std::size_t>(i)] = net_force2(i);
@@ -317,7 +332,7 @@ void FixSoftgrainRelax::initial_integrate(int) {
   steer();
   move();
   if (pressed()) carry();
-  if (lists_) watch_lists();
+  if (log_lists_) watch_lists();
   pair_->spring_dt = fire_.step;
   pair_->gathered.wanted = (pass + 1) % PseudoMasses::kInterval == 0;
 }

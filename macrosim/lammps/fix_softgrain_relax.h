@@ -1,30 +1,32 @@
 // Fix softgrain/relax: the damped relaxation of the program (common/dynamics/damped_relaxation.h) as time integration.
 //
-//   fix ID all softgrain/relax tolerance T floor F max_passes N [max_move M] [lead L] [restless S]
-//     [least_stiffness K] [follow yes|no] [stress SX|no SY|no SZ|no] [alike yes|no] [stress_tolerance T]
-//     [least_stress P] [farthest F] [lists yes|no]
+//   fix ID all softgrain/relax tolerance T floor F max_passes N [max_move M] [max_displacement_ratio L]
+//     [unbalanced_fraction S] [least_stiffness K] [track_box yes|no] [stress SX|no SY|no SZ|no] [isotropic yes|no]
+//     [stress_tolerance T] [least_stress P] [farthest F] [log_lists yes|no]
 //   fix_modify ID KEY VALUE ...         the same keys, later
 //
 // A box that was strained since the last run (change_box ... remap) takes the springs of the contacts along, unless
-// `follow no`: bodies slide on each other as the box moves them.
+// `track_box no`: bodies slide on each other as the box moves them.
 // Every run relaxes anew, from rest. Ends it when the largest net force is below T times the mean contact force (which
 // never counts for less than F [N]), or after N passes. Time steps are pseudo-time. Fixes with forces come before it in
-// the script. A share `restless` of the bodies, rounded down, may have a larger net force at the end. No body moves
-// farther per pass than `max_move` radii, and, with `lead`, than so many times the root mean square move of all
-// (common/dynamics/fire.h, MoveLimit); none counts as softer than `least_stiffness` [Pa] times its radius. Scalar:
-// residual. Vector: passes of the last run, residual, end (0 not run, 1 converged, 2 capped, 3 diverged), mean contact
-// force [N], passes of all runs, near pairs looked at in all passes, stress on the box along x, y, z [Pa].
+// the script. A share `unbalanced_fraction` of the bodies, rounded down, may have a larger net force at the end. No
+// body moves farther per pass than `max_move` radii, and, with `max_displacement_ratio`, than so many times the root
+// mean square move of all (common/dynamics/fire.h, MoveLimit); none counts as softer than `least_stiffness` [Pa] times
+// its radius. Scalar: residual. Vector: passes of the last run, residual, end (0 not run, 1 converged, 2 capped, 3
+// diverged), mean contact force [N], passes of all runs, near pairs looked at in all passes, stress on the box along x,
+// y, z [Pa].
 //
 // `stress` holds the simulation box by stress [Pa, compression positive] along the axes that have a number: its faces
 // come to rest together with the bodies, which they carry along (macrosim/pressed_box.h), at `stress_tolerance` times
-// the largest stress asked for, which counts as `least_stress` at least. `alike`: all axes strain alike, by the mean of
-// their stresses. A logarithmic strain beyond `farthest` since the run began ends it as capped: the stress is out of
-// reach. The box has walls in all faces (boundary f f f and fix softgrain/wall box) or is periodic (p p p); the stress
-// is that on the walls, or that of the contacts.
+// the largest stress asked for, which counts as `least_stress` at least. `isotropic`: all axes strain equally, by the
+// mean of their stresses. A logarithmic strain beyond `farthest` since the run began ends it as capped: the stress is
+// out of reach. The box has walls in all faces (boundary f f f and fix softgrain/wall box) or is periodic (p p p); the
+// stress is that on the walls, or that of the contacts.
 //
-// `lists yes` with `neigh_modify delay 0 every 1000000 check no`: the fix says when lists of near pairs are made. It
-// follows bodies relative to the box, whose motion alone brings no two of them together by more than its strain times
-// their distance; LAMMPS follows them from where they were, and makes a list every pass while a large box shrinks.
+// `log_lists yes` with `neigh_modify delay 0 every 1000000 check no`: the fix says when lists of near pairs are made.
+// It follows bodies relative to the box, whose motion alone brings no two of them together by more than its strain
+// times their distance; LAMMPS follows them from where they were, and makes a list every pass while a large box
+// shrinks.
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <array>
@@ -98,16 +100,16 @@ class FixSoftgrainRelax : public Fix {
   double floor_ = 0.0;
   double max_passes_ = 20000.0;
   softgrain::MoveLimit limit_;
-  double typical_move_ = 0.0;  ///< root mean square of the last pass, in radii
-  double restless_ = 0.0;
-  double least_stiffness_ = 0.0;  ///< over radius [Pa]
-  bool follow_ = true;
-  softgrain::Vec<3> box_{};  ///< its lengths at the last run
+  double typical_move_ = 0.0;  ///< root mean square move of the last pass, in radii
+  double unbalanced_fraction_ = 0.0;
+  double least_stiffness_ = 0.0;  ///< least stiffness of a body over its radius [Pa]
+  bool track_box_ = true;
+  softgrain::Vec<3> box_{};  ///< lengths of the box at the last run
   softgrain::Fire fire_;
-  std::vector<double> inverse_mass_;  ///< pseudo, per atom
+  std::vector<double> inverse_mass_;  ///< inverse pseudo-masses, per atom
   std::vector<double> inverse_inertia_;
   double passes_ = 0.0;
-  double passes_before_ = 0.0;  ///< of earlier runs
+  double passes_before_ = 0.0;  ///< passes of earlier runs
   double evaluations_before_ = 0.0;
   double residual_ = 0.0;
   double mean_force_ = 0.0;
@@ -115,21 +117,21 @@ class FixSoftgrainRelax : public Fix {
   PairSoftgrain* pair_ = nullptr;
 
   std::array<bool, 3> by_stress_{};
-  softgrain::Vec<3> asked_{};  ///< [Pa]
-  bool alike_ = false;
+  softgrain::Vec<3> asked_{};  ///< stress asked for [Pa]
+  bool isotropic_ = false;
   double stress_tolerance_ = 1e-3;
   double least_stress_ = 0.0;
   double farthest_ = 0.3;
-  softgrain::Vec<3> stress_{};     ///< on the box, of the last pass [Pa]
-  softgrain::Vec<3> resisted_{};   ///< by what is in it [N m]
-  softgrain::Vec<3> box_force_{};  ///< per logarithmic strain [N m]
+  softgrain::Vec<3> stress_{};     ///< stress on the box in the last pass [Pa]
+  softgrain::Vec<3> resisted_{};   ///< resistance of the contents of the box, W_k of PressedBox [N m]
+  softgrain::Vec<3> box_force_{};  ///< force per logarithmic strain [N m]
   softgrain::Vec<3> box_velocity_{};
-  softgrain::Vec<3> box_strain_{};  ///< since the run began
+  softgrain::Vec<3> box_strain_{};  ///< strain since the run began
   double box_inverse_mass_ = 0.0;
 
-  bool lists_ = false;
-  std::vector<softgrain::Vec<3>> listed_;      ///< where bodies were when the last list was made
-  softgrain::Vec<3> shrunk_{{1.0, 1.0, 1.0}};  ///< the box since then, per axis
+  bool log_lists_ = false;
+  std::vector<softgrain::Vec<3>> listed_;      ///< places of the bodies when the last list was made
+  softgrain::Vec<3> shrunk_{{1.0, 1.0, 1.0}};  ///< lengths of the box over those at that time, per axis
 };
 
 }  // namespace LAMMPS_NS

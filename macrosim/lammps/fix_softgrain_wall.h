@@ -33,7 +33,7 @@ class FixSoftgrainWall : public Fix {
   double compute_vector(int k) override;
   double memory_usage() override;
 
-  /// Its planes are the faces of the simulation box.
+  /// Whether the planes are the faces of the simulation box.
   [[nodiscard]] bool in_box() const { return box_; }
   /// Brings the planes to where they are at this step.
   void follow();
@@ -56,12 +56,12 @@ class FixSoftgrainWall : public Fix {
   bool box_ = false;
   bool moving_ = false;
   bigint start_ = 0;                       ///< step at which moving planes were where the script says
-  std::vector<softgrain::Vec<3>> from_;    ///< there
-  std::vector<softgrain::Vec<3>> listed_;  ///< where the planes were at the last list
+  std::vector<softgrain::Vec<3>> from_;    ///< places of the planes at that step
+  std::vector<softgrain::Vec<3>> listed_;  ///< places of the planes at the last list
   bigint followed_ = -1;
   std::vector<int> law_of_type_;
-  std::vector<double> force_;      ///< of this rank
-  std::vector<double> force_all_;  ///< of all ranks
+  std::vector<double> force_;      ///< normal force of the bodies of this rank on every plane [N]
+  std::vector<double> force_all_;  ///< normal force of the bodies of all ranks on every plane [N]
   bigint summed_ = -1;
   PairSoftgrain* pair_ = nullptr;
 };

@@ -18,7 +18,7 @@ namespace {
 /// A number of a card, by its path ("normal.a.value").
 double number(const toml::table& pair, const std::string& path, const std::string& where) {
   const auto value = pair.at_path(path).value<double>();
-  if (!value || !std::isfinite(*value)) throw BadInput(where + ": " + path + " must be a number");
+  if (!value || !std::isfinite(*value)) throw InputError(where + ": " + path + " must be a number");
   return *value;
 }
 
@@ -27,7 +27,7 @@ PowerTerm term(const toml::table& pair, const std::string& part, const std::stri
   const double b = number(pair, part + ".b.value", where);
   const double delta = number(pair, part + ".delta.value", where);
   if (!(a > 0.0 && b > 0.0 && delta >= 0.0 && delta < 1.0))
-    throw BadInput(where + ": " + part + " needs a > 0, b > 0 and delta in [0, 1)");
+    throw InputError(where + ": " + part + " needs a > 0, b > 0 and delta in [0, 1)");
   return threshold_term(a, b, delta);
 }
 
@@ -46,19 +46,19 @@ LawRange range_of(const toml::table& pair, const std::string& beyond, const std:
   range.end = end;
   const std::string policy =
       beyond.empty() ? pair.at_path("validity.beyond").value_or(std::string("extrapolate")) : beyond;
-  for (const Beyond b : {Beyond::error, Beyond::clamp, Beyond::extrapolate})
+  for (const Extrapolation b : {Extrapolation::error, Extrapolation::clamp, Extrapolation::extrapolate})
     if (policy == to_string(b)) {
       range.beyond = b;
       return range;
     }
-  throw BadInput(where + ": beyond must be error, clamp or extrapolate, not '" + policy + "'");
+  throw InputError(where + ": beyond must be error, clamp or extrapolate, not '" + policy + "'");
 }
 
 const toml::table& pair_of(const toml::table& card, const std::string& kind, const std::string& path) {
   if (const toml::array* pairs = card["pair"].as_array())
     for (const auto& node : *pairs)
       if (node.is_table() && node.at_path("kind").value_or(std::string()) == kind) return *node.as_table();
-  throw BadInput(path + ": no law card with a " + kind + " law");
+  throw InputError(path + ": no law card with a " + kind + " law");
 }
 
 }  // namespace
@@ -77,8 +77,8 @@ std::string broadcast_file(const std::string& path, MPI_Comm world) {
     }
   }
   MPI_Bcast(&size, 1, MPI_LONG_LONG, 0, world);
-  if (size < 0) throw FileTrouble(path + ": cannot be read");
-  if (size > 100000000) throw FileTrouble(path + ": too large for contact laws");
+  if (size < 0) throw IoError(path + ": cannot be read");
+  if (size > 100000000) throw IoError(path + ": too large for contact laws");
   text.resize(static_cast<std::size_t>(size));
   MPI_Bcast(text.data(), static_cast<int>(size), MPI_CHAR, 0, world);
   return text;
@@ -90,18 +90,18 @@ AnyLaw law_of_file(const std::string& path, const std::string& name, MPI_Comm wo
     if (found == name) return law;
     known += (known.empty() ? "" : ", ") + found;
   }
-  throw BadInput(path + ": no law '" + name + "'; there are: " + known);
+  throw InputError(path + ": no law '" + name + "'; there are: " + known);
 }
 
 AnyLaw law_of_card(const std::string& path, const std::string& kind, const CardChoices& choices, MPI_Comm world) {
   if (kind != "soft-solid" && kind != "soft-soft")
-    throw BadInput("kind '" + kind + "' of a law card: must be soft-solid or soft-soft");
+    throw InputError("kind '" + kind + "' of a law card: must be soft-solid or soft-soft");
   const toml::table card = parse_toml(broadcast_file(path, world), path);
   const toml::table& pair = pair_of(card, kind, path);
   const std::string where = path + ": " + kind + " law";
   const std::string status = pair["status"].value_or(std::string("missing"));
   if (status != "good" && status != "underdetermined")
-    throw BadInput(where + " is not usable: its status is \"" + status + "\"");
+    throw InputError(where + " is not usable: its status is \"" + status + "\"");
   SoftContact law;
   law.normal = term(pair, "normal", where);
   law.tangential = tangential_term(pair, choices.secant, where);

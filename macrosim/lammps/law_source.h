@@ -10,11 +10,11 @@
 
 namespace softgrain::lammps {
 
-/// The text of a file, read on rank 0. All ranks throw FileTrouble when it cannot be read.
+/// The text of a file, read on rank 0. All ranks throw IoError when it cannot be read.
 std::string broadcast_file(const std::string& path, MPI_Comm world);
 
-/// Law `name` of a laws file (common/contact/law_file.h). Throws BadInput (with the names that the file knows),
-/// FileTrouble.
+/// Law `name` of a laws file (common/contact/law_file.h). Throws InputError (with the names that the file knows),
+/// IoError.
 AnyLaw law_of_file(const std::string& path, const std::string& name, MPI_Comm world);
 
 /// What a law card leaves open.
@@ -26,8 +26,8 @@ struct CardChoices {
   std::string beyond;    ///< error, clamp or extrapolate; empty: as the card says
 };
 
-/// The law of kind "soft-solid" (first body soft) or "soft-soft" of a card as calibrate writes it. Throws BadInput,
-/// FileTrouble.
+/// The law of kind "soft-solid" (first body soft) or "soft-soft" of a card as calibrate writes it. Throws InputError,
+/// IoError.
 AnyLaw law_of_card(const std::string& path, const std::string& kind, const CardChoices& choices, MPI_Comm world);
 
 }  // namespace softgrain::lammps

@@ -26,7 +26,7 @@ namespace LAMMPS_NS {
 using softgrain::AnyLaw;
 using softgrain::ContactGeometry;
 using softgrain::ContactResponse;
-using softgrain::CrowdSum;
+using softgrain::MultiContactSum;
 using softgrain::PairRange;
 using softgrain::Vec;
 namespace bridge = softgrain::lammps;
@@ -48,7 +48,7 @@ void gather(PairSoftgrain::Gathered& out, int i, int j, int own, const ContactGe
   out.contacts += share;
 }
 
-void pack(const CrowdSum<3>& s, double* buf) {
+void pack(const MultiContactSum<3>& s, double* buf) {
   *buf++ = s.volume;
   *buf++ = s.square;
   for (int k = 0; k < 3; ++k) *buf++ = s.first[k];
@@ -58,7 +58,7 @@ void pack(const CrowdSum<3>& s, double* buf) {
   *buf++ = s.ready ? 1.0 : 0.0;
 }
 
-void unpack(const double* buf, CrowdSum<3>& s) {
+void unpack(const double* buf, MultiContactSum<3>& s) {
   s.volume = *buf++;
   s.square = *buf++;
   for (int k = 0; k < 3; ++k) s.first[k] = *buf++;
@@ -350,7 +350,7 @@ void PairSoftgrain::unpack_forward_comm(int n, int first, double* buf) {
 double PairSoftgrain::memory_usage() {
   const double pair = 2 * sizeof(int) + sizeof(softgrain::PairConstants) + sizeof(Vec<3>) + sizeof(double) + 1;
   return Pair::memory_usage() + static_cast<double>(store.size()) * pair +
-         static_cast<double>(sums.capacity()) * sizeof(CrowdSum<3>);
+         static_cast<double>(sums.capacity()) * sizeof(MultiContactSum<3>);
 }
 
 }  // namespace LAMMPS_NS

@@ -23,11 +23,11 @@ class PairSoftgrain : public Pair {
     bool wanted = false;
     std::vector<double> translation;  ///< sum over the contacts of normal and tangential stiffness [N/m]
     std::vector<double> rotation;     ///< sum of tangential stiffness times the arm squared [N m]
-    bool pressed = false;             ///< the virial too, at every pass
-    softgrain::Vec<3> virial{};       ///< per axis, force times branch of the contacts between atoms [N m]; one across
-                                      ///< ranks counts half on each
-    double force_sum = 0.0;           ///< of |normal force|; a contact across ranks counts half on each
-    double contacts = 0.0;            ///< that carry force
+    bool pressed = false;             ///< whether the virial is wanted too, at every pass
+    softgrain::Vec<3> virial{};       ///< virial per axis, force times branch of the contacts between atoms [N m]; one
+                                      ///< across ranks counts half on each
+    double force_sum = 0.0;           ///< sum of |normal force| [N]; a contact across ranks counts half on each
+    double contacts = 0.0;            ///< number of contacts that carry force
 
     void add(int atom, double stiffness, double turning) {
       translation[static_cast<std::size_t>(atom)] += stiffness;
@@ -63,16 +63,16 @@ class PairSoftgrain : public Pair {
 
   softgrain::lammps::ContactStore store;
   std::vector<softgrain::AnyLaw> laws;
-  std::vector<softgrain::CrowdSum<3>> sums;  ///< per atom, ghosts included; of the last pass
-  std::vector<FixSoftgrainWall*> walls;      ///< in the order of the script
+  std::vector<softgrain::MultiContactSum<3>> sums;  ///< sums over contacts in the last pass, per atom, ghosts included
+  std::vector<FixSoftgrainWall*> walls;             ///< wall fixes in the order of the script
   Gathered gathered;
   /// The box has been strained since the last run: the pass of the setup lets the springs follow, velocities being
   /// moves.
   bool strained = false;
   bool flows = false;         ///< the box moves: what contacts see is the motion of bodies and that of the box
   bool box_followed = false;  ///< fix softgrain/relax says when lists are made: walls of the box ask for none
-  softgrain::Vec<3> flow{};   ///< rate of its lengths; of a strained box growth over the length that it has now
-  double spring_dt = -1.0;    ///< for the history, of a relaxation; negative: the time step
+  softgrain::Vec<3> flow{};   ///< rate of the lengths of the box; after a strain: growth over the present length
+  double spring_dt = -1.0;    ///< time step of the history in a relaxation; negative: the time step of LAMMPS
   double evaluations = 0.0;   ///< near pairs looked at by all passes of this rank
 
  private:
@@ -86,10 +86,10 @@ class PairSoftgrain : public Pair {
   }
 
   FixSoftgrainHistory* history_ = nullptr;
-  std::string springs_file_;               ///< contacts begin with these; of a restart file: empty
-  std::vector<char> soft_;                 ///< per type
-  std::vector<int> law_index_;             ///< per pair of types, in both orders
-  std::vector<double> radius_max_;         ///< per type, over all ranks [m]
+  std::string springs_file_;        ///< file of the springs that contacts begin with; empty: the restart file has them
+  std::vector<char> soft_;          ///< whether bodies are soft, per type
+  std::vector<int> law_index_;      ///< number of the law per pair of types, in both orders
+  std::vector<double> radius_max_;  ///< largest radius per type, over all ranks [m]
   std::vector<std::vector<int>> entries_;  ///< per own atom: its pairs in the store, for single()
   std::vector<double> extra_;
   int types_ = 0;

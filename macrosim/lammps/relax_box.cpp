@@ -36,7 +36,7 @@ FixSoftgrainWall* FixSoftgrainRelax::box_walls() const {
 }
 
 void FixSoftgrainRelax::make_alike(softgrain::Vec<3>& a) const {
-  if (!alike_) return;
+  if (!isotropic_) return;
   const double mean = (a[0] + a[1] + a[2]) / 3.0;
   a = {{mean, mean, mean}};
 }
@@ -119,7 +119,7 @@ void FixSoftgrainRelax::carry() {
 
 /// A list is about to be made.
 void FixSoftgrainRelax::pre_neighbor() {
-  if (!lists_) return;
+  if (!log_lists_) return;
   listed_.resize(static_cast<std::size_t>(atom->nlocal));
   for (std::size_t i = 0; i < listed_.size(); ++i) listed_[i] = {{atom->x[i][0], atom->x[i][1], atom->x[i][2]}};
   shrunk_ = {{1.0, 1.0, 1.0}};

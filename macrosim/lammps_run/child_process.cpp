@@ -21,9 +21,10 @@ namespace softgrain {
 namespace {
 
 constexpr useconds_t kLookEvery = 200'000;  ///< [us]
-constexpr double kPatience = 5.0;           ///< from SIGTERM to SIGKILL [s]
+constexpr double kPatience = 5.0;           ///< time from SIGTERM to SIGKILL [s]
 
-/// Between fork and exec: calls that are safe there alone. Ends with the errno of what failed.
+/// Runs the program in the forked process. Only calls that are safe between fork and exec are made. On failure it
+/// reports the errno and exits.
 [[noreturn]] void become(char* const* words, const char* directory, int log, pid_t parent, int report) {
   const auto fail = [&] {
     const int error = errno;
@@ -79,12 +80,12 @@ ChildEnd wait_for(pid_t child, const std::function<void()>& watch) {
 ChildEnd run_child(const std::vector<std::string>& words, const std::string& directory, const std::string& log,
                    const std::function<void()>& watch) {
   const int log_file = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  if (log_file < 0) throw FileTrouble(log + ": cannot be written: " + system_message());
+  if (log_file < 0) throw IoError(log + ": cannot be written: " + system_message());
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   int report[2] = {-1, -1};
-  if (::pipe2(report, O_CLOEXEC) != 0) throw FileTrouble("a pipe cannot be made: " + system_message());
+  if (::pipe2(report, O_CLOEXEC) != 0) throw IoError("a pipe cannot be made: " + system_message());
   const pid_t self = ::getpid();
   const pid_t child = ::fork();
   if (child == 0) become(arguments.data(), directory.c_str(), log_file, self, report[1]);
@@ -92,14 +93,14 @@ ChildEnd run_child(const std::vector<std::string>& words, const std::string& dir
   ::close(log_file);
   if (child < 0) {
     ::close(report[0]);
-    throw FileTrouble(words[0] + ": cannot be started: " + system_message());
+    throw IoError(words[0] + ": cannot be started: " + system_message());
   }
   ::setpgid(child, child);  // whoever is first
   const int error = error_before_start(report[0]);
   ::close(report[0]);
   if (error != 0) {
     ::waitpid(child, nullptr, 0);
-    throw FileTrouble(words[0] + ": cannot be started: " + std::generic_category().message(error));
+    throw IoError(words[0] + ": cannot be started: " + std::generic_category().message(error));
   }
   return wait_for(child, watch);
 }

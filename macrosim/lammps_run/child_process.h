@@ -9,14 +9,14 @@ namespace softgrain {
 
 struct ChildEnd {
   int status = 0;            ///< exit status, when it ended by itself
-  int signal = 0;            ///< that ended it; 0: none
+  int signal = 0;            ///< signal that ended it; 0: none
   bool interrupted = false;  ///< a signal to this program made us end it
 };
 
 /// Runs `words` (the program with its path, then arguments) in `directory`, its standard output and standard error
 /// going to the end of `log`. `watch` is called about five times a second. When this program is asked to stop
 /// (common/io/interrupt.h), the child and all it started get SIGTERM, and SIGKILL should they not end within a few
-/// seconds; when this program is killed, the child gets SIGTERM. Throws FileTrouble when it cannot be started.
+/// seconds; when this program is killed, the child gets SIGTERM. Throws IoError when it cannot be started.
 ChildEnd run_child(const std::vector<std::string>& words, const std::string& directory, const std::string& log,
                    const std::function<void()>& watch);
 

@@ -43,7 +43,7 @@ class TextFile {
 
   void close() {
     out_.close();
-    if (!out_) throw FileTrouble(path_ + ": cannot be written: " + system_message());
+    if (!out_) throw IoError(path_ + ": cannot be written: " + system_message());
     rename_into_place(path_);
   }
 

@@ -18,12 +18,12 @@ namespace {
 class Dump {
  public:
   explicit Dump(const std::string& path) : path_(path), in_(path) {
-    if (!in_) throw FileTrouble(path + ": cannot be read");
+    if (!in_) throw IoError(path + ": cannot be read");
   }
 
   std::string line() {
     std::string text;
-    if (!std::getline(in_, text) || in_.eof()) throw FileTrouble(path_ + ": cut short");
+    if (!std::getline(in_, text) || in_.eof()) throw IoError(path_ + ": cut short");
     ++number_;
     return text;
   }
@@ -58,7 +58,7 @@ class Dump {
   }
 
   [[noreturn]] void refuse(const std::string& what) const {
-    throw FileTrouble(fmt::format("{}, line {}: {}", path_, number_, what));
+    throw IoError(fmt::format("{}, line {}: {}", path_, number_, what));
   }
 
  private:
@@ -122,7 +122,7 @@ DumpedBodies read_bodies(const std::string& path, const MacroPacking& packing) {
   const DumpHead head = read_head(dump, "ATOMS");
   const std::size_t n = packing.bodies.size();
   if (head.entries != static_cast<double>(n))
-    throw FileTrouble(fmt::format("{}: {} bodies, the scene has {}", path, head.entries, n));
+    throw IoError(fmt::format("{}: {} bodies, the scene has {}", path, head.entries, n));
   DumpedBodies out{head.low, head.high, std::vector<Vec3>(n)};
   std::vector<double> row;
   for (std::size_t k = 0; k < n; ++k) {
@@ -139,7 +139,7 @@ std::vector<DumpedContact> read_contacts(const std::string& path, std::int32_t b
   Dump dump(path);
   const DumpHead head = read_head(dump, "ENTRIES");
   if (head.entries != count)
-    throw FileTrouble(fmt::format("{}: {} contacts, the last point has {}", path, head.entries, count));
+    throw IoError(fmt::format("{}: {} contacts, the last point has {}", path, head.entries, count));
   std::vector<DumpedContact> out;
   std::vector<double> row;
   double sum = 0.0;
@@ -149,7 +149,7 @@ std::vector<DumpedContact> read_contacts(const std::string& path, std::int32_t b
     sum += std::abs(out.back().normal_force);
   }
   if (std::abs(sum - force_sum) > 1e-9 * force_sum)
-    throw FileTrouble(fmt::format("{}: forces sum up to {} N, the last point has {}", path, sum, force_sum));
+    throw IoError(fmt::format("{}: forces sum up to {} N, the last point has {}", path, sum, force_sum));
   const auto key = [](const DumpedContact& c) { return std::pair(c.i, c.j); };
   std::sort(out.begin(), out.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
   return out;

@@ -15,13 +15,13 @@ std::string grain_words(const MacroSpec& spec, const MacroPacking& packing);
 /// A column of points.txt after those that every test has.
 struct GrainColumn {
   std::string name;
-  std::string expression;  ///< as LAMMPS knows it
+  std::string expression;  ///< expression of the column in LAMMPS
 };
 
 /// Bodies that rattle, then of every split the virials of contacts between coarse and fine ones [N m].
 std::vector<GrainColumn> grain_columns(const MacroSpec& spec);
 
-/// Their names, as points_file.h wants them.
+/// Names of these columns, as points_file.h takes them.
 std::vector<std::string> grain_names(const MacroSpec& spec);
 
 /// Appends a row to curve.more, as record_grains() does.

@@ -12,7 +12,7 @@ namespace softgrain::lammps {
 inline constexpr const char* kScriptFile = "scene.in";
 inline constexpr const char* kDataFile = "bodies.data";
 inline constexpr const char* kLawsFile = "laws.toml";
-inline constexpr const char* kSpringsFile = "springs.txt";  ///< of a preparation with friction
+inline constexpr const char* kSpringsFile = "springs.txt";  ///< springs of a preparation with friction
 inline constexpr const char* kPointsFile = "points.txt";
 inline constexpr const char* kPointsCopy = "points.copy";
 inline constexpr const char* kCompactionFile = "compaction.txt";
@@ -30,9 +30,9 @@ struct ScriptScene {
   const MacroSpec& spec;
   const MacroPacking& packing;
   const BodyTypes& types;
-  std::string title;        ///< for people
-  std::string key;          ///< of scene, seed, law and sample: the head of points.txt carries it
-  std::int64_t states = 0;  ///< kept for pictures, beside the last one
+  std::string title;        ///< title for human readers
+  std::string key;          ///< key of scene, seed, law and sample: the head of points.txt carries it
+  std::int64_t states = 0;  ///< number of states kept for pictures, besides the last one
 };
 
 /// Lines of at most 110 columns, with comments; what may be changed stands at its head.

@@ -13,7 +13,7 @@ namespace softgrain::lammps {
 
 namespace {
 
-/// As fix softgrain/relax numbers them.
+/// End of a relaxation from its number in fix softgrain/relax.
 RelaxationEnd end_of(double code) {
   if (code == 1.0) return RelaxationEnd::converged;
   if (code == 2.0) return RelaxationEnd::capped;
@@ -22,7 +22,7 @@ RelaxationEnd end_of(double code) {
 
 LawUse law_use(const PointRow& row) {
   const auto whole = [&](Point p) { return static_cast<std::int64_t>(row[p]); };
-  return {whole(Point::law_asked), whole(Point::law_beyond), row[Point::law_largest], whole(Point::law_refused),
+  return {whole(Point::law_evaluations), whole(Point::law_beyond), row[Point::law_largest], whole(Point::law_refused),
           whole(Point::law_clamped)};
 }
 
@@ -35,7 +35,7 @@ void add_stresses(const PointRow& row, MacroCurve& c) {
   const double lx = row[Point::lx];
   const double ly = row[Point::ly];
   const double lz = row[Point::lz];
-  if (!(lx > 0.0 && ly > 0.0 && lz > 0.0)) throw FileTrouble("points.txt: a box without room");
+  if (!(lx > 0.0 && ly > 0.0 && lz > 0.0)) throw IoError("points.txt: a box without room");
   const double volume = lx * ly * lz;
   const bool periodic = c.boundary == Boundary::periodic;
   const double x =
@@ -60,8 +60,8 @@ double strain_of(const PointRow& row, const MacroSpec& spec, const MacroCurve& c
   if (spec.test == MacroTest::stages) return 1.0 - row[Point::lz] / c.start.size_z;
   const double strain = strain_at(spec, static_cast<std::int64_t>(c.strain.size()));
   if (std::abs(row[Point::strain] - strain) > 1e-9)
-    throw FileTrouble(fmt::format("points.txt: point {} is at strain {}, the test has {} there: another test was run",
-                                  row[Point::number], row[Point::strain], strain));
+    throw IoError(fmt::format("points.txt: point {} is at strain {}, the test has {} there: another test was run",
+                              row[Point::number], row[Point::strain], strain));
   return strain;
 }
 

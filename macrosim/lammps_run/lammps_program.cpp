@@ -22,7 +22,7 @@ bool is_program(const std::string& path) {
 std::string find_program() {
   const char* named = std::getenv("SOFTGRAIN_LAMMPS");
   if (named != nullptr && *named != '\0') {
-    if (!is_program(named)) throw BadInput("SOFTGRAIN_LAMMPS=" + std::string(named) + ": no program there");
+    if (!is_program(named)) throw InputError("SOFTGRAIN_LAMMPS=" + std::string(named) + ": no program there");
     return std::filesystem::absolute(named).string();
   }
   const std::string beside = own_directory() + "/" + kProgramName;
@@ -44,7 +44,7 @@ std::vector<std::string> command_words(const std::string& program, std::int64_t 
   if (ranks > 1) {
     const std::string mpirun = find_in_path("mpirun");
     if (mpirun.empty())
-      throw BadInput("--ranks: no mpirun in PATH to start several ranks with (./softgrain setup --with-lammps)");
+      throw InputError("--ranks: no mpirun in PATH to start several ranks with (./softgrain setup --with-lammps)");
     // Ranks that wait give way to others: on a machine that does something else too, spinning ones stop it all.
     words = {mpirun, "--oversubscribe",    "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1",
              "-np",  std::to_string(ranks)};

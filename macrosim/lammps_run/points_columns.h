@@ -7,11 +7,11 @@
 namespace softgrain::lammps {
 
 struct PointColumn {
-  const char* name;        ///< in the head of points.txt
-  const char* expression;  ///< as LAMMPS knows it
+  const char* name;        ///< name in the head of points.txt
+  const char* expression;  ///< expression of the column in LAMMPS
 };
 
-/// In the order of kPointColumns.
+/// Recorded quantities, in the order of kPointColumns.
 enum class Point : std::size_t {
   number,
   strain,
@@ -35,7 +35,7 @@ enum class Point : std::size_t {
   branch_xz,
   branch_yz,
   overlap,
-  law_asked,
+  law_evaluations,
   law_beyond,
   law_largest,
   law_refused,

@@ -51,14 +51,14 @@ PointRow parse(const std::string& line, const std::string& where, std::size_t mo
     double x = 0.0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
     if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(x))
-      throw FileTrouble(where + ": '" + word + "' is no finite number");
+      throw IoError(where + ": '" + word + "' is no finite number");
     if (k < columns)
       row.values[k] = x;
     else
       row.more.push_back(x);
     ++k;
   }
-  if (k != columns + more) throw FileTrouble(fmt::format("{}: {} numbers, {} expected", where, k, columns + more));
+  if (k != columns + more) throw IoError(fmt::format("{}: {} numbers, {} expected", where, k, columns + more));
   if (!earlier) return row;
   for (const auto& [here, there] : {std::pair{Point::unrest, Point::residual}, {Point::unrest_end, Point::end}})
     row.values[static_cast<std::size_t>(here)] = row[there];
@@ -69,7 +69,7 @@ PointRow parse(const std::string& line, const std::string& where, std::size_t mo
 void take(const PointRow& row, const std::string& where, std::vector<PointRow>& rows) {
   const double number = row[Point::number];
   if (!(number >= 0.0) || number != std::floor(number) || number > static_cast<double>(rows.size()))
-    throw FileTrouble(fmt::format("{}: point {} follows {} points", where, number, rows.size()));
+    throw IoError(fmt::format("{}: point {} follows {} points", where, number, rows.size()));
   rows.resize(static_cast<std::size_t>(number));
   rows.push_back(row);
 }
@@ -83,18 +83,18 @@ std::vector<PointRow> read_points(const std::string& directory, const std::strin
   const auto copy = lines_of(directory + "/" + kPointsCopy);
   if (lines.empty()) return {};
   const bool earlier = lines[0].starts_with(kEarlierPointsHead);
-  if (!earlier && !lines[0].starts_with(kPointsHead)) throw FileTrouble(path + ": not a table of points of softgrain");
+  if (!earlier && !lines[0].starts_with(kPointsHead)) throw IoError(path + ": not a table of points of softgrain");
   if (lines[0] != head_line(key, earlier))
-    throw BadInput(path + ": belongs to another scene, seed or law than this run");
+    throw InputError(path + ": belongs to another scene, seed or law than this run");
   const std::size_t both = std::min(lines.size(), copy.size());
   if (lines.size() > copy.size() + 1 || copy.size() > lines.size() + 1)
-    throw FileTrouble(fmt::format("{}: has {} lines, its copy {} has {}: one of them is damaged", path, lines.size(),
-                                  kPointsCopy, copy.size()));
+    throw IoError(fmt::format("{}: has {} lines, its copy {} has {}: one of them is damaged", path, lines.size(),
+                              kPointsCopy, copy.size()));
   std::vector<PointRow> rows;
   for (std::size_t k = 0; k < both; ++k) {
     const std::string where = fmt::format("{}, line {}", path, k + 1);
     if (lines[k] != copy[k])
-      throw FileTrouble(fmt::format("{}: differs from its copy {}: one of them is damaged", where, kPointsCopy));
+      throw IoError(fmt::format("{}: differs from its copy {}: one of them is damaged", where, kPointsCopy));
     if (!lines[k].starts_with('#')) take(parse(lines[k], where, more.size(), earlier), where, rows);
   }
   return rows;

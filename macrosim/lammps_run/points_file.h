@@ -12,16 +12,16 @@ namespace softgrain::lammps {
 /// One recorded point.
 struct PointRow {
   std::array<double, static_cast<std::size_t>(Point::count)> values{};
-  std::vector<double> more{};  ///< of columns that the scene asks for beside
-  bool earlier = false;        ///< of a table that an earlier version began: without the columns from `unrest` on
+  std::vector<double> more{};  ///< values of further columns that the scene asks for
+  bool earlier = false;        ///< whether an earlier version began the table, without the columns from `unrest` on
 
   [[nodiscard]] double operator[](Point p) const { return values[static_cast<std::size_t>(p)]; }
 };
 
 /// The rows that stand in both tables, points.txt and its copy, from point 0 on without gap; a last row that is in one
 /// of them alone or cut short was being written when the run ended, and is left out. A row that comes again replaces
-/// the earlier one and those after it: a run that went on from there. Nothing without tables. Throws FileTrouble when
-/// the tables differ or hold what the script does not write, BadInput when they belong to another scene (`key`).
+/// the earlier one and those after it: a run that went on from there. Nothing without tables. Throws IoError when
+/// the tables differ or hold what the script does not write, InputError when they belong to another scene (`key`).
 /// `more`: names of the columns after those that every test has.
 std::vector<PointRow> read_points(const std::string& directory, const std::string& key,
                                   const std::vector<std::string>& more = {});

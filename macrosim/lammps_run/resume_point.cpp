@@ -20,20 +20,20 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A row of the table of a compaction.
-struct Round {
+struct CompactionRound {
   std::int64_t number = 0;
-  double next_pressure = 0.0;     ///< times the last one
-  std::int64_t passes_under = 0;  ///< it, so far
+  double next_pressure = 0.0;     ///< next pressure over the final one of the compaction
+  std::int64_t passes_under = 0;  ///< number of passes under it so far
 };
 
-/// Whole rows.
-std::vector<Round> rounds_of(const std::string& directory) {
-  std::vector<Round> rounds;
+/// Complete rows of the table of a compaction.
+std::vector<CompactionRound> rounds_of(const std::string& directory) {
+  std::vector<CompactionRound> rounds;
   if (!fs::exists(directory + "/" + kCompactionFile)) return rounds;
   std::istringstream in(read_text(directory + "/" + kCompactionFile));
   for (std::string line; std::getline(in, line) && !in.eof();) {
     std::istringstream words(line);
-    Round round;
+    CompactionRound round;
     if (words >> round.number >> round.next_pressure >> round.passes_under) rounds.push_back(round);
   }
   return rounds;
@@ -43,7 +43,7 @@ std::vector<Round> rounds_of(const std::string& directory) {
 std::vector<std::string> last_round(const std::string& directory) {
   if (fs::exists(directory + "/" + kTouchingFile)) return {"-var", "prepared", "1"};
   std::vector<std::string> settings;
-  for (const Round& r : rounds_of(directory))
+  for (const CompactionRound& r : rounds_of(directory))
     if (fs::exists(fmt::format("{}/restart.compaction.{}", directory, r.number)))
       settings = {"-var", "round_done",    fmt::format("{}", r.number),
                   "-var", "next_pressure", fmt::format("{}", r.next_pressure),

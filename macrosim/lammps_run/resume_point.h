@@ -13,9 +13,9 @@ struct ResumePoint {
   std::vector<std::string> settings;  ///< "-var", NAME, VALUE...
 };
 
-/// From the tables and restart files in the directory of a sample. Brings points.txt to the point that the run goes on
-/// after. `stages` of a test that has them: the script is told at which stresses they began; `more` as read_points()
-/// has it, which throws.
+/// Finds where a test goes on, from the tables and restart files in the directory of a sample. Brings points.txt to the
+/// point that the run goes on after. `stages`: for a test in stages, so that the script is told at which stresses they
+/// began. `more`: as for read_points(). Throws what read_points() throws.
 ResumePoint find_resume_point(const std::string& directory, const std::string& key, std::int64_t points,
                               const std::vector<MacroStage>& stages = {}, const std::vector<std::string>& more = {});
 

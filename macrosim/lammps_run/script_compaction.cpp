@@ -19,10 +19,10 @@ constexpr double kLooseSkin = 1.2;
 /// Logarithmic strain of the box in one round beyond which nothing will press.
 constexpr double kFarthestPressed = 3.0;
 
-/// Times the last pressure, the first one. LAMMPS loses bodies whose centre walls press out of the box, where our own
-/// engine lets them come back.
+/// First pressure of the compaction over its last one. LAMMPS loses bodies whose centre walls press out of the box,
+/// where our own engine lets them come back.
 double first_pressure(const MacroSpec& spec) {
-  constexpr double kMost = 5e-3;  ///< over E
+  constexpr double kMost = 5e-3;  ///< largest first pressure, over E
   if (spec.boundary == Boundary::periodic) return spec.protocol.first_pressure;
   return std::min(spec.protocol.first_pressure, std::max(1.0, kMost / spec.start_pressure));
 }
@@ -42,7 +42,7 @@ double mean_radius(const MacroPacking& packing) {
   return sum / static_cast<double>(packing.bodies.size());
 }
 
-/// Of a box whose faces bear 1 N.
+/// Options of the relaxation of a box whose faces bear 1 N.
 DampedOptions options(const ScriptScene& s, bool last) {
   return pressing_options(s.spec, last, 1.0, static_cast<double>(s.packing.bodies.size()), mean_radius(s.packing));
 }
@@ -76,13 +76,15 @@ std::string one_round(const ScriptScene& s) {
       last.tolerance, options(s, false).tolerance, pressing_stress_tolerance(s.spec, true),
       pressing_stress_tolerance(s.spec, false));
   text += fmt::format(
-      "fix relax all softgrain/relax stress ${{bear}} ${{bear}} ${{bear}} alike yes &\n"
+      "fix relax all softgrain/relax stress ${{bear}} ${{bear}} ${{bear}} isotropic yes &\n"
       "  tolerance ${{press_rest}} stress_tolerance ${{press_even}} floor $({}*v_face_load:%.17g) &\n"
-      "  least_stiffness $({}*v_face_load^(1/3):%.17g) restless {}{} &\n"
-      "  max_passes {} farthest {} lists yes\n"
+      "  least_stiffness $({}*v_face_load^(1/3):%.17g) unbalanced_fraction {}{} &\n"
+      "  max_passes {} farthest {} log_lists yes\n"
       "run {} post no\n",
-      last.force_floor, last.least_stiffness, last.restless,
-      std::isfinite(last.max_lead) ? fmt::format(" lead $({}*2^floor(v_so_far/{}))", last.max_lead, kRoundPasses) : "",
+      last.force_floor, last.least_stiffness, last.unbalanced_fraction,
+      std::isfinite(last.max_lead)
+          ? fmt::format(" max_displacement_ratio $({}*2^floor(v_so_far/{}))", last.max_lead, kRoundPasses)
+          : "",
       kRoundPasses, kFarthestPressed, kRoundPasses);
   return text +
          "variable passes equal $(f_relax[1])\n"
@@ -91,7 +93,7 @@ std::string one_round(const ScriptScene& s) {
          "unfix relax\n";
 }
 
-/// The same pressure once more while it is not at rest, the next one after it.
+/// Commands that repeat the pressure while bodies and box are not at rest, and else go on to the next one.
 std::string next_pressure(const ScriptScene& s) {
   return fmt::format(
              "if \"${{end}} == 3\" then \"jump SELF loose\"\n"

@@ -167,7 +167,7 @@ std::string test_variables(const ScriptScene& s) {
 
 namespace {
 
-/// From the state before to rest under the new strain.
+/// Commands of one increment: the box is strained, then all comes to rest.
 std::string one_increment() {
   return "if \"${point} > 0\" then &\n"
          "  \"change_box all x scale $(v_fx:%.17g) y scale $(v_fy:%.17g) &\n"

@@ -20,7 +20,7 @@ double smallest_radius(const MacroPacking& packing);
 /// Sums over contacts, kept up to date by thermo output, and the clock.
 std::string watching(const ScriptScene& scene);
 
-/// Bodies that were placed loosely are brought into touch (macrosim/preparation.h); settings of it.
+/// Compaction of loosely placed bodies into touch (macrosim/preparation.h), and its settings.
 std::string compaction_settings(const ScriptScene& scene);
 std::string compaction(const ScriptScene& scene);
 
@@ -30,22 +30,24 @@ std::string test_variables(const ScriptScene& scene);
 /// The loop over points and increments, up to rest.
 std::string test_loop(const ScriptScene& scene);
 
-/// The same of a test in stages: a table of them with what may be changed, formulas of each, the loop, and the stresses
-/// at which stages begin, which a row is written with.
+/// Parts of a test in stages: a table of the stages with what may be changed, formulas of each stage, the loop, and the
+/// commands after each row that keep the stresses at which stages begin.
 std::string stage_settings(const ScriptScene& scene);
 std::string stage_variables(const ScriptScene& scene);
 std::string stage_loop(const ScriptScene& scene);
 std::string stage_begins(const ScriptScene& scene);
-/// What goes on after these points needs to know of them: words for the command line.
+/// Words for the command line of a run that goes on after these points: length at the start, and stresses at which
+/// stages began.
 std::vector<std::string> begin_settings(const std::vector<MacroStage>& stages, const std::vector<PointRow>& rows);
 
-/// Which points keep their state, as is_snapshot() has it.
+/// Formula for the points that keep their state, the same as in is_snapshot().
 std::string kept_states();
 
-/// After a run: how the relaxation ended, and what it adds to the cost of the point.
+/// Commands after a run: how the relaxation ended, and what it adds to the cost of the point.
 std::string counting();
 
-/// At the begin of a point, and after the relaxation of each of its increments: which of them ended farthest from rest.
+/// Commands that find the increment of a point that ended farthest from rest: at the begin of the point, and after the
+/// relaxation of each increment.
 std::string unrest_begins();
 std::string unrest_watch();
 

@@ -38,7 +38,7 @@ std::string asked(const MacroStage& stage, std::int64_t number, int axis) {
 }
 
 bool presses_alike_first(const MacroStage& stage) {
-  return !stage.alike && stage.axis[0].by_stress && stage.axis[1].by_stress && stage.axis[2].by_stress;
+  return !stage.isotropic && stage.axis[0].by_stress && stage.axis[1].by_stress && stage.axis[2].by_stress;
 }
 
 bool strains(const MacroStage& stage) {
@@ -59,8 +59,8 @@ std::string block(const MacroStage& stage, std::int64_t number, std::int64_t fir
     text += equal(fmt::format("by{}", kAxes[k]), stage.axis[static_cast<std::size_t>(k)].by_stress ? "1" : "0");
     text += equal(fmt::format("asked{}", kAxes[k]), asked(stage, number, k));
   }
-  return text + fmt::format("variable alike string {}\nvariable rest equal {}\njump SELF staged\n",
-                            stage.alike ? "yes" : "no", stage.tolerance);
+  return text + fmt::format("variable isotropic string {}\nvariable rest equal {}\njump SELF staged\n",
+                            stage.isotropic ? "yes" : "no", stage.tolerance);
 }
 
 std::string targets() {
@@ -134,14 +134,14 @@ std::string stage_loop(const ScriptScene& s) {
       "# where all go by stress the mean comes first, without change of shape\n"
       "if \"${point} == 0 || ${evened} == 0\" then \"jump SELF pressed\"\n"
       "variable mean equal (v_askedx+v_askedy+v_askedz)/3\n"
-      "fix_modify relax stress $(v_mean:%.17g) $(v_mean:%.17g) $(v_mean:%.17g) alike yes &\n"
+      "fix_modify relax stress $(v_mean:%.17g) $(v_mean:%.17g) $(v_mean:%.17g) isotropic yes &\n"
       "  tolerance $(10*v_rest:%.17g) stress_tolerance $(10*v_rest/3:%.17g)\n"
       "run ${max_passes} post no\n";
   text += counting();
   text +=
       "label pressed\n"
       "# then all come to rest, with the axes that go by stress\n"
-      "fix_modify relax stress ${pressx} ${pressy} ${pressz} alike ${alike} &\n"
+      "fix_modify relax stress ${pressx} ${pressy} ${pressz} isotropic ${isotropic} &\n"
       "  tolerance $(v_rest:%.17g) stress_tolerance $(v_rest/3:%.17g)\n"
       "run ${max_passes} post no\n";
   text += counting();

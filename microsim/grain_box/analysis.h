@@ -12,8 +12,8 @@ namespace softgrain {
 /// it, with standard errors from their scatter, and the mean normal force there, by which the publication explains the
 /// order of K with the pressure of generation.
 struct ModuliAt {
-  double pressure = 0.0;  ///< asked for [Pa]
-  double bulk = 0.0;      ///< NaN with fewer than 3 intervals, as the others
+  double pressure = 0.0;  ///< stress asked for [Pa]
+  double bulk = 0.0;      ///< K [Pa]; NaN with fewer than 3 intervals, as the others
   double bulk_error = 0.0;
   double shear = 0.0;
   double shear_error = 0.0;
@@ -23,16 +23,16 @@ struct ModuliAt {
 };
 [[nodiscard]] ModuliAt moduli_at(const GrainBoxResult& result, double pressure);
 
-/// Over the arrangements of one pack: means of K, G and the mean normal force at a stress and of the sliding share at
-/// the end of the loading, with standard errors over arrangements. NaN where fewer than two of them have a value.
+/// Means over the arrangements of one pack: K, G and the mean normal force at a stress, and the sliding share at the
+/// end of the loading. Standard errors are over arrangements. NaN where fewer than two of them have a value.
 struct OverArrangements {
   std::string pack;
-  std::size_t arrangements = 0;  ///< that came to their end
-  std::vector<ModuliAt> moduli;  ///< at comparison_stresses(); `points`: arrangements
+  std::size_t arrangements = 0;  ///< number of arrangements that came to their end
+  std::vector<ModuliAt> moduli;  ///< means at comparison_stresses(); `points` counts arrangements
   double sliding = 0.0;
   double sliding_error = 0.0;
 };
-/// Of every pack that has two arrangements or more, in the order of the results.
+/// One entry for every pack that has two arrangements or more, in the order of the results.
 [[nodiscard]] std::vector<OverArrangements> over_arrangements(const std::vector<GrainBoxResult>& results);
 
 /// Round stresses within the loading of all packs, at which their moduli are set side by side [Pa].
@@ -52,7 +52,7 @@ struct OverArrangements {
 /// Estimates by the effective medium with a solid fraction of 0.63 and 6 contacts per grain, for `check`.
 struct GrainBoxForecast {
   double box_length = 0.0;     ///< geometric mean side when jammed [m]
-  double increments = 0.0;     ///< of the loading
+  double increments = 0.0;     ///< number of increments of the loading
   double overlap_ratio = 0.0;  ///< h/R of a mean contact at the largest stress
   double contacts = 0.0;
   double bytes = 0.0;

@@ -137,7 +137,7 @@ void place_grains(GrainPack& pack, const Vec3& lengths, std::uint64_t seed, std:
       found = placed.free(x, r);
     }
     if (!found)
-      throw BadInput(fmt::format(
+      throw InputError(fmt::format(
           "box: grain {} of {} finds no free place in {} trials; a smaller solid_fraction (below about 0.35) is needed",
           n + 1, pack.radius.size(), kTrials));
     pack.position.push_back(x);
@@ -158,7 +158,7 @@ void add_walls(GrainPack& pack, const Vec3& lengths, const GrainBoxWalls& walls)
     }
 }
 
-/// The same grains for the dynamic relaxation: one mean elasticity, six planes.
+/// The grains and the six walls of the pack as a system for the dynamic relaxation, with one mean elasticity.
 System3 loose_system(const GrainBoxSpec& spec, const GrainPack& pack) {
   System3 s;
   s.materials = {{"grain", spec.material.density, spec.material.youngs_modulus, spec.material.poisson_ratio, false},
@@ -224,8 +224,8 @@ GrainPack make_loose_pack(const GrainBoxSpec& spec, std::uint64_t seed) {
   const Vec3 lengths = loose_lengths(pack, spec);
   for (int k = 0; k < 3; ++k)
     if (lengths[k] <= 2.0 * pack.radius.front())
-      throw BadInput(fmt::format("box: side {} of {:.3g} m is too short for a grain of radius {:.3g} m", "xyz"[k],
-                                 lengths[k], pack.radius.front()));
+      throw InputError(fmt::format("box: side {} of {:.3g} m is too short for a grain of radius {:.3g} m", "xyz"[k],
+                                   lengths[k], pack.radius.front()));
   place_grains(pack, lengths, seed, spec.arrangement);
   add_walls(pack, lengths, spec.walls);
   return pack;
@@ -251,7 +251,7 @@ CompactedPack compact_until_stress(const GrainBoxSpec& spec, GrainPack loose) {
     const Vec3 lengths = plane_lengths(s);
     const double fraction = solid / (lengths[0] * lengths[1] * lengths[2]);
     if (!(fraction < kDenserThanAny))
-      throw NotUsable(
+      throw UnusableResult(
           fmt::format("{}: the pack does not jam: no stress at a solid fraction of {:.2f}", spec.name, fraction));
     if (mean_wall_stress(s) <= first_stress) continue;
     out.stress_free_lengths = plane_lengths(before);

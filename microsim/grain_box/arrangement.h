@@ -14,20 +14,20 @@ namespace softgrain {
 std::vector<double> drawn_radii(const GrainBoxSpec& spec, std::uint64_t seed);
 
 /// Grains at random places without overlap inside a box from the origin to `lengths`; elasticity drawn. Walls in the
-/// order -x +x -y +y -z +z, everything frictionless. Random numbers are keyed as those of drawn_radii. Throws BadInput
-/// when the grains do not fit.
+/// order -x +x -y +y -z +z, everything frictionless. Random numbers are keyed as those of drawn_radii. Throws
+/// InputError when the grains do not fit.
 GrainPack make_loose_pack(const GrainBoxSpec& spec, std::uint64_t seed);
 
 struct CompactedPack {
   GrainPack pack;            ///< pressed a little, contacts refreshed
-  Vec3 stress_free_lengths;  ///< of the last box without stress [m]: strain is measured from here
+  Vec3 stress_free_lengths;  ///< sides of the last box without stress [m]: strain is measured from here
   std::int64_t steps = 0;
   std::int64_t loop_passes = 0;
 };
 
 /// Shrinks the box isotropically, relaxing without friction (dynamic relaxation: a loose pack is floppy), in steps that
 /// are halved whenever stress appears, until the wall stress exceeds kFirstStress E at a step of kLastStep; then on to
-/// a fifth of the first pressure of the generation. Throws NotUsable when the pack does not jam, Interrupted.
+/// a fifth of the first pressure of the generation. Throws UnusableResult when the pack does not jam, Interrupted.
 CompactedPack compact_until_stress(const GrainBoxSpec& spec, GrainPack loose);
 
 inline constexpr double kFirstStress = 1e-6;  ///< mean wall stress over mean E that counts as stress

@@ -11,7 +11,7 @@ namespace softgrain {
 inline constexpr int kBoxWalls = 6;
 
 [[nodiscard]] Vec3 box_lengths(const GrainPack& pack);
-[[nodiscard]] double solid_volume(const GrainPack& pack);  ///< of all grains, overlaps counted twice [m^3]
+[[nodiscard]] double solid_volume(const GrainPack& pack);  ///< volume of all grains, overlaps counted twice [m^3]
 [[nodiscard]] double solid_fraction(const GrainPack& pack);
 
 /// Stress by wall forces over wall areas (of the box as it is), compression positive [Pa].
@@ -30,13 +30,13 @@ struct BoxStress {
 [[nodiscard]] BoxStress box_stress(const GrainPack& pack);
 
 struct ContactCounts {
-  std::int64_t contacts = 0;          ///< that carry force, grains and walls
-  std::int64_t sliding = 0;           ///< |Q| >= mu P in this state [QS 2.3]
+  std::int64_t contacts = 0;          ///< contacts that carry force, of grains and walls
+  std::int64_t sliding = 0;           ///< contacts with |Q| >= mu P in this state [QS 2.3]
   double coordination = 0.0;          ///< contacts per grain (a wall contact counts for one grain)
-  double coordination_without = 0.0;  ///< the same, rattlers left out
+  double coordination_without = 0.0;  ///< contacts per grain without rattlers
   std::int64_t rattlers = 0;
   std::int64_t fewest = 0;  ///< contacts of any grain
-  double mean_force = 0.0;  ///< normal [N]
+  double mean_force = 0.0;  ///< mean normal force [N]
 };
 /// Rattlers have fewer than 4 contacts without friction, fewer than 2 with it; they are taken out until none is left.
 [[nodiscard]] ContactCounts count_contacts(const GrainPack& pack);

@@ -96,7 +96,7 @@ double GrainBoxRun::share_done() const {
   return std::min(1.0, std::max(by_stress, largest(p.strain - load_start().strain) / spec_.loading.end_strain));
 }
 
-/// After every equilibrium: progress, checkpoint when due, and the end when a signal came.
+/// Called after every equilibrium: reports the progress, saves a checkpoint when due, and ends the run after a signal.
 void GrainBoxRun::pause_if_asked() {
   count_time();
   note_safe_point();
@@ -193,7 +193,7 @@ void GrainBoxRun::step(const BoxMove& move) {
   };
   try {
     (void)stepper.apply(state_.pack, move);
-  } catch (const NotUsable&) {
+  } catch (const UnusableResult&) {
     note_failures();
     throw;
   }
@@ -237,7 +237,7 @@ void GrainBoxRun::reach_pressure(double target) {
     const double wanted = slope > 0.0 ? rise / slope : kPressureStep;
     step(isotropic(std::clamp(wanted, -kPressureStep, kPressureStep)));
   }
-  throw NotUsable(
+  throw UnusableResult(
       fmt::format("{}: the pressure of {:.4g} Pa was not met in {} steps", spec_.name, target, kPressureSteps));
 }
 
@@ -274,8 +274,8 @@ void GrainBoxRun::compact() {
     if (!grow())
       ++state_.pressures_met;
     else if (state_.growth_passes > spec_.generation.growth_passes)
-      throw NotUsable(fmt::format("{}: after {} passes of growth some grains still have fewer than {} contacts",
-                                  spec_.name, spec_.generation.growth_passes, kEnoughContacts));
+      throw UnusableResult(fmt::format("{}: after {} passes of growth some grains still have fewer than {} contacts",
+                                       spec_.name, spec_.generation.growth_passes, kEnoughContacts));
   }
 }
 
@@ -295,8 +295,9 @@ void GrainBoxRun::add_friction() {
     if (static_cast<std::int64_t>(std::count_if(state_.points.begin(), state_.points.end(), [](const BoxPoint& p) {
           return p.phase == BoxPhase::friction;
         })) >= spec_.generation.max_increments)
-      throw NotUsable(fmt::format("{}: after {} increments with friction sliding has not saturated, or G does not grow",
-                                  spec_.name, spec_.generation.max_increments));
+      throw UnusableResult(
+          fmt::format("{}: after {} increments with friction sliding has not saturated, or G does not grow", spec_.name,
+                      spec_.generation.max_increments));
     step(move);
   }
 }
@@ -363,7 +364,7 @@ GrainBoxResult GrainBoxRun::run() {
   } catch (const Interrupted&) {
     go_back_and_save();
     throw;
-  } catch (const NotUsable& e) {
+  } catch (const UnusableResult& e) {
     result.reason = e.what();
     if (control_.say) control_.say(spec_.name + ": " + result.reason);
   }

@@ -9,7 +9,7 @@ namespace softgrain {
 /// Goes on from `state` (a fresh one starts at the beginning) to the end. Depends on spec, seed and state alone: a run
 /// that was stopped and went on ends in the same bits. What cannot be done (an increment without equilibrium, a stress
 /// out of reach, a pack that does not jam) ends the run: usable is false, everything before it is kept.
-/// Progress is told after every equilibrium. Throws BadInput, and Interrupted after saving.
+/// Progress is told after every equilibrium. Throws InputError, and Interrupted after saving.
 [[nodiscard]] GrainBoxResult run_grain_box(const GrainBoxSpec& spec, std::uint64_t seed, GrainBoxState state,
                                            const RunControl<GrainBoxState>& control);
 

@@ -9,7 +9,7 @@ namespace softgrain {
 
 struct Moduli {
   double bulk = 0.0;   ///< K [Pa]; NaN where the loading does not define it
-  double shear = 0.0;  ///< G [Pa]; NaN likewise
+  double shear = 0.0;  ///< G [Pa]; NaN where the loading does not define it
 };
 
 /// Hooke's law solved for K and G from an increment of the three normal stresses [Pa] over three normal strains
@@ -35,11 +35,11 @@ struct MediumState {
 /// y = prefactor x^exponent by least squares of the logarithms.
 struct PowerFit {
   double exponent = 0.0;        ///< NaN with fewer than 3 points
-  double standard_error = 0.0;  ///< of the exponent, from the scatter about the line
+  double standard_error = 0.0;  ///< standard error of the exponent, from the scatter about the line
   double prefactor = 0.0;
   std::size_t points = 0;
 };
-/// Over the points with low <= x <= high and finite positive y.
+/// Fits the points with low <= x <= high and finite positive y.
 [[nodiscard]] PowerFit fit_power(const std::vector<double>& x, const std::vector<double>& y, double low, double high);
 
 }  // namespace softgrain

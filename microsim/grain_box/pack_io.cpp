@@ -60,8 +60,7 @@ void read_contacts(const h5::Group& g, GrainPack& pack) {
   for (std::size_t k = 0; k < pack.contacts.size(); ++k) {
     const std::int64_t i = marks[kContactMarks * k];
     const std::int64_t j = marks[kContactMarks * k + 1];
-    if (i < 0 || i >= pack.grains() || j <= i || j >= bodies)
-      throw FileTrouble("a contact names a body that is not there");
+    if (i < 0 || i >= pack.grains() || j <= i || j >= bodies) throw IoError("a contact names a body that is not there");
     PackContact& c = pack.contacts[k];
     c.i = static_cast<std::int32_t>(i);
     c.j = static_cast<std::int32_t>(j);

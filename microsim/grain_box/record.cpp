@@ -44,7 +44,7 @@ constexpr NumberColumn kNumbers[] = {{"shear_stress", "Pa", &BoxPoint::shear},
                                      {"mean_normal_force", "N", &BoxPoint::mean_force},
                                      {"solid_fraction", "1", &BoxPoint::solid_fraction}};
 
-/// That files of older versions do not have.
+/// Columns that files of older versions do not have.
 constexpr NumberColumn kLaterNumbers[] = {{"wall_moment", "Pa", &BoxPoint::moment},
                                           {"sliding_limit_at_start", "1", &BoxPoint::at_start_limit}};
 
@@ -82,7 +82,7 @@ void read_vector(const h5::Group& g, const VectorColumn& c, std::vector<BoxPoint
 }
 
 BoxPhase phase_of(std::int64_t number) {
-  if (number < 0 || number > static_cast<std::int64_t>(BoxPhase::done)) throw FileTrouble("a phase that is not known");
+  if (number < 0 || number > static_cast<std::int64_t>(BoxPhase::done)) throw IoError("a phase that is not known");
   return static_cast<BoxPhase>(number);
 }
 
@@ -191,7 +191,7 @@ GrainBoxResult read_result(const h5::Group& g) {
   spec.loading.test = g.text("test");
   spec.loading.increments = g.doubles("increments");
   const std::vector<double> ranges = g.open("fits").doubles("ranges");
-  if (ranges.size() != 4) throw FileTrouble("data set 'ranges' has a wrong length");
+  if (ranges.size() != 4) throw IoError("data set 'ranges' has a wrong length");
   spec.fit = {{ranges[0], ranges[1]}, {ranges[2], ranges[3]}};
   result.usable = g.integer("usable") != 0;
   result.reason = g.text("reason");
@@ -257,7 +257,7 @@ GrainBoxState read_state(const h5::Group& g) {
   state.loose_passes = g.integer("loose_passes");
   state.seconds = g.number("seconds");
   const std::vector<double> lengths = g.doubles("stress_free_lengths");
-  if (lengths.size() != 3) throw FileTrouble("data set 'stress_free_lengths' has a wrong length");
+  if (lengths.size() != 3) throw IoError("data set 'stress_free_lengths' has a wrong length");
   state.stress_free_lengths = {{lengths[0], lengths[1], lengths[2]}};
   state.points = read_points(g.open("points"));
   state.failures = read_failures(g.open("failures"));
@@ -284,8 +284,8 @@ std::vector<GrainBoxResult> load_grain_boxes(const std::string& path) {
   for (const std::string& name : packs.children()) {
     try {
       results.push_back(read_result(packs.open(name)));
-    } catch (const FileTrouble& e) {
-      throw FileTrouble(path + ": packs/" + name + ": " + e.what());
+    } catch (const IoError& e) {
+      throw IoError(path + ": packs/" + name + ": " + e.what());
     }
   }
   return results;

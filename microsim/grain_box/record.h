@@ -27,9 +27,9 @@ std::string to_string(BoxPhase phase);
 /// An equilibrium and the interval that led to it. NaN: not defined for this loading, or not probed.
 struct BoxPoint {
   BoxPhase phase = BoxPhase::compaction;
-  Vec3 strain{};  ///< from the length at which stress first appeared, compression positive
+  Vec3 strain{};  ///< strain from the length at which stress first appeared, compression positive
   Vec3 lengths{};
-  Vec3 stress{};        ///< of the walls [Pa]
+  Vec3 stress{};        ///< stress from the wall forces [Pa]
   double shear = 0.0;   ///< BoxStress::shear [Pa]
   double moment = 0.0;  ///< BoxStress::moment [Pa]
   double imbalance = 0.0;
@@ -37,15 +37,15 @@ struct BoxPoint {
   double deviator = 0.0;  ///< sqrt(3 J2) [Pa]
   double bulk = 0.0;      ///< K of the interval [Pa]
   double shear_modulus = 0.0;
-  double bulk_probe = 0.0;  ///< elastic: no contact slides [Pa]
+  double bulk_probe = 0.0;  ///< K of an elastic probe: no contact slides [Pa]
   double shear_probe = 0.0;
-  double bulk_medium = 0.0;  ///< effective medium [Pa]
+  double bulk_medium = 0.0;  ///< K of the effective medium [Pa]
   double shear_medium = 0.0;
-  double sliding_share = 0.0;   ///< of contacts with |Q| >= mu P in this state [QS 2.3]; NaN without friction
+  double sliding_share = 0.0;   ///< share of contacts with |Q| >= mu P in this state [QS 2.3]; NaN without friction
   double at_start_limit = 0.0;  ///< share_at_start_limit() of the interval
   double coordination = 0.0;
-  double coordination_without = 0.0;  ///< rattlers left out
-  double mean_force = 0.0;            ///< normal [N]
+  double coordination_without = 0.0;  ///< coordination without rattlers
+  double mean_force = 0.0;            ///< mean normal force [N]
   double solid_fraction = 0.0;
   std::int64_t rattlers = 0;
   std::int64_t fewest_contacts = 0;
@@ -62,7 +62,7 @@ struct GrainBoxState {
   BoxPhase phase = BoxPhase::start;
   GrainPack pack;
   Vec3 stress_free_lengths{};
-  std::int64_t pressures_met = 0;  ///< of GrainBoxGeneration::pressures()
+  std::int64_t pressures_met = 0;  ///< number of GrainBoxGeneration::pressures() that were reached
   std::int64_t growth_passes = 0;
   std::int64_t loose_passes = 0;  ///< loop passes of the dynamic relaxation before stress appeared
   std::vector<BoxPoint> points;
@@ -92,7 +92,7 @@ struct GrainBoxFits {
 void write_state(const h5::Group& group, const GrainBoxState& state);
 [[nodiscard]] GrainBoxState read_state(const h5::Group& group);
 
-/// grain_box.h5: provenance and one group per pack. Atomic. Throws FileTrouble.
+/// grain_box.h5: provenance and one group per pack. Atomic. Throws IoError.
 void save_grain_boxes(const std::string& path, const std::vector<GrainBoxResult>& results,
                       const Provenance& provenance);
 /// What a report needs: of the spec only what the file holds (name, friction, pressure, test, increments, fit ranges).
@@ -100,7 +100,7 @@ void save_grain_boxes(const std::string& path, const std::vector<GrainBoxResult>
 
 /// A pack between plain walls (no symmetry planes, no gravity), bit for bit.
 void write_pack(const h5::Group& group, const GrainPack& pack);
-/// Throws FileTrouble when lengths or indices do not fit each other, or numbers are not finite.
+/// Throws IoError when lengths or indices do not fit each other, or numbers are not finite.
 [[nodiscard]] GrainPack read_pack(const h5::Group& group);
 
 }  // namespace softgrain

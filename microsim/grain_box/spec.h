@@ -46,14 +46,14 @@ struct GrainBoxGeneration {
   /// Ascending, below `pressure` [Pa]: where (a) stops on the way. Packs of one arrangement that differ in `pressure`
   /// are the same pack pressed on without friction, as in the publication, when the lower ones of them stand here.
   std::vector<double> lower_pressures;
-  double pressure_tolerance = 1e-3;  ///< relative
-  double growth = 0.01;              ///< of the radius, per pass, of grains with fewer than 4 contacts
+  double pressure_tolerance = 1e-3;  ///< relative tolerance of the pressure
+  double growth = 0.01;              ///< relative growth of the radius per pass, of grains with fewer than 4 contacts
   std::int64_t growth_passes = 200;
-  double increment = 1e-4;            ///< strain, of (b)
+  double increment = 1e-4;            ///< strain increment of (b)
   std::int64_t window = 10;           ///< increments over which the end of (b) averages G and the sliding share
   double saturation = 0.01;           ///< largest change of the mean sliding share between two windows
-  std::int64_t max_increments = 400;  ///< of (b)
-  int axis = 2;                       ///< of the uniaxial compression
+  std::int64_t max_increments = 400;  ///< largest number of increments of (b)
+  int axis = 2;                       ///< axis of the uniaxial compression
   bool isotropic = false;             ///< (b): compressed alike from all sides instead; ends when sliding has saturated
 
   /// All stops of (a), `pressure` the last.
@@ -70,15 +70,15 @@ enum class AxisControl { strain, stress };
 struct GrainBoxLoading {
   std::string test = "uniaxial";
   std::array<AxisControl, 3> control{};
-  Vec3 strain_rate{{0.0, 0.0, 1.0}};  ///< of axes held by strain; compression positive
-  Vec3 stress{};                      ///< of axes held by stress [Pa]
+  Vec3 strain_rate{{0.0, 0.0, 1.0}};  ///< strain rates of axes held by strain; compression positive
+  Vec3 stress{};                      ///< stresses of axes held by stress [Pa]
   std::vector<double> increments{1e-4};
   std::vector<double> stage_strains;                            ///< strain covered by every stage but the last
-  double end_stress = std::numeric_limits<double>::infinity();  ///< sigma_c [Pa]
+  double end_stress = std::numeric_limits<double>::infinity();  ///< sigma_c at which the loading ends [Pa]
   double end_strain = std::numeric_limits<double>::infinity();  ///< largest axis strain since the start of loading
   std::int64_t probe_every = 20;                                ///< increments between elastic probes; 0: never
-  double stress_tolerance = 1e-4;                               ///< of the servo, relative
-  int max_halvings = 5;                                         ///< of an increment that does not converge
+  double stress_tolerance = 1e-4;                               ///< relative tolerance of the servo
+  int max_halvings = 5;  ///< largest number of halvings of an increment that does not converge
 };
 
 /// Ranges of sigma_c in which growth exponents are fitted [Pa].
@@ -89,13 +89,13 @@ struct GrainBoxFit {
 
 /// Everything about one pack and its run.
 struct GrainBoxSpec {
-  std::string name = "pack";      ///< of the variant
+  std::string name = "pack";      ///< name of the variant
   std::string of = "pack";        ///< the name without the number of the arrangement
-  std::uint64_t arrangement = 0;  ///< which of several: random numbers are keyed by seed and this
+  std::uint64_t arrangement = 0;  ///< number of the arrangement: random numbers are keyed by seed and this
   std::int64_t grains = 2740;
   Vec3 aspect{{1.0, 1.0, 1.0}};  ///< box lengths, relative
-  double solid_fraction = 0.3;   ///< of the loose arrangement
-  double friction = 0.3;         ///< between grains; infinity: kStickingFriction
+  double solid_fraction = 0.3;   ///< solid fraction of the loose arrangement
+  double friction = 0.3;         ///< friction coefficient between grains; infinity: kStickingFriction
   GrainBoxMaterial material;
   GrainBoxWalls walls;
   GrainBoxGeneration generation;

@@ -68,7 +68,7 @@ bool BoxStepper::attempt(GrainPack& pack, const Vec3& strain) {
   LeastWorkResult r;
   try {
     r = advance(pack, wall_moves(strain, reference_), options_);
-  } catch (const NotUsable& e) {
+  } catch (const UnusableResult& e) {
     fail(strain, std::numeric_limits<double>::quiet_NaN(), e.what());
     return false;
   }
@@ -136,8 +136,8 @@ Vec3 BoxStepper::halves(GrainPack& pack, const BoxMove& move, int depth) {
   Vec3 taken = move.strain;
   if (move.has_servo() ? servo(pack, move, taken) : attempt(pack, move.strain)) return taken;
   if (depth >= max_halvings_ || largest(move.strain) == 0.0)
-    throw NotUsable(fmt::format("increment ({:.3g}, {:.3g}, {:.3g}) failed after {} halvings: {}", move.strain[0],
-                                move.strain[1], move.strain[2], depth, last_reason_));
+    throw UnusableResult(fmt::format("increment ({:.3g}, {:.3g}, {:.3g}) failed after {} halvings: {}", move.strain[0],
+                                     move.strain[1], move.strain[2], depth, last_reason_));
   BoxMove half = move;
   half.strain *= 0.5;
   const Vec3 start = box_stress(pack).normal;

@@ -17,22 +17,22 @@ inline double largest(const Vec3& a) { return std::max({std::abs(a[0]), std::abs
 /// One increment of the box as it is asked for.
 struct BoxMove {
   std::array<AxisControl, 3> control{};
-  Vec3 strain{};  ///< of axes held by strain; first guess for the others
-  Vec3 stress{};  ///< wanted on axes held by stress [Pa]
+  Vec3 strain{};  ///< strain wanted on axes held by strain; first guess for the others
+  Vec3 stress{};  ///< stress wanted on axes held by stress [Pa]
 
   [[nodiscard]] bool has_servo() const;
 };
 
 /// An increment that did not come to rest and was taken back.
 struct FailedTry {
-  Vec3 strain{};          ///< tried
-  double residual = 0.0;  ///< where it ended
+  Vec3 strain{};          ///< strain that was tried
+  double residual = 0.0;  ///< residual at which it ended
   std::string reason;
 };
 
 /// What an increment took, tries that failed included.
 struct StepEffort {
-  double residual = 0.0;  ///< of the accepted state: net force over largest contact force, worst grain
+  double residual = 0.0;  ///< residual of the accepted state: net force over largest contact force, worst grain
   std::int64_t iterations = 0;
   std::int64_t loop_passes = 0;
   std::int64_t contact_evaluations = 0;
@@ -48,8 +48,8 @@ class BoxStepper {
   BoxStepper(const LeastWorkOptions& options, const Vec3& reference, int max_halvings, double stress_tolerance)
       : options_(options), reference_(reference), max_halvings_(max_halvings), stress_tolerance_(stress_tolerance) {}
 
-  /// Applies the move and returns the strain it took. Throws NotUsable with the reason when it fails even after all
-  /// halvings; the pack is then at the last equilibrium that was reached.
+  /// Applies the move and returns the strain it took. Throws UnusableResult with the reason when it fails even after
+  /// all halvings; the pack is then at the last equilibrium that was reached.
   Vec3 apply(GrainPack& pack, const BoxMove& move);
 
   /// Moves by strain alone; zero: equilibrium where the walls are.

@@ -122,8 +122,7 @@ void ContactMonitor::save(const h5::Group& group) const {
 void ContactMonitor::load(const h5::Group& group) {
   const std::vector<std::int64_t> pairs = group.integers("pairs");
   const std::vector<double> v = group.doubles("numbers");
-  if (pairs.size() % 3 != 0 || v.size() != pairs.size() / 3 * 10)
-    throw FileTrouble("saved contacts do not fit together");
+  if (pairs.size() % 3 != 0 || v.size() != pairs.size() / 3 * 10) throw IoError("saved contacts do not fit together");
   watched_.clear();
   of_contact_.clear();
   build_ = 0;

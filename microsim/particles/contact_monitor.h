@@ -25,7 +25,7 @@ struct ContactHistory {
 /// Beginnings and ends are interpolated linearly between steps (free flight), maxima by a parabola through three steps.
 class ContactMonitor {
  public:
-  /// To be called after every step, and once before the first. Looks at the committed state; writes nothing but scratch
+  /// Observes the committed state; to be called after every step, and once before the first. Writes nothing but scratch
   /// of the contact list that the next pass overwrites.
   template <int D>
   void observe(System<D>& system);
@@ -47,10 +47,10 @@ class ContactMonitor {
   };
   struct Watched {
     std::int64_t count = 0;
-    double duration = 0.0;  ///< of contacts that have ended
-    double begin = 0.0;     ///< of the present one
-    double seen = 0.0;      ///< time of the last observation
-    double overlap = 0.0;   ///< then; negative: gap
+    double duration = 0.0;  ///< total duration of contacts that have ended [s]
+    double begin = 0.0;     ///< time at which the present contact began [s]
+    double seen = 0.0;      ///< time of the last observation [s]
+    double overlap = 0.0;   ///< overlap at the last observation [m]; negative: gap
     Peak force;
     Peak depth;
   };

@@ -22,10 +22,10 @@ constexpr std::int64_t kGrainFrames = 200'000;
 template <int D>
 void record_contacts(FrameContacts& to, std::int64_t frame, const System<D>& system) {
   const std::vector<SnapshotContact> now = snapshot_contacts(system);
-  const auto sound = [](const SnapshotContact& c) {
+  const auto valid = [](const SnapshotContact& c) {
     return std::isfinite(norm2(c.force)) && std::isfinite(norm2(c.from)) && std::isfinite(norm2(c.to));
   };
-  if (!std::all_of(now.begin(), now.end(), sound)) return;  // the run is about to be found lost
+  if (!std::all_of(now.begin(), now.end(), valid)) return;  // the run is about to be found lost
   to.frame.push_back(frame);
   to.count.push_back(static_cast<std::int64_t>(now.size()));
   to.contacts.insert(to.contacts.end(), now.begin(), now.end());
@@ -48,12 +48,12 @@ FrameContacts read_frame_contacts(const h5::Group& group, std::size_t particles,
   c.contacts = read_snapshot_contacts(group, {particles, bodies}, Snapshot{});
   std::int64_t total = 0;
   for (const std::int64_t n : c.count) {
-    if (n < 0 || n > static_cast<std::int64_t>(c.contacts.size())) throw FileTrouble("contacts of frames do not fit");
+    if (n < 0 || n > static_cast<std::int64_t>(c.contacts.size())) throw IoError("contacts of frames do not fit");
     total += n;
   }
   if (c.frame.size() != c.count.size() || total != static_cast<std::int64_t>(c.contacts.size()) ||
       !std::is_sorted(c.frame.begin(), c.frame.end()))
-    throw FileTrouble("contacts of frames do not fit");
+    throw IoError("contacts of frames do not fit");
   const std::int64_t most = c.count.empty() ? 0 : *std::max_element(c.count.begin(), c.count.end());
   require_shape(group, "segment", {static_cast<std::size_t>(most), 2});
   return c;

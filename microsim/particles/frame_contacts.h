@@ -24,7 +24,7 @@ void record_contacts(FrameContacts& to, std::int64_t frame, const System<D>& sys
 /// Data sets frame, count and those of write_snapshot_contacts (snapshot_io.h); a segment list for the largest count.
 void write_frame_contacts(const h5::Group& group, const FrameContacts& contacts);
 
-/// `particles` and `bodies` (with walls) bound what contacts may name. Throws FileTrouble.
+/// `particles` and `bodies` (with walls) bound what contacts may name. Throws IoError.
 FrameContacts read_frame_contacts(const h5::Group& group, std::size_t particles, std::size_t bodies);
 
 /// How many frames keep their contacts unless the scene says: fewer of large systems, so that they take about as much

@@ -32,7 +32,7 @@ std::string driven_by(const System<D>& s) {
   return "";
 }
 
-/// Of gravity and of the loads on planes [J].
+/// Potential energy of gravity and of the loads on planes [J].
 template <int D>
 double potential_energy(const System<D>& s) {
   const auto& p = s.particles;
@@ -79,7 +79,7 @@ void write_record(const h5::Group& g, const std::string& name, const GuardRecord
 
 GuardRecord read_record(const h5::Group& g, const std::string& name) {
   const std::vector<double> v = g.doubles(name);
-  if (v.size() != 3) throw FileTrouble("checkpoint: guard '" + name + "' has a wrong size");
+  if (v.size() != 3) throw IoError("checkpoint: guard '" + name + "' has a wrong size");
   return {v[0], static_cast<std::int64_t>(v[1]), v[2]};
 }
 
@@ -87,7 +87,7 @@ GuardRecord read_record(const h5::Group& g, const std::string& name) {
 
 namespace {
 
-/// Of as many components as the scene has dimensions; the others are zero and never looked at.
+/// Reads as many components as the scene has dimensions; the others are zero and never looked at.
 Vec3 read_corner(const SceneTable& t, const std::string& key, int dimension) {
   return dimension == 3 ? t.vector3(key, Unit::length) : in_space<2>(read_vector<2>(t, key, Unit::length));
 }
@@ -100,7 +100,7 @@ namespace {
 void refuse_idle(const SceneTable& t, const GuardRule& rule, std::initializer_list<const char*> keys) {
   if (rule.action != GuardAction::ignore) return;
   for (const char* key : keys)
-    if (t.has(key)) t.mistake(key, "nothing is watched with action = \"ignore\"");
+    if (t.has(key)) t.add_error(key, "nothing is watched with action = \"ignore\"");
 }
 
 }  // namespace
@@ -119,7 +119,7 @@ GuardSpec read_guards(const SceneTable& t, int dimension) {
   if (escape.has("low")) out.low = read_corner(escape, "low", dimension);
   if (escape.has("high")) out.high = read_corner(escape, "high", dimension);
   for (int k = 0; out.low && out.high && k < dimension; ++k)
-    if (!((*out.low)[k] < (*out.high)[k])) escape.mistake("high", "must be above low along every axis");
+    if (!((*out.low)[k] < (*out.high)[k])) escape.add_error("high", "must be above low along every axis");
   out.escape.action = escape.choice<GuardAction>("action", out.escape.action);
   refuse_idle(escape, out.escape, {"low", "high"});
   const SceneTable wall = t.table_or_empty("wall");
@@ -148,7 +148,7 @@ void Guards<D>::note(const GuardRule& rule, double value, double time, GuardReco
   record.worst = larger_or_nan(record.worst, value);
   if (value <= rule.limit) return;
   if (record.count++ == 0) record.first_time = time;
-  if (rule.action == GuardAction::stop) throw NotUsable(what);
+  if (rule.action == GuardAction::stop) throw UnusableResult(what);
 }
 
 template <int D>
@@ -224,7 +224,7 @@ void Guards<D>::look(const System<D>& s) {
   look_at_grains(s, watch);
   look_at_walls(s);
   look_at_energy(s, watch);
-  if (watch.laws.refused > 0) throw NotUsable("soft contacts: " + law_use_text(watch.laws));
+  if (watch.laws.rejected > 0) throw UnusableResult("soft contacts: " + law_use_text(watch.laws));
 }
 
 template <int D>
@@ -234,8 +234,8 @@ void Guards<D>::save(const h5::Group& g) const {
   write_record(g, "escape", report_.escape);
   write_record(g, "wall_travel", report_.wall_travel);
   const LawUse& l = report_.laws;
-  g.write("laws", std::vector<std::int64_t>{report_.looks, l.asked, l.beyond, l.refused, l.clamped});
-  g.write("numbers", std::vector<double>{least_, scale_, l.largest});
+  g.write("laws", std::vector<std::int64_t>{report_.looks, l.evaluations, l.beyond, l.rejected, l.clamped});
+  g.write("numbers", std::vector<double>{least_, scale_, l.max_range_ratio});
   g.attribute("energy_unwatched", report_.energy_unwatched);
 }
 
@@ -247,7 +247,7 @@ void Guards<D>::load(const h5::Group& g) {
   report_.wall_travel = read_record(g, "wall_travel");
   const std::vector<std::int64_t> l = g.integers("laws");
   const std::vector<double> n = g.doubles("numbers");
-  if (l.size() != 5 || n.size() != 3) throw FileTrouble("checkpoint: guards have a wrong size");
+  if (l.size() != 5 || n.size() != 3) throw IoError("checkpoint: guards have a wrong size");
   report_.looks = l[0];
   report_.laws = {l[1], l[2], n[2], l[3], l[4]};
   least_ = n[0];

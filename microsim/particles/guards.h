@@ -20,9 +20,9 @@ enum class GuardAction {
 };
 
 template <>
-inline constexpr auto words<GuardAction> = word_list<GuardAction>({{GuardAction::ignore, "ignore"},
-                                                                   {GuardAction::count, "count"},
-                                                                   {GuardAction::stop, "stop"}});
+inline constexpr auto enum_names<GuardAction> = enum_name_list<GuardAction>({{GuardAction::ignore, "ignore"},
+                                                                             {GuardAction::count, "count"},
+                                                                             {GuardAction::stop, "stop"}});
 
 /// One guard: the run is looked at every so many steps, and what exceeds `limit` is answered by `action`.
 struct GuardRule {
@@ -32,22 +32,24 @@ struct GuardRule {
 
 /// Table [guards] of a scene.
 struct GuardSpec {
-  GuardRule overlap{1.0, GuardAction::count};  ///< over the smaller radius; 1: a centre has reached the other's surface
-  GuardRule energy{0.05, GuardAction::stop};   ///< growth over the least so far, over the most that moved or was stored
-  GuardRule escape{0.0, GuardAction::stop};    ///< a centre behind a plane, or outside `low`..`high`
-  std::optional<Vec3> low{};                   ///< of the room that grains may be in; empty: any
+  /// Overlap over the smaller radius; 1: a centre has reached the other's surface.
+  GuardRule overlap{1.0, GuardAction::count};
+  GuardRule energy{0.05, GuardAction::stop};  ///< growth over the least so far, over the most that moved or was stored
+  GuardRule escape{0.0, GuardAction::stop};   ///< a centre behind a plane, or outside `low`..`high`
+  std::optional<Vec3> low{};                  ///< low corner of the region that grains may be in; empty: any
   std::optional<Vec3> high{};
-  GuardRule wall_travel{0.0, GuardAction::stop};  ///< of walls moved by forces [m]; 0: twice the way through all grains
+  /// Displacement of walls moved by forces [m]; limit 0: twice the way through all grains.
+  GuardRule wall_travel{0.0, GuardAction::stop};
 };
 
-/// `dimension` is that of the vectors. Throws BadInput.
+/// `dimension` is that of the vectors. Throws InputError.
 GuardSpec read_guards(const SceneTable& table, int dimension = 3);
 
 /// What one guard saw.
 struct GuardRecord {
   double worst = 0.0;       ///< largest value seen, in units of the rule
   std::int64_t count = 0;   ///< looks at which it was above the limit
-  double first_time = 0.0;  ///< of those [s]
+  double first_time = 0.0;  ///< time of the first of these looks [s]
 };
 
 /// Everything that was seen so far.
@@ -73,7 +75,7 @@ class Guards {
   /// percent of the steps between.
   [[nodiscard]] std::int64_t every() const { return report_.every; }
 
-  /// Looks at a state after a step. Throws NotUsable when a guard stops the run.
+  /// Looks at a state after a step. Throws UnusableResult when a guard stops the run.
   void look(const System<D>& system);
 
   [[nodiscard]] const GuardReport& report() const { return report_; }

@@ -79,7 +79,7 @@ class ParticlesRun {
   void advance();
   LoopPart advance_to(std::int64_t step);
   void observe();
-  void require_sound() const;
+  void require_valid() const;
   void save_if_due();
   void save();
   void count_time();
@@ -148,13 +148,13 @@ void ParticlesRun<D>::begin() {
   if (restore()) return;
   order_grains();
   integrator_.initialise(system_);
-  require_sound();
+  require_valid();
   guards_.look(system_);
   if (watched()) monitor_.observe(system_);
   record();
 }
 
-/// Of a run that comes to its end: the first and the last state, and those in between.
+/// Number of frames of a run that comes to its end: the first and the last state, and those in between.
 template <int D>
 std::int64_t ParticlesRun<D>::frames() const {
   return 2 + (scene_.output_stride > 0 ? (scene_.time.steps - 1) / scene_.output_stride : 0);
@@ -189,7 +189,7 @@ std::int64_t ParticlesRun<D>::next_event(std::int64_t end) const {
 
 /// No number is lost and nothing moves its own radius in a step: it would pass through others unseen.
 template <int D>
-void ParticlesRun<D>::require_sound() const {
+void ParticlesRun<D>::require_valid() const {
   const auto& p = system_.particles;
   for (Slot i = 0; i < p.grains; ++i) {
     const auto u = static_cast<std::size_t>(i);
@@ -197,8 +197,9 @@ void ParticlesRun<D>::require_sound() const {
     if (std::isfinite(move) && std::isfinite(norm2(p.sphere[u].x)) && std::isfinite(norm2(p.spin[u])) &&
         move < p.sphere[u].r)
       continue;
-    throw NotUsable("particle " + std::to_string(p.id.empty() ? i : p.id[u]) + " is lost: " +
-                    (std::isfinite(move) ? "it moves more than its radius in one step" : "its motion is not finite"));
+    throw UnusableResult(
+        "particle " + std::to_string(p.id.empty() ? i : p.id[u]) + " is lost: " +
+        (std::isfinite(move) ? "it moves more than its radius in one step" : "its motion is not finite"));
   }
 }
 
@@ -231,7 +232,7 @@ template <int D>
 void ParticlesRun<D>::observe() {
   if (watched()) monitor_.observe(system_);
   if (system_.step % kCheckInterval == 0) {
-    require_sound();
+    require_valid();
     if (control_.progress) control_.progress(system_.step);
   }
   if (system_.step % guards_.every() == 0) guards_.look(system_);
@@ -261,7 +262,7 @@ template <int D>
 void ParticlesRun<D>::advance() {
   warm_up_ = advance_to(scene_.time.warm_up_steps);
   measured_ = advance_to(scene_.time.steps);
-  require_sound();
+  require_valid();
   if (system_.step % guards_.every() != 0) guards_.look(system_);
 }
 
@@ -289,7 +290,7 @@ ParticlesResultOf<D> ParticlesRun<D>::run() {
   try {
     begin();
     advance();
-  } catch (const NotUsable& e) {
+  } catch (const UnusableResult& e) {
     std::ostringstream reason;
     reason << e.what() << " (step " << system_.step << " of " << scene_.time.steps << ", time " << system_.time
            << " s)";

@@ -25,13 +25,13 @@ struct ParticlesControl {
 /// Systems up to this size have their contacts watched.
 inline constexpr Slot kMostWatched = 1000;
 
-/// What a stretch of steps cost. Those of this process alone: nothing is carried over from a checkpoint.
+/// Cost of a stretch of steps in this process alone: nothing is carried over from a checkpoint.
 struct LoopPart {
   std::int64_t steps = 0;
   double seconds = 0.0;      ///< wall time of the stepping loop, without reading, first forces and writing
   double cpu_seconds = 0.0;  ///< processor time of all threads in it: what it would take on an idle machine
   std::int64_t contact_evaluations = 0;
-  std::int64_t rebuilds = 0;  ///< of the neighbour list
+  std::int64_t rebuilds = 0;  ///< rebuilds of the neighbour list
 };
 
 template <int D>
@@ -40,29 +40,29 @@ struct ParticlesResultOf {
   Trajectory trajectory;
   FrameContacts frame_contacts;
   bool watched = false;                  ///< contacts were watched
-  std::vector<ContactHistory> contacts;  ///< of every pair that touched
+  std::vector<ContactHistory> contacts;  ///< histories of every pair that touched
   bool usable = false;
   std::string reason;  ///< why not: lost or diverged particle, with step and time
   GuardReport guards;
   LoopPart warm_up;          ///< the first SceneTime::warm_up_steps
-  LoopPart measured;         ///< the others; of a run that was lost: empty
-  double peak_memory = 0.0;  ///< of the process at the end of the loop [bytes]; 0 when unknown
+  LoopPart measured;         ///< the steps after the warm-up; empty for a run that was lost
+  double peak_memory = 0.0;  ///< peak memory of the process at the end of the loop [bytes]; 0 when unknown
 };
 
 using ParticlesResult = ParticlesResultOf<3>;
 
 /// Runs to the end of the scene's time. The trajectory does not depend on output, checkpoints, threads or
-/// interruptions. Throws Interrupted after writing the checkpoint when a signal came; BadInput, FileTrouble for the
+/// interruptions. Throws Interrupted after writing the checkpoint when a signal came; InputError, IoError for the
 /// checkpoint.
 template <int D>
 ParticlesResultOf<D> run_particles(const ParticlesSceneOf<D>& scene, const ParticlesControl& control);
 
-/// The same from a state that is handed over, so that large scenes are not in memory twice.
+/// Runs the scene from a state that is handed over, so that large scenes are not in memory twice.
 template <int D>
 ParticlesResultOf<D> run_particles(const ParticlesSceneOf<D>& scene, System<D> start, const ParticlesControl& control);
 
 /// run.h5: provenance, bodies, trajectory, contacts of some frames and over the whole run, and the final state in full.
-/// Atomic. Throws FileTrouble.
+/// Atomic. Throws IoError.
 template <int D>
 void save_particles_run(const std::string& path, const ParticlesSceneOf<D>& scene, const ParticlesResultOf<D>& result,
                         const Provenance& provenance);

@@ -29,11 +29,11 @@ void require_walls_fit_cell(const SceneTable& root, const Cell<D>& cell) {
   if (!cell.any_periodic()) return;
   for (const SceneTable& t : root.tables("wall")) {
     if (t.choice<WallShape>("shape") != WallShape::plane)
-      t.reject("shape", "the inside of a sphere cannot be combined with a periodic cell");
+      t.throw_error("shape", "the inside of a sphere cannot be combined with a periodic cell");
     const Vec<D> normal = read_vector<D>(t, "normal", Unit::none);
     for (int k = 0; k < D; ++k)
       if (cell.periodic[static_cast<std::size_t>(k)] && normal[k] != 0.0)
-        t.reject("normal", "must not point along a periodic axis of the cell");
+        t.throw_error("normal", "must not point along a periodic axis of the cell");
   }
 }
 
@@ -77,10 +77,10 @@ void require_contacts(const Scene& scene, const System<D>& s) {
   for (const auto& [m, wall] : grains_at_walls(s.particles)) pairs.emplace(std::min(m, wall), std::max(m, wall));
   for (const auto& [a, b] : pairs) {
     if (s.laws.index(a, b) != LawSet::kNoContact) continue;
-    throw BadInput(scene.root().where("contact") + ": contact: no law for the materials '" +
-                   s.materials[static_cast<std::size_t>(a)].name + "' and '" +
-                   s.materials[static_cast<std::size_t>(b)].name +
-                   "', which can touch: add [[contact]] with this pair");
+    throw InputError(scene.root().where("contact") + ": contact: no law for the materials '" +
+                     s.materials[static_cast<std::size_t>(a)].name + "' and '" +
+                     s.materials[static_cast<std::size_t>(b)].name +
+                     "', which can touch: add [[contact]] with this pair");
   }
 }
 
@@ -89,20 +89,20 @@ void require_contacts(const Scene& scene, const System<D>& s) {
 template <int D>
 void require_partners(const Scene& scene, const System<D>& s, const SceneLaws& laws) {
   const auto refuse = [&](std::int32_t law, const char* why) {
-    throw BadInput(scene.root().where("wall") + ": wall: " + laws.description[static_cast<std::size_t>(law)] + why);
+    throw InputError(scene.root().where("wall") + ": wall: " + laws.description[static_cast<std::size_t>(law)] + why);
   };
   for (const auto& [m, wall] : grains_at_walls(s.particles)) {
     const std::int32_t law = s.laws.index(m, wall);
     if (law == LawSet::kNoContact) continue;
     if (soft_sides(s.laws.law(law)).j) refuse(law, " makes a wall the soft body; walls must be solid");
-    if (laws.serves[static_cast<std::size_t>(law)] == Serves::grains)
+    if (laws.scopes[static_cast<std::size_t>(law)] == LawScope::grains)
       refuse(law, D == 2 ? " attracts at a distance, which walls cannot: give the wall a material of its own and a law "
                            "with adhesion = 0, or \"linear-spring\""
                          : " was measured with grains: give the wall a material of its own and kind = \"soft-wall\"");
   }
   for (const auto& [a, b] : meeting_grains(s.particles)) {
     const std::int32_t law = s.laws.index(a, b);
-    if (law != LawSet::kNoContact && laws.serves[static_cast<std::size_t>(law)] == Serves::walls)
+    if (law != LawSet::kNoContact && laws.scopes[static_cast<std::size_t>(law)] == LawScope::walls)
       refuse(law, " was measured with walls (kind = \"soft-wall\") and would serve particles: \"soft-solid\" does");
   }
 }
@@ -123,7 +123,7 @@ void require_resolved(const Scene& scene, const System<D>& s) {
     text << scene.root().where("particle") << ": position of particle " << i << ": " << far
          << " m from the origin numbers resolve only " << spacing << " m, " << spacing / sphere.r
          << " of its radius (at most 1e-7): move the scene to the origin";
-    throw BadInput(text.str());
+    throw InputError(text.str());
   }
 }
 
@@ -131,10 +131,10 @@ template <int D>
 void read_output(const SceneTable& t, ParticlesSceneOf<D>& out) {
   out.record = t.flag("record", true);
   if (!out.record && t.has("snapshots"))
-    t.mistake("snapshots", "cannot be combined with record = false, which records nothing");
+    t.add_error("snapshots", "cannot be combined with record = false, which records nothing");
   out.snapshots = t.count("snapshots", 0, 1'000'000, default_snapshots(out.system.particles.grains));
   if (!t.has("every")) return;
-  if (!out.record) t.mistake("every", "cannot be combined with record = false, which records nothing");
+  if (!out.record) t.add_error("every", "cannot be combined with record = false, which records nothing");
   const double every = t.number("every", Unit::time, Range::positive());
   if (!(out.time.step > 0.0)) return;  // nothing is known of the time
   const double steps = std::round(every / out.time.step);
@@ -143,8 +143,8 @@ void read_output(const SceneTable& t, ParticlesSceneOf<D>& out) {
   const double frames = static_cast<double>(out.time.steps) / static_cast<double>(out.output_stride);
   const double bytes = frames * 72.0 * static_cast<double>(out.system.particles.size());
   if (bytes > kMostFrameBytes)
-    t.mistake("every", std::to_string(static_cast<std::int64_t>(frames)) + " frames take " +
-                           std::to_string(bytes / 1e9) + " GB of memory, at most 8.6 are allowed");
+    t.add_error("every", std::to_string(static_cast<std::int64_t>(frames)) + " frames take " +
+                             std::to_string(bytes / 1e9) + " GB of memory, at most 8.6 are allowed");
 }
 
 template <int D>
@@ -161,7 +161,7 @@ namespace {
 
 /// What no table shows by itself.
 template <int D>
-void require_sense(const Scene& scene, const System<D>& s, const SceneLaws& laws) {
+void validate_combination(const Scene& scene, const System<D>& s, const SceneLaws& laws) {
   const SceneTable root = scene.root();
   require_walls_fit_cell(root, s.cell);
   require_contacts(scene, s);
@@ -188,20 +188,20 @@ ParticlesSceneOf<D> read_particles_scene(const Scene& scene, const std::optional
     out.law_files = std::move(laws.files);
     out.remarks = laws.remarks;
     SceneBodies<D> bodies = read_bodies<D>(scene, s.materials, seed);
-    root.table_or_empty("cell").part([&] { s.cell = read_cell(root, bodies); });
+    root.table_or_empty("cell").section([&] { s.cell = read_cell(root, bodies); });
     s.particles = std::move(bodies.particles);
     if (bodies.sizes) out.law_files += bodies.sizes->text();
     out.sizes = std::move(bodies.sizes);
     out.drawn = std::move(bodies.drawn);
     out.seed = bodies.seed;
     out.wall_name = std::move(bodies.wall_name);
-    if (root.sound()) root.check([&] { require_sense(scene, s, laws); });
+    if (!root.has_errors()) root.check([&] { validate_combination(scene, s, laws); });
     const SceneTable time = root.table("time");
-    time.part([&] { out.time = read_time(time, s, laws.description, root.sound()); });
+    time.section([&] { out.time = read_time(time, s, laws.description, !root.has_errors()); });
     read_output(root.table_or_empty("output"), out);
     read_checkpoint(root.table_or_empty("checkpoint"), out);
     out.guards = read_guards(root.table_or_empty("guards"), D);
-    if (root.sound())
+    if (!root.has_errors())
       root.check([&] {
         for (std::string& r : place_remarks(bodies, s, out.wall_name, out.guards, root.has("cell")))
           out.remarks.push_back(std::move(r));

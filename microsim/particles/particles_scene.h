@@ -19,7 +19,7 @@ template <int D>
 struct ParticlesSceneOf {
   std::string title;
   System<D> system;                    ///< bodies in their first positions, nothing evaluated yet
-  std::vector<std::string> wall_name;  ///< of the slots from particles.grains on
+  std::vector<std::string> wall_name;  ///< names of the walls, by slot from particles.grains on
   SceneTime time;
   bool record = true;                 ///< false: no frames, no watched contacts, no file of the run; the summary alone
   std::int64_t output_stride = 0;     ///< steps between recorded frames; 0: only the first and the last state
@@ -29,19 +29,19 @@ struct ParticlesSceneOf {
   GuardSpec guards;
   std::string text;                  ///< the scene as it is used
   std::string law_files;             ///< text of the law cards and tables that it takes laws from, and of sizes
-  std::optional<Grading> sizes;      ///< of particles that were drawn
-  std::vector<double> drawn;         ///< their radii
-  std::uint64_t seed = 0;            ///< that they were drawn with
+  std::optional<Grading> sizes;      ///< size distribution of the particles that were drawn
+  std::vector<double> drawn;         ///< radii of the particles that were drawn
+  std::uint64_t seed = 0;            ///< seed with which the particles were drawn
   std::vector<std::string> remarks;  ///< what to mind about these laws
 };
 
 using ParticlesScene = ParticlesSceneOf<3>;
 
-/// Key `dimension`: 3 unless the scene says 2. Throws BadInput.
+/// Key `dimension`: 3 unless the scene says 2. Throws InputError.
 int particles_dimension(const Scene& scene);
 
-/// Reads and checks everything, computes the step. `D` is the dimension of the scene. Throws BadInput with file:line
-/// (also for particles that lie in a file of their own), FileTrouble for files that cannot be read.
+/// Reads and checks everything, computes the step. `D` is the dimension of the scene. Throws InputError with file:line
+/// (also for particles that lie in a file of their own), IoError for files that cannot be read.
 /// `seed`: of what is drawn, in place of that of the scene.
 template <int D = 3>
 ParticlesSceneOf<D> read_particles_scene(const Scene& scene, const std::optional<std::uint64_t>& seed = {});

@@ -22,7 +22,7 @@ struct Builder {
   const Scene& scene;
   const std::vector<Material>& materials;
   std::vector<SceneWall<D>> walls;
-  bool sound;  ///< materials and walls are those of the scene
+  bool valid;  ///< materials and walls are those of the scene
   SceneBodies<D> out;
   std::vector<NewBody<D>> grains;
   std::vector<std::ptrdiff_t> wall_of;  ///< per grain: index of its sphere-inside, -1 none
@@ -47,7 +47,7 @@ Rot<D> read_spin(const SceneTable& t) {
 template <int D>
 double density_of(const Builder<D>& b, const SceneTable& t, std::int32_t material) {
   const Material& m = b.materials[static_cast<std::size_t>(material)];
-  if (b.sound && !(m.density > 0.0)) t.mistake("material", "has no density, which particles need");
+  if (b.valid && !(m.density > 0.0)) t.add_error("material", "has no density, which particles need");
   return m.density;
 }
 
@@ -63,7 +63,7 @@ std::ptrdiff_t wall_around(const Builder<D>& b, const Vec<D>& x) {
   return found == b.walls.end() ? -1 : found - b.walls.begin();
 }
 
-/// Of the last particle.
+/// Notes the last particle when no sphere-inside of the scene holds its centre.
 template <int D>
 void note_outside(Builder<D>& b) {
   const bool spheres = std::any_of(b.walls.begin(), b.walls.end(), [](const auto& w) { return !w.plane; });
@@ -74,11 +74,11 @@ template <int D>
 std::ptrdiff_t chosen_wall(const Builder<D>& b, const SceneTable& t, const Vec<D>& x) {
   if (!t.has("inside")) return wall_around(b, x);
   const std::string name = t.text("inside");
-  if (name == "none" || !b.sound) return -1;
+  if (name == "none" || !b.valid) return -1;
   const auto found = std::find_if(b.walls.begin(), b.walls.end(), [&](const auto& w) { return w.name == name; });
-  if (found == b.walls.end()) t.reject("inside", "no wall of this name");
-  if (found->plane) t.reject("inside", "this wall is a plane, not a \"sphere-inside\"");
-  if (!holds_centre(*found, x)) t.reject("inside", "the particle's centre is outside this sphere");
+  if (found == b.walls.end()) t.throw_error("inside", "no wall of this name");
+  if (found->plane) t.throw_error("inside", "this wall is a plane, not a \"sphere-inside\"");
+  if (!holds_centre(*found, x)) t.throw_error("inside", "the particle's centre is outside this sphere");
   return found - b.walls.begin();
 }
 
@@ -102,7 +102,7 @@ Vec<D> flat(const Vec3& x, const std::string& path, std::size_t k) {
     return x;
   } else {
     if (x[2] != 0.0)
-      throw BadInput(path + ":" + std::to_string(xyzr_line(k)) + ": z must be 0, as the scene has dimension = 2");
+      throw InputError(path + ":" + std::to_string(xyzr_line(k)) + ": z must be 0, as the scene has dimension = 2");
     return {{x[0], x[1]}};
   }
 }
@@ -110,14 +110,14 @@ Vec<D> flat(const Vec3& x, const std::string& path, std::size_t k) {
 template <int D>
 void add_file(Builder<D>& b, const SceneTable& t) {
   if (!t.has("file")) return;
-  if (t.has("sizes")) t.reject("file", "goes without sizes, which says all sizes");
+  if (t.has("sizes")) t.throw_error("file", "goes without sizes, which says all sizes");
   b.out.many_file = b.scene.resolve(t.text("file"));
   const std::int32_t material = material_index(b.materials, t, "material");
   const double density = density_of(b, t, material);
-  if (!t.sound()) return;
+  if (t.has_errors()) return;
   const XyzrFile file = read_xyzr(b.out.many_file, [&](std::int64_t n) {
     const std::string problem = memory_problem(n, available_memory());
-    if (!problem.empty()) throw BadInput(b.out.many_file + ":1: N = " + std::to_string(n) + ": " + problem);
+    if (!problem.empty()) throw InputError(b.out.many_file + ":1: N = " + std::to_string(n) + ": " + problem);
   });
   b.out.many_box = file.box;
   for (std::size_t k = 0; k < file.radius.size(); ++k) {
@@ -133,8 +133,8 @@ void add_drawn(Builder<D>& b, const SceneTable& root, const SceneTable& t, const
   if (!t.has("count") && !t.has("sizes")) {
     const std::string nothing =
         "nothing is drawn at random in this scene ([particles] count and sizes are); leave it out";
-    if (root.has("seed")) root.mistake("seed", nothing);
-    if (seed) throw BadInput("--seed: " + nothing);
+    if (root.has("seed")) root.add_error("seed", nothing);
+    if (seed) throw InputError("--seed: " + nothing);
     return;
   }
   const std::int32_t material = material_index(b.materials, t, "material");
@@ -160,9 +160,9 @@ void require_distinct_centres(const Builder<D>& b) {
             [&](Slot a, Slot c) { return centre(a) != centre(c) ? centre(a) < centre(c) : a < c; });
   for (std::size_t k = 1; k < order.size(); ++k)
     if (centre(order[k - 1]) == centre(order[k]))
-      throw BadInput(b.out.where_of(order[k]) + ": position: particle " + std::to_string(order[k]) +
-                     " has the same centre as particle " + std::to_string(order[k - 1]) + " (" +
-                     b.out.where_of(order[k - 1]) + ")");
+      throw InputError(b.out.where_of(order[k]) + ": position: particle " + std::to_string(order[k]) +
+                       " has the same centre as particle " + std::to_string(order[k - 1]) + " (" +
+                       b.out.where_of(order[k - 1]) + ")");
 }
 
 template <int D>
@@ -170,9 +170,9 @@ void require_fits(const Builder<D>& b, Slot k) {
   const NewBody<D>& grain = b.grains[static_cast<std::size_t>(k)];
   const SceneWall<D>& wall = b.walls[static_cast<std::size_t>(b.wall_of[static_cast<std::size_t>(k)])];
   if (grain.r < wall.body.r) return;
-  throw BadInput(b.out.where_of(k) + ": radius = " + std::to_string(grain.r) + ": must be below " +
-                 std::to_string(wall.body.r) + ", the radius of the sphere around it, '" + wall.name + "' (" +
-                 wall.where + ")");
+  throw InputError(b.out.where_of(k) + ": radius = " + std::to_string(grain.r) + ": must be below " +
+                   std::to_string(wall.body.r) + ", the radius of the sphere around it, '" + wall.name + "' (" +
+                   wall.where + ")");
 }
 
 /// Radii and densities so extreme that the mass is no number.
@@ -180,8 +180,8 @@ template <int D>
 void require_mass(const Builder<D>& b, Slot k) {
   const NewBody<D>& grain = b.grains[static_cast<std::size_t>(k)];
   if (grain.inertia > 0.0 && std::isfinite(grain.mass) && std::isfinite(1.0 / grain.inertia)) return;
-  throw BadInput(b.out.where_of(k) + ": radius = " + std::to_string(grain.r) +
-                 ": the mass of this particle is out of the range of numbers");
+  throw InputError(b.out.where_of(k) + ": radius = " + std::to_string(grain.r) +
+                   ": the mass of this particle is out of the range of numbers");
 }
 
 /// Slots of the walls: sphere-insides follow the particles, planes come last.
@@ -224,10 +224,10 @@ void place_walls(Builder<D>& b) {
     if (!w.plane) continue;
     if (w.needs_mass) w.body.mass = total;
     if (w.body.mass > 0.0 && w.body.mass < heaviest)
-      throw BadInput(w.where + ": mass = " + std::to_string(w.body.mass) +
-                     ": a wall moved by a force must weigh at least as much as the heaviest particle, " +
-                     std::to_string(heaviest) + " kg (left out: the mass of all particles, " + std::to_string(total) +
-                     " kg)");
+      throw InputError(w.where + ": mass = " + std::to_string(w.body.mass) +
+                       ": a wall moved by a force must weigh at least as much as the heaviest particle, " +
+                       std::to_string(heaviest) + " kg (left out: the mass of all particles, " + std::to_string(total) +
+                       " kg)");
     const Slot slot = add_plane(b.out.particles, w.body, w.normal);
     b.out.particles.plane_load[static_cast<std::size_t>(slot - b.out.particles.first_plane())] = w.load;
     b.out.wall_name.push_back(w.name);
@@ -237,9 +237,9 @@ void place_walls(Builder<D>& b) {
 template <int D>
 void place_all(Builder<D>& b) {
   if (b.grains.empty())
-    throw BadInput(b.scene.path() +
-                   ":1: the scene has no particle: give [[particle]] tables or [particles] file, or "
-                   "count and sizes");
+    throw InputError(b.scene.path() +
+                     ":1: the scene has no particle: give [[particle]] tables or [particles] file, or "
+                     "count and sizes");
   require_distinct_centres(b);
   place_grains(b, wall_slots(b));
   place_walls(b);
@@ -247,11 +247,11 @@ void place_all(Builder<D>& b) {
 
 template <int D>
 void read_grains(Builder<D>& b, const SceneTable& root, const std::optional<std::uint64_t>& seed) {
-  for (const SceneTable& t : root.tables("particle")) t.part([&] { add_table(b, t); });
+  for (const SceneTable& t : root.tables("particle")) t.section([&] { add_table(b, t); });
   const SceneTable many = root.table_or_empty("particles");
-  many.part([&] { add_file(b, many); });
-  many.part([&] { add_drawn(b, root, many, seed); });
-  if (root.sound()) root.check([&] { place_all(b); });
+  many.section([&] { add_file(b, many); });
+  many.section([&] { add_drawn(b, root, many, seed); });
+  if (!root.has_errors()) root.check([&] { place_all(b); });
 }
 
 }  // namespace
@@ -267,7 +267,7 @@ template <int D>
 SceneBodies<D> read_bodies(const Scene& scene, const std::vector<Material>& materials,
                            const std::optional<std::uint64_t>& seed) {
   const SceneTable root = scene.root();
-  Builder<D> b{scene, materials, read_walls<D>(root, materials), root.sound(), {}, {}, {}};
+  Builder<D> b{scene, materials, read_walls<D>(root, materials), !root.has_errors(), {}, {}, {}};
   read_grains(b, root, seed);
   return std::move(b.out);
 }

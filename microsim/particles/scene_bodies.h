@@ -22,10 +22,10 @@ struct SceneBodies {
   std::vector<std::string> where;  ///< "file:line" of particles that have a table of their own
   std::string many_file;           ///< path of the file with the others
   Vec3 many_box{};                 ///< first line of that file [m]
-  std::optional<Grading> sizes;    ///< of the particles that were drawn, which have no table of their own either
-  std::vector<double> drawn;       ///< their radii
+  std::optional<Grading> sizes;    ///< sizes of the particles that were drawn, which have no table of their own either
+  std::vector<double> drawn;       ///< radii of the particles that were drawn
   std::string drawn_where;         ///< "file:line" of their table
-  std::uint64_t seed = 0;          ///< that they were drawn with
+  std::uint64_t seed = 0;          ///< seed with which the particles were drawn
   /// Particles that no sphere-inside of the scene holds, and that do not say that this is meant.
   std::vector<Slot> outside_spheres{};
 
@@ -33,7 +33,7 @@ struct SceneBodies {
   [[nodiscard]] std::string where_of(Slot particle) const;
 };
 
-/// [[particle]], [particles] and [[wall]]. Throws BadInput: no particle, coincident centres, a particle without
+/// [[particle]], [particles] and [[wall]]. Throws InputError: no particle, coincident centres, a particle without
 /// density, one that does not fit into its sphere, more than there is memory for; a seed, of the scene or of the
 /// command line (`seed`), where nothing is drawn.
 template <int D>

@@ -19,11 +19,11 @@ Material read_material(const SceneTable& t, const std::string& name, int dimensi
   m.name = name;
   m.rigid = t.flag("rigid", false);
   if (dimension == 2 && t.is_text("density"))
-    t.mistake("density", "disks have a mass over their area: a number, kg/m^2");
+    t.add_error("density", "disks have a mass over their area: a number, kg/m^2");
   m.density = t.number("density", dimension == 3 ? Unit::density : Unit::none, Range::positive(), 0.0);
   if (m.rigid) {
     for (const char* key : {"E", "nu"})
-      if (t.has(key)) t.mistake(key, "a rigid material has none");
+      if (t.has(key)) t.add_error(key, "a rigid material has none");
     return m;
   }
   if (!t.has("E") && !t.has("nu")) return m;  // enough for laws that need no elasticity
@@ -38,10 +38,10 @@ std::vector<Material> read_materials(const SceneTable& root, int dimension) {
   std::vector<Material> out;
   const SceneTable tables = root.table_or_empty("material");
   for (const std::string& name : tables.keys()) {
-    if (name == "rigid") tables.mistake(name, "this name is taken by the rigid material that is always there");
+    if (name == "rigid") tables.add_error(name, "this name is taken by the rigid material that is always there");
     out.push_back(read_material(tables.named(name), name, dimension));
   }
-  if (out.empty() && !root.sound()) root.reject("material", "without any, nothing else can be read");
+  if (out.empty() && root.has_errors()) root.throw_error("material", "without any, nothing else can be read");
   Material rigid;
   rigid.name = "rigid";
   rigid.rigid = true;
@@ -57,14 +57,14 @@ std::int32_t material_index(const std::vector<Material>& materials, const SceneT
     known.push_back(m.name);
   }
   const std::string near = nearest_word(name, known);
-  table.reject(key, "no such material" + (near.empty() ? "" : "; nearest is '" + near + "'"));
+  table.throw_error(key, "no such material" + (near.empty() ? "" : "; nearest is '" + near + "'"));
 }
 
 namespace {
 
 PairOfMaterials read_pair(const SceneTable& t, const std::vector<Material>& materials) {
   const std::vector<std::string> names = t.texts("pair");
-  if (names.size() != 2) t.reject("pair", "must name two materials");
+  if (names.size() != 2) t.throw_error("pair", "must name two materials");
   std::vector<std::string> known;
   for (const Material& m : materials) known.push_back(m.name);
   std::array<std::int32_t, 2> index{};
@@ -72,7 +72,7 @@ PairOfMaterials read_pair(const SceneTable& t, const std::vector<Material>& mate
     const auto found = std::find(known.begin(), known.end(), names[k]);
     if (found == known.end()) {
       const std::string near = nearest_word(names[k], known);
-      t.reject("pair", "no material '" + names[k] + "'" + (near.empty() ? "" : "; nearest is '" + near + "'"));
+      t.throw_error("pair", "no material '" + names[k] + "'" + (near.empty() ? "" : "; nearest is '" + near + "'"));
     }
     index[k] = static_cast<std::int32_t>(found - known.begin());
   }
@@ -88,9 +88,9 @@ AnyLaw read_hertz(const SceneTable& t, const Material& a, const Material& b) {
   const bool rescaled = t.choice("tangential", {"mindlin", "rescaled"}, "mindlin") == "rescaled";
   for (const Material* m : {&a, &b})
     if (!m->rigid && !(m->youngs_modulus > 0.0))
-      t.reject("pair", "the law needs E and nu of material '" + m->name + "'");
+      t.throw_error("pair", "the law needs E and nu of material '" + m->name + "'");
   if (a.rigid && b.rigid)
-    t.reject("pair", "a contact of two rigid materials has no finite stiffness; use law = \"linear-spring\"");
+    t.throw_error("pair", "a contact of two rigid materials has no finite stiffness; use law = \"linear-spring\"");
   return hertz_law(HertzCoefficients::of(a, b, friction, restitution), rescaled);
 }
 
@@ -101,14 +101,14 @@ AnyLaw read_linear(const SceneTable& t) {
   law.normal = t.number("normal_stiffness", Unit::stiffness, Range::positive());
   if (law.friction > 0.0 || t.has("tangential_stiffness"))  // of no friction it may be left out: it has no effect
     law.tangential = t.number("tangential_stiffness", Unit::stiffness, Range::not_negative());
-  if (law.friction > 0.0 && law.tangential == 0.0) t.mistake("tangential_stiffness", "must be above 0 when mu is");
+  if (law.friction > 0.0 && law.tangential == 0.0) t.add_error("tangential_stiffness", "must be above 0 when mu is");
   return law;
 }
 
 /// A key that means nothing unless something else is above 0 (or there): needed then, refused otherwise.
 double read_when(const SceneTable& t, const std::string& key, Unit unit, bool used, const char* without) {
   if (used) return t.number(key, unit, Range::positive());
-  if (t.has(key)) t.mistake(key, without);
+  if (t.has(key)) t.add_error(key, without);
   return 0.0;
 }
 
@@ -132,17 +132,17 @@ AnyLaw read_cohesive(const SceneTable& t) {
   const double friction = read_friction(t);
   const bool rolling = t.has("rolling_stiffness");
   if (friction > 0.0) return rolling ? read_cohesive<true, true>(t, friction) : read_cohesive<true, false>(t, friction);
-  if (rolling) t.mistake("rolling_stiffness", "needs friction (mu above 0): disks that slide freely do not roll");
+  if (rolling) t.add_error("rolling_stiffness", "needs friction (mu above 0): disks that slide freely do not roll");
   return read_cohesive<false, false>(t, friction);
 }
 
 /// Spheres that move in a plane are spheres still; only laws that are linear in the overlap hold for disks as well.
 void require_dimension(const SceneTable& t, const std::string& law, int dimension) {
   if (dimension == 3 && law == "cohesive")
-    t.mistake("law", "\"cohesive\" is a law of disks in the plane: give the scene dimension = 2");
+    t.add_error("law", "\"cohesive\" is a law of disks in the plane: give the scene dimension = 2");
   if (dimension == 2 && (law == "hertz-tsuji" || law == "law-card"))
-    t.mistake("law",
-              "\"" + law + "\" is a law of spheres; a scene with dimension = 2 has \"linear-spring\" and \"cohesive\"");
+    t.add_error("law", "\"" + law +
+                           "\" is a law of spheres; a scene with dimension = 2 has \"linear-spring\" and \"cohesive\"");
 }
 
 void read_contact(const SceneTable& t, const std::vector<Material>& materials, int dimension, SoftLawReader& soft,
@@ -150,9 +150,9 @@ void read_contact(const SceneTable& t, const std::vector<Material>& materials, i
   const PairOfMaterials pair = read_pair(t, materials);
   const std::int32_t before = out.laws.index(pair.first, pair.second);
   if (before != LawSet::kNoContact)
-    t.reject("pair", "has a law already: " + out.description[static_cast<std::size_t>(before)]);
+    t.throw_error("pair", "has a law already: " + out.description[static_cast<std::size_t>(before)]);
   if (out.laws.size() + 2 > static_cast<std::int32_t>(LawSet::kMostLaws))
-    t.reject("pair", "more than 64 laws in one scene");
+    t.throw_error("pair", "more than 64 laws in one scene");
   const std::string law = t.choice("law", {"hertz-tsuji", "linear-spring", "cohesive", "law-card"});
   require_dimension(t, law, dimension);
   const Material& a = materials[static_cast<std::size_t>(pair.first)];
@@ -163,7 +163,8 @@ void read_contact(const SceneTable& t, const std::vector<Material>& materials, i
   if (law == "law-card") soft.read(t, pair);
   const auto laws = static_cast<std::size_t>(out.laws.size());
   out.description.resize(laws, law + " of " + pair.text + " (" + t.where("pair") + ")");
-  out.serves.resize(laws, law == "cohesive" && t.number("adhesion", Unit::force) > 0.0 ? Serves::grains : Serves::any);
+  out.scopes.resize(laws,
+                    law == "cohesive" && t.number("adhesion", Unit::force) > 0.0 ? LawScope::grains : LawScope::any);
 }
 
 /// Elastic constants of materials whose contacts do not go by them. They describe the material and may stay, but a
@@ -195,9 +196,10 @@ SceneLaws read_contacts(const Scene& scene, const std::vector<Material>& materia
   out.laws = LawSet(static_cast<std::int32_t>(materials.size()));
   SoftLawReader soft(scene, materials, out);
   const SceneTable root = scene.root();
-  for (const SceneTable& t : root.tables("contact")) t.part([&] { read_contact(t, materials, dimension, soft, out); });
-  if (root.sound()) soft.require_whole();
-  if (root.sound()) remark_on_idle_elasticity(root, out);
+  for (const SceneTable& t : root.tables("contact"))
+    t.section([&] { read_contact(t, materials, dimension, soft, out); });
+  if (!root.has_errors()) soft.require_whole();
+  if (!root.has_errors()) remark_on_idle_elasticity(root, out);
   return out;
 }
 

@@ -45,7 +45,8 @@ Region<D> read_region(const SceneTable& root, const SceneTable& t) {
     for (std::size_t k = 0; k < std::min<std::size_t>(flags.size(), D); ++k) region.periodic[k] = flags[k];
   }
   for (int k = 0; k < D; ++k)
-    if (t.sound() && !(region.high[k] > region.low[k])) t.reject("high", "must be above low along every axis");
+    if (!t.has_errors() && !(region.high[k] > region.low[k]))
+      t.throw_error("high", "must be above low along every axis");
   return region;
 }
 
@@ -148,12 +149,13 @@ void require_room(const SceneTable& t, const Region<D>& region, const std::vecto
   double volume = 0.0;
   for (const double r : radii) volume += D == 3 ? kSphereVolume * cube(r) : std::numbers::pi * r * r;
   if (volume > kDensest * box)
-    t.reject("count", fmt::format("so many particles of these sizes have {:.3g} of the volume of the box of places",
-                                  volume / box));
+    t.throw_error(
+        "count",
+        fmt::format("so many particles of these sizes have {:.3g} of the volume of the box of places", volume / box));
   for (int k = 0; k < D; ++k)
     if (region.high[k] - region.low[k] < 2.0 * largest)
-      t.reject("sizes",
-               fmt::format("the largest particle, of radius {:g} m, is wider than the box of places", largest));
+      t.throw_error("sizes",
+                    fmt::format("the largest particle, of radius {:g} m, is wider than the box of places", largest));
 }
 
 template <int D>
@@ -172,17 +174,17 @@ void place(const SceneTable& t, const Region<D>& region, const std::vector<Scene
       x = random_place(region, r, random);
     } while ((!clear_of_walls(walls, x, r) || !placed.has_room(x, r)) && --left > 0);
     if (left <= 0)
-      t.reject("count",
-               fmt::format("particle {} of {} finds no place: fewer, or a larger box", k + 1, out.radius.size()));
+      t.throw_error("count",
+                    fmt::format("particle {} of {} finds no place: fewer, or a larger box", k + 1, out.radius.size()));
     placed.add(x, r);
     out.position.push_back(x);
   }
 }
 
-/// At the top level, as in scenes of all kinds, or in the table.
+/// Reads the seed at the top level, as in scenes of all kinds, or in the table.
 std::uint64_t read_seed(const SceneTable& root, const SceneTable& t) {
   constexpr std::int64_t kMost = 1'000'000'000'000;
-  if (root.has("seed") && t.has("seed")) t.mistake("seed", "is given at the top level too: leave one of them out");
+  if (root.has("seed") && t.has("seed")) t.add_error("seed", "is given at the top level too: leave one of them out");
   return static_cast<std::uint64_t>(root.count("seed", 0, kMost, t.count("seed", 0, kMost, 1)));
 }
 
@@ -197,9 +199,9 @@ DrawnParticles<D> read_drawn(const SceneTable& root, const SceneTable& t, const 
   if (!t.has("sizes")) (void)t.table("sizes");  // says that it is missing
   out.sizes = read_sizes(t, "sizes", {}, D);
   const Region<D> region = read_region<D>(root, t);
-  if (!out.sizes || !t.sound() || !root.sound()) return out;
+  if (!out.sizes || t.has_errors() || root.has_errors()) return out;
   if (const std::string problem = memory_problem(count, available_memory()); !problem.empty())
-    t.reject("count", problem);
+    t.throw_error("count", problem);
   RandomStream radii(out.seed, kParticleRadii, 0);
   out.radius = out.sizes->draw(static_cast<std::size_t>(count), radii);
   std::reverse(out.radius.begin(), out.radius.end());

@@ -21,8 +21,8 @@ struct DrawnParticles {
 
 /// `count`, `sizes`, `seed` (or that of the root; `seed` of the command line goes first), `low` and `high` (corners of
 /// the box of places; without them [cell], whose periodic axes are closed) of the table `t` = [particles]: largest
-/// first at random places, without overlap with each other, with `others` or with walls. Throws BadInput when one finds
-/// none.
+/// first at random places, without overlap with each other, with `others` or with walls. Throws InputError when one
+/// finds none.
 template <int D>
 DrawnParticles<D> read_drawn(const SceneTable& root, const SceneTable& t, const std::vector<SceneWall<D>>& walls,
                              const std::vector<NewBody<D>>& others, const std::optional<std::uint64_t>& seed);

@@ -15,7 +15,8 @@ inline constexpr double kBytesPerPair = 190.0;
 /// Listed pairs per grain of dense packings.
 inline constexpr double kPairsPerGrain = 4.0;
 
-/// The same of disks, as measured on square lattices of 40,000 and 160,000 whose lists were made anew.
+/// Peak memory per disk and per listed pair of disks, as measured on square lattices of 40,000 and 160,000 whose lists
+/// were made anew.
 inline constexpr double kBytesPerDisk = 300.0;
 inline constexpr double kBytesPerDiskPair = 150.0;
 

@@ -54,7 +54,7 @@ class PlaceCheck {
   }
   /// What guards.escape stops is refused before the run.
   void escaped(const Misplaced& m) {
-    if (m.count > 0 && guards_.escape.action == GuardAction::stop) throw BadInput(text(m));
+    if (m.count > 0 && guards_.escape.action == GuardAction::stop) throw InputError(text(m));
     remark(m);
   }
 

@@ -10,7 +10,7 @@
 
 namespace softgrain {
 
-/// Throws BadInput with file:line for a particle whose centre is behind a plane or outside the room of guards.escape,
+/// Throws InputError with file:line for a particle whose centre is behind a plane or outside the room of guards.escape,
 /// where that guard would stop the run at its first look; where the guard only counts, this is a remark. Remarks also
 /// name particles outside of all insides of spheres (unless they say inside = "none") and centres outside a cell along
 /// an axis that is not periodic. `has_cell`: the scene says a cell. Each remark names the first particle and their

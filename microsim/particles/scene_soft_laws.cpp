@@ -4,14 +4,14 @@
 #include <optional>
 #include <sstream>
 
-#include "common/contact/crowd_from_table.h"
 #include "common/contact/law_file.h"
+#include "common/contact/multi_contact_from_table.h"
 #include "common/contact/soft_contact_from_card.h"
 #include "common/core/error.h"
 #include "common/data/card_text.h"
-#include "common/data/crowd_law.h"
 #include "common/data/law_card.h"
 #include "common/data/law_remarks.h"
+#include "common/data/multi_contact_law.h"
 #include "common/io/text_file.h"
 #include "microsim/particles/scene_contacts.h"
 
@@ -27,11 +27,11 @@ SoftContact card_law(const SceneTable& t, const LawCard& card, PairKind kind) {
   const double friction = t.number("mu", Unit::none, Range::not_negative());
   const double damping = t.number("damping", Unit::none, Range::closed(0.0, 1.0));
   const bool secant = t.choice<TangentialSlope>("kt") == TangentialSlope::secant;
-  const std::optional<Beyond> beyond = read_beyond(t);
+  const std::optional<Extrapolation> beyond = read_beyond(t);
   try {
     return make_soft_contact(card, kind, modulus, friction, damping, secant, beyond);
   } catch (const Error& e) {
-    t.reject("file", e.what());
+    t.throw_error("file", e.what());
   }
 }
 
@@ -43,20 +43,20 @@ LawTableEntry read_entry(const SceneTable& t, const LawTable& table, std::string
     text << "the table has laws of " << table.entries.size() << " solid fractions, "
          << table.entries.front().solid_fraction << " to " << table.entries.back().solid_fraction
          << ": say which by solid_fraction, that of the grains inside a soft particle";
-    t.reject("file", text.str());
+    t.throw_error("file", text.str());
   }
   const double fraction = t.number("solid_fraction", Unit::none, Range{0.0, 1.0, true, false});
   try {
     return entry_at(table, fraction, range, remark, kReachOfNumbers);
   } catch (const Error& e) {
-    t.reject("solid_fraction", e.what());
+    t.throw_error("solid_fraction", e.what());
   }
 }
 
-CrowdChoices read_choices(const SceneTable& t, const LawTableEntry& entry) {
-  CrowdChoices choices;
+MultiContactChoices read_choices(const SceneTable& t, const LawTableEntry& entry) {
+  MultiContactChoices choices;
   choices.form =
-      from_word<Crowd>(t.choice("form", {"pair", "bag", "directional", "best"}, "best")).value_or(entry.best);
+      parse_enum<LawForm>(t.choice("form", {"pair", "isotropic", "directional", "best"}, "best")).value_or(entry.best);
   choices.modulus = read_modulus(t);
   if (t.has("mu")) choices.friction = t.number("mu", Unit::none, Range::not_negative());
   choices.unloading = t.flag("unloading", false);
@@ -66,7 +66,7 @@ CrowdChoices read_choices(const SceneTable& t, const LawTableEntry& entry) {
 }
 
 /// All that decides on the sums of a soft particle, friction left out: that may differ from contact to contact.
-std::string choice_text(const std::string& path, const LawTableEntry& entry, const CrowdChoices& c) {
+std::string choice_text(const std::string& path, const LawTableEntry& entry, const MultiContactChoices& c) {
   std::ostringstream text;
   text.precision(17);
   text << path << ", form " << to_string(c.form) << ", E = " << c.modulus << " Pa, solid fraction "
@@ -87,15 +87,16 @@ void SoftLawReader::read(const SceneTable& t, const PairOfMaterials& pair) {
 }
 
 std::int32_t SoftLawReader::soft_of(const SceneTable& t, const PairOfMaterials& pair) const {
-  if (pair.first == pair.second) t.reject("pair", "a soft-solid contact needs two different materials");
+  if (pair.first == pair.second) t.throw_error("pair", "a soft-solid contact needs two different materials");
   const std::int32_t soft = material_index(materials_, t, "which_soft");
-  if (soft != pair.first && soft != pair.second) t.reject("which_soft", "must be one of the pair");
+  if (soft != pair.first && soft != pair.second) t.throw_error("which_soft", "must be one of the pair");
   return soft;
 }
 
 void SoftLawReader::read_card(const SceneTable& t, const PairOfMaterials& pair, const std::string& path) {
   for (const char* key : {"form", "solid_fraction", "range", "unloading", "rolling"})
-    if (t.has(key)) t.reject(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
+    if (t.has(key))
+      t.throw_error(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
   const auto kind = t.choice<PairKind>("kind");
   const LawCard card = load_card(path);
   if (const std::string of_kt = kt_remark(card); !of_kt.empty())
@@ -118,17 +119,17 @@ void SoftLawReader::read_card(const SceneTable& t, const PairOfMaterials& pair, 
 void SoftLawReader::read_table(const SceneTable& t, const PairOfMaterials& pair, const std::string& path) {
   for (const char* key : {"damping", "kt"})
     if (t.has(key))
-      t.reject(key, "goes with a law card; " + path + " is a law table, whose laws have no dashpots and one kt");
+      t.throw_error(key, "goes with a law card; " + path + " is a law table, whose laws have no dashpots and one kt");
   const LawTable table = load_law_table(path);
   std::string remark;
   const LawTableEntry entry = read_entry(t, table, remark);
-  const CrowdChoices choices = read_choices(t, entry);
+  const MultiContactChoices choices = read_choices(t, entry);
   if (!remark.empty()) out_.remarks.push_back(t.where("solid_fraction") + ": " + remark);
-  CrowdLaws laws;
+  MultiContactLaws laws;
   try {
-    laws = make_crowd_laws(entry, choices);
+    laws = make_multi_contact_laws(entry, choices);
   } catch (const Error& e) {
-    t.reject("file", e.what());
+    t.throw_error("file", e.what());
   }
   const std::string choice = choice_text(path, entry, choices);
   const std::string kind = t.choice("kind", {"soft-solid", "soft-soft", "soft-wall"});
@@ -136,7 +137,7 @@ void SoftLawReader::read_table(const SceneTable& t, const PairOfMaterials& pair,
     agree(t, pair.first, choice);
     agree(t, pair.second, choice);
     out_.laws.set(pair.first, pair.second, laws.soft_soft);
-    out_.serves.push_back(Serves::grains);
+    out_.scopes.push_back(LawScope::grains);
     return;
   }
   const std::int32_t soft = soft_of(t, pair);
@@ -145,25 +146,26 @@ void SoftLawReader::read_table(const SceneTable& t, const PairOfMaterials& pair,
   const AnyLaw& law = kind == "soft-wall" ? laws.soft_plane : laws.soft_solid;
   out_.laws.set(soft, solid, law, true);
   out_.laws.set(solid, soft, mirrored(law), true);
-  out_.serves.resize(static_cast<std::size_t>(out_.laws.size()), kind == "soft-wall" ? Serves::walls : Serves::grains);
+  out_.scopes.resize(static_cast<std::size_t>(out_.laws.size()),
+                     kind == "soft-wall" ? LawScope::walls : LawScope::grains);
 }
 
 void SoftLawReader::agree(const SceneTable& t, std::int32_t soft, const std::string& choice) {
   const auto [at, fresh] = choices_.try_emplace(soft, Choice{choice, t.where("file")});
   if (fresh || at->second.text == choice) return;
-  t.reject("file", "the contacts of a soft particle add up, so that all of '" +
-                       materials_[static_cast<std::size_t>(soft)].name + "' need one law; here: " + choice +
-                       "; before: " + at->second.text + " (" + at->second.where + ")");
+  t.throw_error("file", "the contacts of a soft particle add up, so that all of '" +
+                            materials_[static_cast<std::size_t>(soft)].name + "' need one law; here: " + choice +
+                            "; before: " + at->second.text + " (" + at->second.where + ")");
 }
 
 void SoftLawReader::require_whole() const {
   for (const auto& [soft, choice] : choices_)
     for (std::int32_t m = 0; m < out_.laws.materials(); ++m) {
       const std::int32_t index = out_.laws.index(soft, m);
-      if (index == LawSet::kNoContact || traits_of(out_.laws.law(index)).is_crowd) continue;
-      throw BadInput(choice.where + ": the law table of '" + materials_[static_cast<std::size_t>(soft)].name +
-                     "' adds up all contacts of a soft particle, and cannot be combined with " +
-                     out_.description[static_cast<std::size_t>(index)]);
+      if (index == LawSet::kNoContact || traits_of(out_.laws.law(index)).is_multi_contact) continue;
+      throw InputError(choice.where + ": the law table of '" + materials_[static_cast<std::size_t>(soft)].name +
+                       "' adds up all contacts of a soft particle, and cannot be combined with " +
+                       out_.description[static_cast<std::size_t>(index)]);
     }
 }
 

@@ -25,10 +25,10 @@ class SoftLawReader {
   SoftLawReader(const Scene& scene, const std::vector<Material>& materials, SceneLaws& out)
       : scene_(scene), materials_(materials), out_(out) {}
 
-  /// Throws BadInput, FileTrouble.
+  /// Throws InputError, IoError.
   void read(const SceneTable& t, const PairOfMaterials& pair);
 
-  /// Throws BadInput where a material has table laws with some partners and other laws with others.
+  /// Throws InputError where a material has table laws with some partners and other laws with others.
   void require_whole() const;
 
  private:
@@ -46,7 +46,7 @@ class SoftLawReader {
   const Scene& scene_;
   const std::vector<Material>& materials_;
   SceneLaws& out_;
-  std::map<std::int32_t, Choice> choices_;  ///< of the soft materials of tables
+  std::map<std::int32_t, Choice> choices_;  ///< choice per soft material of a law table
 };
 
 }  // namespace softgrain

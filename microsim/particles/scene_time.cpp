@@ -99,7 +99,7 @@ void judge_contacts(const System<D>& s, double wanted, Dashpots dashpots, SceneT
   StableStep stable;
   try {
     stable = stable_step(s, wanted / kLargestStableShare, dashpots);
-  } catch (const NotUsable&) {
+  } catch (const UnusableResult&) {
     return;  // no state to start from, as the run will say
   }
   out.stable_step = stable.step;
@@ -108,12 +108,12 @@ void judge_contacts(const System<D>& s, double wanted, Dashpots dashpots, SceneT
                   " contacts, which together are stiffer than one";
 }
 
-/// As many steps as fill the time.
+/// Number of steps that fill the time.
 std::int64_t steps_to(const SceneTable& t, double end, double step) {
   const double steps = std::ceil(end / step * (1.0 - 1e-12));
   if (!(steps <= kMostSteps))
-    t.reject("end", "takes " + shown(steps) + " steps of " + shown(step) + " s, at most " + shown(kMostSteps) +
-                        " are allowed");
+    t.throw_error("end", "takes " + shown(steps) + " steps of " + shown(step) + " s, at most " + shown(kMostSteps) +
+                             " are allowed");
   return std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
 }
 
@@ -121,7 +121,7 @@ template <int D>
 void choose_step(const SceneTable& t, const System<D>& s, double fraction, SceneTime& out) {
   double wanted = std::min(
       {fraction * out.natural_time, out.contact_time / kStepsPerImpact, out.reach_time / kStepsPerReach, out.end});
-  if (!std::isfinite(wanted)) t.reject("step", "\"auto\" needs a contact law that the particles take part in");
+  if (!std::isfinite(wanted)) t.throw_error("step", "\"auto\" needs a contact law that the particles take part in");
   judge_contacts(s, wanted, Dashpots::count, out);
   wanted = std::min(wanted, kLargestStableShare * out.stable_step);
   if (out.steps > 0) {
@@ -137,13 +137,13 @@ void take_step(const SceneTable& t, const System<D>& s, double largest, SceneTim
   out.step = t.number("step", Unit::time, Range::positive());
   const double limit = largest * out.natural_time;
   if (out.step > limit)
-    t.reject("step",
-             "above the stable limit " + shown(limit) + " s = " + shown(largest) + " sqrt(m/k), " + out.limited_by);
+    t.throw_error(
+        "step", "above the stable limit " + shown(limit) + " s = " + shown(largest) + " sqrt(m/k), " + out.limited_by);
   judge_contacts(s, out.step, Dashpots::leave_out, out);
   const double crowded = kLargestStableShare * out.stable_step;
   if (out.step > crowded)
-    t.reject("step", "above the stable limit " + shown(crowded) + " s = " + shown(kLargestStableShare) +
-                         " of the largest stable step of the contacts at the start: " + out.crowded);
+    t.throw_error("step", "above the stable limit " + shown(crowded) + " s = " + shown(kLargestStableShare) +
+                              " of the largest stable step of the contacts at the start: " + out.crowded);
   if (out.steps == 0) out.steps = steps_to(t, out.end, out.step);
 }
 
@@ -159,7 +159,7 @@ void read_extent(const SceneTable& t, SceneTime& out) {
     out.end = t.number("end", Unit::time, Range::positive());
     return;
   }
-  if (t.has("end")) t.mistake("steps", "give either end or steps, not both");
+  if (t.has("end")) t.add_error("steps", "give either end or steps, not both");
   out.steps = t.count("steps", 1, static_cast<std::int64_t>(kMostSteps));
   out.end = kForever;
 }
@@ -185,15 +185,15 @@ double shortest_impact(const System<D>& s, double end) {
 
 template <int D>
 SceneTime read_time(const SceneTable& t, const System<D>& system, const std::vector<std::string>& law_description,
-                    bool sound) {
+                    bool valid) {
   SceneTime out;
   read_extent(t, out);
   const double fraction =
       t.number("step_fraction", Unit::none, Range{0.0, largest_fraction<D>(), true, false}, kDefaultFraction);
   const bool automatic = !t.has("step") || (t.is_text("step") && t.text("step") == "auto");
   if (!automatic && t.has("step_fraction"))
-    t.mistake("step_fraction", "goes with step = \"auto\", which follows from it; here the step is given");
-  if (!sound || !t.sound()) {
+    t.add_error("step_fraction", "goes with step = \"auto\", which follows from it; here the step is given");
+  if (!valid || t.has_errors()) {
     if (!automatic) (void)t.number("step", Unit::time, Range::positive());
     (void)t.count("warm_up_steps", 0, static_cast<std::int64_t>(kMostSteps), 0);
     return out;

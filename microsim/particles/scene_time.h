@@ -18,7 +18,7 @@ struct SceneTime {
   double natural_time = 0.0;       ///< smallest sqrt(m/k) [s]
   double stable_step = 0.0;        ///< largest step at which the contacts of the start are stable; infinite without [s]
   double contact_time = 0.0;       ///< shortest duration of an impact at the speeds of the scene; infinite at rest [s]
-  double reach_time = 0.0;         ///< of the way through the shortest attraction at a distance; infinite without [s]
+  double reach_time = 0.0;         ///< time to pass the shortest attraction at a distance; infinite without [s]
   std::string limited_by;          ///< sentence: which body and law set the natural time
   std::string crowded;             ///< sentence: which body and contacts set the stable step; empty: one contact does
 };
@@ -26,12 +26,12 @@ struct SceneTime {
 /// Table [time]: `step` "auto" or seconds, `end` or the number of `steps`, `step_fraction` of the natural time (0.05),
 /// `warm_up_steps` (0). Automatic steps are also at most 1/200 of the shortest impact, 1/10 of the reach time and
 /// kLargestStableShare of the stable step of the contacts that there are at the start, and divide `end`. Throws
-/// BadInput for steps above kLargestStepFraction of the natural time, of disks 0.2, or that share of the stable step of
-/// the springs alone.
-/// `law_description`: per law, for messages. `sound`: the system is that of the scene; else steps are not judged.
+/// InputError for steps above kLargestStepFraction of the natural time, of disks 0.2, or that share of the stable step
+/// of the springs alone. `law_description`: per law, for messages. `valid`: the system is that of the scene; else steps
+/// are not judged.
 template <int D>
 SceneTime read_time(const SceneTable& time, const System<D>& system, const std::vector<std::string>& law_description,
-                    bool sound);
+                    bool valid);
 
 /// Duration of the shortest impact between a particle and an equal one at the largest relative speed in sight (present
 /// velocities, free fall through the scene). Hertz [closed form]: h = (5 m12 v^2/(4 K))^(2/5), F = K h^(3/2),

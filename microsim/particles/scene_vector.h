@@ -9,7 +9,7 @@
 
 namespace softgrain {
 
-/// Throws BadInput.
+/// Throws InputError.
 template <int D>
 Vec<D> read_vector(const SceneTable& t, const std::string& key, Unit unit) {
   if constexpr (D == 3) {
@@ -17,7 +17,7 @@ Vec<D> read_vector(const SceneTable& t, const std::string& key, Unit unit) {
   } else {
     const std::vector<double> values = t.numbers(key, unit);
     if (values.size() == 2) return {{values[0], values[1]}};
-    t.mistake(key, "must have two components, as the scene has dimension = 2");
+    t.add_error(key, "must have two components, as the scene has dimension = 2");
     return {};
   }
 }

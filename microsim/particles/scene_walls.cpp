@@ -17,9 +17,9 @@ enum class WallMotion { fixed, velocity, force };
 }  // namespace
 
 template <>
-inline constexpr auto words<WallMotion> = word_list<WallMotion>({{WallMotion::fixed, "fixed"},
-                                                                 {WallMotion::velocity, "velocity"},
-                                                                 {WallMotion::force, "force"}});
+inline constexpr auto enum_names<WallMotion> = enum_name_list<WallMotion>({{WallMotion::fixed, "fixed"},
+                                                                           {WallMotion::velocity, "velocity"},
+                                                                           {WallMotion::force, "force"}});
 
 namespace {
 
@@ -28,7 +28,7 @@ Vec<D> read_normal(const SceneTable& t) {
   const Vec<D> n = read_vector<D>(t, "normal", Unit::none);
   const double length = norm(n);
   if (!(length > 0.0) || !std::isfinite(1.0 / length)) {
-    t.mistake("normal", "must not be the zero vector");
+    t.add_error("normal", "must not be the zero vector");
     return n;
   }
   return length == 1.0 ? n : n * (1.0 / length);
@@ -52,7 +52,7 @@ void read_motion(const SceneTable& t, SceneWall<D>& wall) {
   if (motion == WallMotion::velocity) wall.body.velocity = read_vector<D>(t, "velocity", Unit::velocity);
   if (motion != WallMotion::force) return;
   if (!wall.plane)
-    t.mistake("motion", "\"force\" is for planes: the inside of a sphere is fixed or moves with a velocity");
+    t.add_error("motion", "\"force\" is for planes: the inside of a sphere is fixed or moves with a velocity");
   wall.load = t.number("force", Unit::force);
   wall.needs_mass = !t.has("mass");
   if (!wall.needs_mass) wall.body.mass = t.number("mass", Unit::mass, Range::positive());
@@ -61,7 +61,7 @@ void read_motion(const SceneTable& t, SceneWall<D>& wall) {
 template <int D>
 void require_new_name(const SceneTable& t, const std::vector<SceneWall<D>>& walls, const std::string& name) {
   const auto same = std::find_if(walls.begin(), walls.end(), [&](const auto& w) { return w.name == name; });
-  if (same != walls.end()) t.mistake("name", "another wall is called '" + name + "' (" + same->where + ")");
+  if (same != walls.end()) t.add_error("name", "another wall is called '" + name + "' (" + same->where + ")");
 }
 
 }  // namespace
@@ -90,12 +90,13 @@ namespace {
 /// The box on the first line of the file with the particles; `known`: that could be read.
 template <int D>
 Vec<D> size_in_file(const SceneTable& t, const SceneBodies<D>& bodies, bool known) {
-  if (bodies.many_file.empty()) t.reject("size", "\"file\" needs [particles] file, whose first line gives the box");
+  if (bodies.many_file.empty())
+    t.throw_error("size", "\"file\" needs [particles] file, whose first line gives the box");
   Vec<D> size;
   for (int k = 0; k < D; ++k) {
     if (known && !(bodies.many_box[k] > 0.0))
-      throw BadInput(bodies.many_file + ":1: " + (D == 3 ? "Lx Ly Lz" : "Lx Ly") +
-                     " must be above 0 for a cell with size = \"file\"");
+      throw InputError(bodies.many_file + ":1: " + (D == 3 ? "Lx Ly Lz" : "Lx Ly") +
+                       " must be above 0 for a cell with size = \"file\"");
     size[k] = bodies.many_box[k];
   }
   return size;
@@ -109,7 +110,7 @@ Vec<D> read_size(const SceneTable& t, const SceneBodies<D>& bodies, bool known) 
   }
   const Vec<D> size = read_vector<D>(t, "size", Unit::length);
   for (int k = 0; k < D; ++k)
-    if (!(size[k] > 0.0)) t.reject("size", "every component must be above 0");
+    if (!(size[k] > 0.0)) t.throw_error("size", "every component must be above 0");
   return size;
 }
 
@@ -121,16 +122,16 @@ Cell<D> read_cell(const SceneTable& root, const SceneBodies<D>& bodies) {
   const SceneTable t = root.table("cell");
   Vec<D> size;
   for (int k = 0; k < D; ++k) size[k] = 1.0;
-  t.check([&] { size = read_size(t, bodies, root.table_or_empty("particles").sound()); });
+  t.check([&] { size = read_size(t, bodies, !root.table_or_empty("particles").has_errors()); });
   const std::vector<bool> periodic = t.flags("periodic");
   if (periodic.size() != static_cast<std::size_t>(D))
-    t.reject("periodic", D == 3 ? "must have three flags" : "must have two flags, as the scene has dimension = 2");
+    t.throw_error("periodic", D == 3 ? "must have three flags" : "must have two flags, as the scene has dimension = 2");
   std::array<bool, D> along{};
   std::copy(periodic.begin(), periodic.end(), along.begin());
   Cell<D> cell = box_cell<D>(size, along);
   const double rate = t.number("shear_rate", Unit::frequency, Range::any(), 0.0);
   if (rate != 0.0 && !(periodic[0] && periodic[1]))
-    t.mistake("shear_rate", "needs a cell that is periodic along x and y");
+    t.add_error("shear_rate", "needs a cell that is periodic along x and y");
   cell.velocity_gradient[0][1] = rate;
   return cell;
 }
@@ -145,9 +146,10 @@ void require_wide_cell(const SceneTable& root, const Particles<D>& p, const Cell
     if (!cell.periodic[static_cast<std::size_t>(k)]) continue;
     const double width = cell.edges[k][k];
     if (width >= 4.0 * largest) continue;
-    root.table("cell").mistake("size", "the periodic axis " + std::string(1, "xyz"[k]) + " is " +
-                                           std::to_string(width) + " m wide; allowed: at least " +
-                                           std::to_string(4.0 * largest) + " m, two diameters of the largest particle");
+    root.table("cell").add_error("size", "the periodic axis " + std::string(1, "xyz"[k]) + " is " +
+                                             std::to_string(width) + " m wide; allowed: at least " +
+                                             std::to_string(4.0 * largest) +
+                                             " m, two diameters of the largest particle");
   }
 }
 

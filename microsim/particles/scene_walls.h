@@ -26,17 +26,17 @@ struct SceneWall {
 
 /// Planes: point, normal into the side of the particles. Sphere insides: center, radius. Motion "fixed", "velocity"
 /// (constant), "force" (planes: along the normal under a force, positive towards the particles, with a servo mass).
-/// In two dimensions planes are lines and spheres circles. Throws BadInput.
+/// In two dimensions planes are lines and spheres circles. Throws InputError.
 template <int D>
 std::vector<SceneWall<D>> read_walls(const SceneTable& root, const std::vector<Material>& materials);
 
 /// Table [cell]: `size` (or "file": the box of [particles] file), `periodic`, `shear_rate` (the top moves along x, the
 /// velocity gradient d vx/dy; images move with it, as between Lees-Edwards boundaries). Without the table: open
-/// everywhere. Throws BadInput.
+/// everywhere. Throws InputError.
 template <int D>
 Cell<D> read_cell(const SceneTable& root, const SceneBodies<D>& bodies);
 
-/// A grain may meet each neighbour under one image alone: throws BadInput when a periodic axis is narrower than two
+/// A grain may meet each neighbour under one image alone: throws InputError when a periodic axis is narrower than two
 /// diameters of the largest grain.
 template <int D>
 void require_wide_cell(const SceneTable& root, const Particles<D>& particles, const Cell<D>& cell);

@@ -12,13 +12,13 @@ namespace softgrain {
 /// z.
 struct Trajectory {
   std::vector<double> time;                  ///< [s]
-  std::vector<double> position;              ///< of particles [m]
+  std::vector<double> position;              ///< positions of particles [m]
   std::vector<double> velocity;              ///< [m/s]
   std::vector<double> spin;                  ///< [rad/s]
   std::vector<double> wall_position;         ///< centre of a sphere-inside, point of a plane [m]
   std::vector<double> cell_edges;            ///< row-major 3 x 3 [m]
-  std::vector<double> translational_energy;  ///< of particles [J]
-  std::vector<double> rotational_energy;     ///< [J]
+  std::vector<double> translational_energy;  ///< translational energy of particles [J]
+  std::vector<double> rotational_energy;     ///< rotational energy of particles [J]
   std::vector<double> gravitational_energy;  ///< -sum m g.x [J]; zero at the origin
 };
 
@@ -29,7 +29,7 @@ void record_frame(Trajectory& trajectory, const System<D>& system);
 /// Data sets with units: time [frames], position [frames, particles, 3], ...
 void write_trajectory(const h5::Group& group, const Trajectory& trajectory);
 
-/// Throws FileTrouble.
+/// Throws IoError.
 Trajectory read_trajectory(const h5::Group& group);
 
 }  // namespace softgrain

@@ -25,14 +25,14 @@ class LineReader {
   explicit LineReader(const std::string& path) : path_(path), file_(nullptr, gzclose) {
     require_readable_file(path);
     file_.reset(gzopen(path.c_str(), "rb"));
-    if (!file_) throw FileTrouble(path + ": cannot be read");
+    if (!file_) throw IoError(path + ": cannot be read");
     gzbuffer(file_.get(), 1U << 17U);
   }
 
   /// The next line without its end, good until the next call; false at the end of the file.
   bool next(std::string_view& line) {
     if (gzgets(file_.get(), buffer_.data(), static_cast<int>(buffer_.size())) == nullptr) {
-      require_sound();
+      require_valid();
       return false;
     }
     ++number_;
@@ -40,21 +40,21 @@ class LineReader {
     if (line.ends_with('\n'))
       line.remove_suffix(1);
     else
-      require_sound();  // the last line, or the place where a damaged file breaks off
+      require_valid();  // the last line, or the place where a damaged file breaks off
     if (line.size() + 2 >= kLongestLine)
       wrong("the line is longer than " + std::to_string(kLongestLine) + " characters");
     return true;
   }
 
   [[noreturn]] void wrong(const std::string& problem) const {
-    throw BadInput(path_ + ":" + std::to_string(std::max<std::int64_t>(number_, 1)) + ": " + problem);
+    throw InputError(path_ + ":" + std::to_string(std::max<std::int64_t>(number_, 1)) + ": " + problem);
   }
 
  private:
-  void require_sound() {
+  void require_valid() {
     int status = Z_OK;
     const std::string why = gzerror(file_.get(), &status);
-    if (status != Z_OK && status != Z_STREAM_END) throw FileTrouble(path_ + ": damaged or cut short (" + why + ")");
+    if (status != Z_OK && status != Z_STREAM_END) throw IoError(path_ + ": damaged or cut short (" + why + ")");
   }
 
   std::string path_;
@@ -105,8 +105,8 @@ XyzrFile read_xyzr(const std::string& path, const std::function<void(std::int64_
   if (admit) admit(n);
   for (std::int64_t k = 0; k < n; ++k) {
     if (!reader.next(line))
-      throw BadInput(path + ":" + std::to_string(xyzr_line(static_cast<std::size_t>(k))) + ": the file ends after " +
-                     std::to_string(k) + " of " + std::to_string(n) + " spheres");
+      throw InputError(path + ":" + std::to_string(xyzr_line(static_cast<std::size_t>(k))) + ": the file ends after " +
+                       std::to_string(k) + " of " + std::to_string(n) + " spheres");
     const auto v = four_numbers(line, reader, "x y z r");
     if (!(v[3] > 0.0)) reader.wrong("r = " + std::to_string(v[3]) + ": must be above 0");
     file.position.push_back({{v[0], v[1], v[2]}});

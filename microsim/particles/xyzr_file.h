@@ -19,7 +19,7 @@ struct XyzrFile {
 /// Line of a sphere in its file.
 inline std::int64_t xyzr_line(std::size_t sphere) { return static_cast<std::int64_t>(sphere) + 2; }
 
-/// Throws BadInput ("file:line: ...") for wrong content, FileTrouble for missing, unreadable or damaged files. `admit`
+/// Throws InputError ("file:line: ...") for wrong content, IoError for missing, unreadable or damaged files. `admit`
 /// hears the number of spheres before they are read and throws when that is too many; may be empty.
 XyzrFile read_xyzr(const std::string& path, const std::function<void(std::int64_t)>& admit = {});
 

@@ -14,7 +14,7 @@ struct Histogram {
   double high = 1.0;
   std::vector<std::int64_t> counts;
   std::int64_t below = 0;
-  std::int64_t above = 0;  ///< also what is not a number
+  std::int64_t above = 0;  ///< values at or above `high`, and what is not a number
 
   Histogram(double from, double to, std::size_t bins) : low(from), high(to), counts(bins, 0) {}
 

@@ -12,7 +12,7 @@
 
 namespace softgrain {
 
-/// Of one state, in the units of the sample. What is undefined is absent.
+/// Results for one state, in the units of the sample. What is undefined is absent.
 struct PowderAnalysis {
   double zero = 0.0;  ///< contacts with |F| below it count as unstressed
   PowderContacts contacts;
@@ -21,7 +21,8 @@ struct PowderAnalysis {
   PowderPercolation percolation;
   std::optional<PowderRigidity> rigidity;  ///< when asked for
   std::optional<PowderModuli> moduli;
-  double solid_fraction_3d = 0.0;     ///< of spheres that look the same: 4/(3 sqrt(pi)) Phi^(3/2) = 0.752 Phi^(3/2)
+  /// Solid fraction of spheres that look the same: 4/(3 sqrt(pi)) Phi^(3/2) = 0.752 Phi^(3/2).
+  double solid_fraction_3d = 0.0;
   std::optional<double> rumpf_ratio;  ///< Rumpf's pressure, z Phi N d/(pi d^2) of means, over the one imposed, P > 0
 };
 

@@ -127,7 +127,8 @@ class Phase {
     for (;;) {
       stop_if_interrupted(kDoing);
       look();
-      if (!std::isfinite(residual_.kinetic)) throw NotUsable("powder: the motion diverged in phase " + phase_.name);
+      if (!std::isfinite(residual_.kinetic))
+        throw UnusableResult("powder: the motion diverged in phase " + phase_.name);
       const bool done = elapsed() > 0.0 && !stiffening() && at_rest();
       if (!recorded()) picture(done);  // a run that goes on from here has been pictured before it was saved
       if ((state_.system.time >= next || done) && !recorded()) {

@@ -13,8 +13,8 @@
 
 namespace softgrain {
 
-constexpr double kPowderForceLimit = 1e-4;    ///< of net force, moment and pressure error, in F1, F1 a and F1/a
-constexpr double kPowderKineticLimit = 5e-8;  ///< of the kinetic energy per disk, in F1 a
+constexpr double kPowderForceLimit = 1e-4;    ///< limit of net force, moment and pressure error, in F1, F1 a and F1/a
+constexpr double kPowderKineticLimit = 5e-8;  ///< limit of the kinetic energy per disk, in F1 a
 
 /// How far a powder is from the published equilibrium [CP 3.2], each over its limit: equilibrium when all are below 1.
 struct PowderResidual {
@@ -35,11 +35,11 @@ PowderResidual powder_residual(const System<2>& system, const Vec<2>& imposed, c
 struct PowderPhase {
   std::string name;             ///< "compaction", "aggregation", "free" or "stiffening", "load"
   bool fixed_cell = false;      ///< the cell keeps its lengths; pressure is no criterion
-  bool one_aggregate = false;   ///< also wait until all disks hang together
+  bool one_aggregate = false;   ///< whether to wait until all disks form one aggregate, too
   double pressure = 0.0;        ///< imposed, in the units of the sample
   double stiffness = 0.0;       ///< kappa of all contacts
   double stiffening = 0.0;      ///< T0 in which kappa goes there from where it was, evenly in its logarithm; 0: at once
-  double edge_speed_cap = 0.0;  ///< of |dL/dt| [a/T0]; 0: none
+  double edge_speed_cap = 0.0;  ///< largest |dL/dt| [a/T0]; 0: none
 };
 
 /// How a sample comes together.
@@ -47,9 +47,9 @@ struct PowderProtocol {
   int method = 1;
   /// Pressures one after the other, each until equilibrium [PRE 78, 031305]; empty: that of the sample.
   std::vector<double> pressures{};
-  double edge_speed_cap = 0.0;     ///< of |dL/dt| [a/T0], the lengths of the cell; 0: none
+  double edge_speed_cap = 0.0;     ///< largest |dL/dt| of the lengths of the cell [a/T0]; 0: none
   double aggregation_kappa = 0.0;  ///< method 2: stiffness while disks aggregate; 0: as always
-  double stiffening_time = 200.0;  ///< T0 in which it goes to that of the sample, as the cell is freed
+  double stiffening_time = 200.0;  ///< T0 in which kappa goes to that of the sample, as the cell is freed
 };
 
 /// Method 1: at rest, the pressure at once. Method 2: the disks aggregate in a fixed cell, then the cell is freed at
@@ -97,8 +97,8 @@ struct PowderStage {
   double coordination = 0.0;  ///< z, distant pairs included
   double mean_repulsive = 0.0;
   double mean_tensile = 0.0;
-  double bulk = 0.0;   ///< modulus, as PowderModuli; NaN: not defined
-  double shear = 0.0;  ///< likewise
+  double bulk = 0.0;   ///< bulk modulus, as in PowderModuli; NaN: not defined
+  double shear = 0.0;  ///< shear modulus, as in PowderModuli; NaN: not defined
 };
 
 /// Everything a sample needs to go on.
@@ -114,14 +114,15 @@ struct PowderState {
   Vec<2> still_edge{};
   std::int64_t still_contacts = 0;
   std::vector<PowderPoint> points;
-  std::vector<PowderStage> stages;        ///< of phases that imposed a pressure and are over
-  std::vector<PowderSnapshot> snapshots;  ///< at the start, after each phase, and when Phi or z have changed visibly
-  double pictured = 0.0;                  ///< z of the last one
+  std::vector<PowderStage> stages;  ///< results of phases that imposed a pressure and are over
+  /// States at the start, after each phase, and when Phi or z have changed visibly.
+  std::vector<PowderSnapshot> snapshots;
+  double pictured = 0.0;  ///< z of the last snapshot
 };
 
 struct PowderResult {
   bool usable = false;
-  std::string reason;  ///< which criterion was unmet when the time ran out
+  std::string reason;  ///< criterion that was unmet when the time ran out
   double fraction = 0.0;
   Vec<2> stress{};
   PowderResidual residual;
@@ -136,7 +137,7 @@ bool one_aggregate(const System<2>& system);
 void set_stiffness(PowderState& state, const PowderSpec& spec, double kappa);
 
 /// Goes through the phases from where the state stands (all done: only looks at it). Saved after each recorded point.
-/// Nobody knows when a phase comes to rest: the share done takes what most take. Throws NotUsable, Interrupted.
+/// Nobody knows when a phase comes to rest: the share done takes what most take. Throws UnusableResult, Interrupted.
 PowderResult run_powder(PowderState& state, const PowderSpec& spec, const std::vector<PowderPhase>& phases,
                         const PowderOptions& options, const RunControl<PowderState>& control = {});
 

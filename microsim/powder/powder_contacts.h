@@ -37,7 +37,8 @@ PowderContacts powder_contacts(const System<2>& system, double zero, bool cohesi
 /// Whether each disk, by slot, has fewer than two contacts once such disks are taken away one after another.
 std::vector<bool> powder_rattlers(const System<2>& system);
 
-/// In the units of the sample (F0, or P a without cohesion); bins are the same for every sample, so that counts add up.
+/// Distributions of the forces in the units of the sample (F0, or P a without cohesion). Bins are the same for every
+/// sample, so that counts add up.
 struct PowderForces {
   Histogram normal{-1.1, 6.1, 144};            ///< N of all pairs, distant ones too
   Histogram normal_over_mean{-2.0, 8.0, 100};  ///< N over its mean, of the same; empty unless that is above the limit

@@ -12,7 +12,7 @@ namespace softgrain {
 /// too (8), so that a closed chain of touching disks closes a hole.
 struct Hole {
   double area = 0.0;        ///< [a^2]
-  Vec<2> centre{};          ///< of mass, unwrapped across the period, then folded into it [a]
+  Vec<2> centre{};          ///< centre of mass, unwrapped across the period, then folded into it [a]
   double radius = 0.0;      ///< R_H = sqrt(2 <|r - r_c|^2>) [a]: R for a disk of radius R; NaN when it percolates
   bool percolates = false;  ///< connected with an image of itself: it has no centre and no radius
 };
@@ -23,7 +23,7 @@ struct PowderHoles {
   std::int64_t fragments = 0;    ///< smaller ones: ends of cusps that the mesh cuts off
   double void_fraction = 0.0;    ///< area of all holes over that of the cell
   double largest_radius = 0.0;   ///< NaN when a hole percolates
-  double largest_share = 0.0;    ///< of the void, in the hole of the largest area
+  double largest_share = 0.0;    ///< share of the void in the hole of the largest area
   double mean_radius = 0.0;      ///< mean of R_H weighted by A_H over all holes [a]; NaN when a hole percolates
   std::int64_t percolating = 0;  ///< holes that percolate
 };

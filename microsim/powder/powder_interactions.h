@@ -24,10 +24,10 @@ struct PowderInteraction {
   Vec<2> normal{};                ///< unit, to i
   Vec<2> branch{};                ///< x_i - x_j, image of j nearest to i
   double arm_i = 0.0;             ///< distance from the centre of i to the contact point; arm_i + arm_j = |branch|
-  double arm_j = 0.0;             ///< likewise
+  double arm_j = 0.0;             ///< distance from the centre of j to the contact point
   double normal_force = 0.0;      ///< N, repulsion positive
   double tangential_force = 0.0;  ///< T, of the force on i along (-n_y, n_x); T > 0 turns both clockwise
-  double rolling_moment = 0.0;    ///< on i, counter-clockwise; 0 without rolling resistance
+  double rolling_moment = 0.0;    ///< rolling moment on i, counter-clockwise; 0 without rolling resistance
   bool distant = false;
   ForceKind kind = ForceKind::unstressed;
 

@@ -70,8 +70,8 @@ std::int64_t smooth_number(std::int64_t count) {
 
 PowderMesh powder_mesh(std::span<const Sphere<2>> disks, const Vec<2>& lengths, double per_length) {
   if (!(lengths[0] > 0.0) || !(lengths[1] > 0.0) || !(per_length > 0.0))
-    throw BadInput(fmt::format("powder mesh: lengths {} x {} and {} cells per length must be above 0", lengths[0],
-                               lengths[1], per_length));
+    throw InputError(fmt::format("powder mesh: lengths {} x {} and {} cells per length must be above 0", lengths[0],
+                                 lengths[1], per_length));
   PowderMesh mesh;
   mesh.lengths = lengths;
   mesh.nx = smooth_number(static_cast<std::int64_t>(std::ceil(lengths[0] * per_length)));

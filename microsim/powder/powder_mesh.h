@@ -14,7 +14,7 @@ namespace softgrain {
 struct PowderMesh {
   std::int64_t nx = 0;
   std::int64_t ny = 0;
-  Vec<2> lengths{};                 ///< of the period [a]
+  Vec<2> lengths{};                 ///< lengths of the period [a]
   std::vector<std::uint8_t> solid;  ///< ny rows of nx
 
   [[nodiscard]] Vec<2> spacing() const {
@@ -26,10 +26,10 @@ struct PowderMesh {
 std::int64_t smooth_number(std::int64_t count);
 
 /// A cell is solid when its centre lies in a disk. At least `per_length` cells per unit of length (a few percent more:
-/// smooth_number); `lengths`: of the period. Throws BadInput for lengths or a fineness that are not positive.
+/// smooth_number); `lengths`: of the period. Throws InputError for lengths or a fineness that are not positive.
 PowderMesh powder_mesh(std::span<const Sphere<2>> disks, const Vec<2>& lengths, double per_length = 100.0);
 
-/// The same for the grains of a system with a rectangular periodic cell.
+/// Mesh of the grains of a system with a rectangular periodic cell.
 PowderMesh powder_mesh(const System<2>& system, double per_length = 100.0);
 
 /// Makes every interaction a closed wall: the cells on the line between both centres become solid. The line is

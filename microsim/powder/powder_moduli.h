@@ -7,14 +7,14 @@
 
 namespace softgrain {
 
-/// Of a pack in the plane, in units of the sample (F0/a; without cohesion P): stress = C strain, strains (xx, yy,
-/// gamma_xy). Both shear moduli are the same in an isotropic pack.
+/// Moduli of a pack in the plane, in units of the sample (F0/a; without cohesion P): stress = C strain, strains (xx,
+/// yy, gamma_xy). Both shear moduli are the same in an isotropic pack.
 struct PowderModuli {
   double bulk = 0.0;         ///< B = (C11 + C22 + 2 C12)/4: mean stress over relative change of area
   double shear = 0.0;        ///< G = ((C11 + C22 - 2 C12)/4 + C33)/2, mean of the two
   double shear_axes = 0.0;   ///< (C11 + C22 - 2 C12)/4: one axis in, the other out
   double shear_cross = 0.0;  ///< C33: along the axes
-  bool distant = true;       ///< with pairs that attract without touching, whose springs push the wrong way
+  bool distant = true;       ///< whether distant pairs are included, whose springs have a negative stiffness
 };
 
 /// C = (K_ee - K_eu K_uu^-1 K_ue)/A of K = G^T k G, whose columns are motions of disks (u) and strains of the cell (e).

@@ -50,7 +50,7 @@ class PeriodicClusters {
   std::vector<std::size_t> parent_;
   std::vector<std::size_t> size_;
   std::vector<Vec<2>> offset_;  ///< against the parent, in periods
-  std::vector<Wraps> wraps_;    ///< of roots
+  std::vector<Wraps> wraps_;    ///< per root, the axes along which its cluster wraps
 };
 
 }  // namespace

@@ -10,8 +10,8 @@
 
 namespace softgrain {
 
-/// Of one set of disks and one set of motions. N_f + h = M + k holds by algebra; here h and k come from two
-/// factorisations that know nothing of each other, so that the identity checks them.
+/// Rigidity of one set of disks and one set of motions. N_f + h = M + k holds by algebra. Here h and k come from two
+/// independent factorisations, so that the identity checks them.
 struct Rigidity {
   std::int64_t freedoms = 0;       ///< N_f: 3 N (without friction 2 N), 2 more when the cell is free
   std::int64_t constraints = 0;    ///< M: 2 N_c + N_d, with rolling resistance 3 N_c + N_d, without friction N_c + N_d
@@ -32,7 +32,7 @@ struct PowderRigidity {
   Rigidity fixed;                         ///< cell held
   std::optional<Rigidity> free;           ///< the two strains are motions too; none in free space
   std::optional<Rigidity> backbone;       ///< cell held, without rattlers; only without cohesion
-  std::optional<Rigidity> backbone_free;  ///< likewise, cell free
+  std::optional<Rigidity> backbone_free;  ///< cell free, without rattlers; only without cohesion
 };
 
 /// `cohesive`: disks held by tension are no rattlers.

@@ -33,7 +33,7 @@ std::int64_t half_row(const PowderMesh& mesh) { return mesh.nx / 2 + 1; }
 Field transform(const PowderMesh& mesh) {
   const std::int64_t stride = 2 * half_row(mesh);
   Field field(fftw_alloc_real(static_cast<std::size_t>(mesh.ny * stride)));
-  if (!field) throw NotUsable(fmt::format("powder: no memory for a mesh of {} x {} cells", mesh.nx, mesh.ny));
+  if (!field) throw UnusableResult(fmt::format("powder: no memory for a mesh of {} x {} cells", mesh.nx, mesh.ny));
   // FFTW_ESTIMATE: no timing trials, so that the same transform runs everywhere; it leaves the field as it is.
   fftw_plan plan = nullptr;
   {
@@ -41,7 +41,7 @@ Field transform(const PowderMesh& mesh) {
     plan = fftw_plan_dft_r2c_2d(static_cast<int>(mesh.ny), static_cast<int>(mesh.nx), field.get(),
                                 reinterpret_cast<fftw_complex*>(field.get()), FFTW_ESTIMATE);
   }
-  if (plan == nullptr) throw NotUsable(fmt::format("powder: no transform of {} x {} cells", mesh.nx, mesh.ny));
+  if (plan == nullptr) throw UnusableResult(fmt::format("powder: no transform of {} x {} cells", mesh.nx, mesh.ny));
   for (std::int64_t j = 0; j < mesh.ny; ++j) {
     const std::uint8_t* row = mesh.solid.data() + j * mesh.nx;
     std::copy(row, row + mesh.nx, field.get() + j * stride);
@@ -90,8 +90,8 @@ BinSums sum_modes(const PowderMesh& mesh, const double* field, std::span<const d
 
 std::vector<double> scattering_bins(double k_first, double k_last, double growth) {
   if (!(k_first > 0.0) || !(k_last > k_first) || !(growth > 0.0))
-    throw BadInput(fmt::format("scattering: bins from {} to {}, growing by {}: must rise and be above 0", k_first,
-                               k_last, growth));
+    throw InputError(fmt::format("scattering: bins from {} to {}, growing by {}: must rise and be above 0", k_first,
+                                 k_last, growth));
   std::vector<double> edges{0.5 * k_first};
   while (edges.back() < k_last) edges.push_back(edges.back() + std::max(k_first, growth * edges.back()));
   return edges;

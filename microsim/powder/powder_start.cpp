@@ -36,7 +36,7 @@ class PlacedDisks {
  public:
   PlacedDisks(double edge, double reach)
       : edge_(edge), reach_(reach), cells_(std::max(1, static_cast<int>(edge / (1.0 + reach)))) {
-    lists_.resize(static_cast<std::size_t>(cells_) * static_cast<std::size_t>(cells_));
+    log_lists_.resize(static_cast<std::size_t>(cells_) * static_cast<std::size_t>(cells_));
   }
 
   [[nodiscard]] bool has_room(const Vec<2>& x, double d) const {
@@ -44,12 +44,12 @@ class PlacedDisks {
     const int b = cell(x[1]);
     for (int da = -1; da <= 1; ++da)
       for (int db = -1; db <= 1; ++db)
-        for (const std::size_t j : lists_[index(a + da, b + db)])
+        for (const std::size_t j : log_lists_[index(a + da, b + db)])
           if (near(x, d, j)) return false;
     return true;
   }
   void add(const Vec<2>& x, double d) {
-    lists_[index(cell(x[0]), cell(x[1]))].push_back(x_.size());
+    log_lists_[index(cell(x[0]), cell(x[1]))].push_back(x_.size());
     x_.push_back(x);
     d_.push_back(d);
   }
@@ -70,7 +70,7 @@ class PlacedDisks {
   double edge_;
   double reach_;
   int cells_;
-  std::vector<std::vector<std::size_t>> lists_;
+  std::vector<std::vector<std::size_t>> log_lists_;
   std::vector<Vec<2>> x_;
   std::vector<double> d_;
 };
@@ -141,8 +141,8 @@ System<2> make_powder(const PowderSpec& spec, std::uint64_t seed, std::uint64_t 
       disk.x = {{edge * random.uniform(), edge * random.uniform()}};
     } while (!placed.has_room(disk.x, d) && ++trial < kTrials);
     if (trial == kTrials)
-      throw BadInput("powder: disks find no place at a solid fraction of " + std::to_string(spec.solid_fraction) +
-                     "; start looser");
+      throw InputError("powder: disks find no place at a solid fraction of " + std::to_string(spec.solid_fraction) +
+                       "; start looser");
     placed.add(disk.x, d);
     disk.r = 0.5 * d;
     disk.mass = d * d;

@@ -28,7 +28,7 @@ struct PowderSpec {
   double pressure = 0.01;           ///< P* = P a/F0; without cohesion P itself is 1
   double start_speed = 0.0;         ///< V0, root mean square of each velocity component at the start, over
                                     ///< V* = sqrt(F0 D0/m); 0: at rest
-  std::optional<Grading> sizes;     ///< of disks, by area; in any unit, its largest size counts as 1
+  std::optional<Grading> sizes;  ///< size distribution of the disks, by area; in any unit, its largest size counts as 1
 
   /// F1 = max(F0, P a) of a pressure imposed, the scale of forces in equilibrium criteria.
   [[nodiscard]] double force_scale(double imposed) const { return cohesive ? std::max(1.0, imposed) : 1.0; }
@@ -45,7 +45,7 @@ std::vector<double> drawn_diameters(const PowderSpec& spec, std::uint64_t seed, 
 
 /// Disks at random places of a square periodic cell, largest first, none within reach of another; at rest, or with
 /// Maxwell velocities without net momentum and without spin: each component has the root mean square V0 over the disks,
-/// |v| that of sqrt 2 V0 [CP 3.3]. Throws BadInput when they find no
+/// |v| that of sqrt 2 V0 [CP 3.3]. Throws InputError when they find no
 /// place (Phi_I too high).
 System<2> make_powder(const PowderSpec& spec, std::uint64_t seed, std::uint64_t sample);
 

@@ -48,7 +48,7 @@ std::vector<PowderSnapshot> read_snapshots(const h5::Group& group) {
     const auto radii = one.doubles("radii");
     const auto cell = one.doubles("cell");
     if (positions.size() != 2 * radii.size() || cell.size() != 2)
-      throw FileTrouble("powder: snapshot " + std::to_string(k) + " has arrays that do not fit together");
+      throw IoError("powder: snapshot " + std::to_string(k) + " has arrays that do not fit together");
     PowderSnapshot s{one.number("time"), {{cell[0], cell[1]}}, {}};
     for (std::size_t n = 0; n < radii.size(); ++n)
       s.disks.push_back({{{positions[2 * n], positions[2 * n + 1]}}, radii[n]});

@@ -15,7 +15,7 @@ struct PowderStage;
 
 struct PowderSnapshot {
   double time = 0.0;             ///< [T0]
-  Vec<2> lengths{};              ///< of the periodic cell [a]
+  Vec<2> lengths{};              ///< lengths of the periodic cell [a]
   std::vector<Sphere<2>> disks;  ///< centres as they are, not folded into the cell
 };
 
@@ -25,27 +25,27 @@ PowderSnapshot powder_snapshot(const System<2>& system);
 /// cell (2) [a], attribute time [T0].
 void write_snapshots(const h5::Group& group, const std::vector<PowderSnapshot>& snapshots);
 
-/// What write_snapshots wrote; empty without such a group. Throws FileTrouble when shapes do not fit.
+/// What write_snapshots wrote; empty without such a group. Throws IoError when shapes do not fit.
 std::vector<PowderSnapshot> read_snapshots(const h5::Group& group);
 
 /// Every member of the specification as an attribute of `group`, by its name.
 void write_powder_spec(const h5::Group& group, const PowderSpec& spec);
 
-/// Throws FileTrouble when an attribute is missing.
+/// Throws IoError when an attribute is missing.
 PowderSpec read_powder_spec(const h5::Group& group);
 
-/// Into `group`: data set "course" (columns named in its attribute), groups "progress" (attributes), "snapshots" and
-/// "system".
+/// Writes into `group`: data set "course" (columns named in its attribute), groups "progress" (attributes), "snapshots"
+/// and "system".
 void write_powder_state(const h5::Group& group, const PowderState& state);
 
-/// Into a state whose system has been made from the same PowderSpec. Throws FileTrouble when something is missing.
+/// Reads into a state whose system has been made from the same PowderSpec. Throws IoError when something is missing.
 void read_powder_state(const h5::Group& group, PowderState& state);
 
-/// The stages among that; empty where an earlier program left none.
+/// Reads the stages of a written state; empty where an earlier program left none.
 std::vector<PowderStage> read_stages(const h5::Group& group);
 
 /// The system of a stored sample (a group with what write_powder_state wrote) with the law of its specification, to be
-/// measured again. Throws FileTrouble.
+/// measured again. Throws IoError.
 System<2> read_powder_system(const h5::Group& group, const PowderSpec& spec);
 
 }  // namespace softgrain

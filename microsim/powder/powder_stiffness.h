@@ -7,10 +7,11 @@
 
 namespace softgrain {
 
-/// Of K = G^T k G, k diagonal: K_N, K_T, K_r of contacts, -F0/D0 of distant pairs.
+/// Definiteness of K = G^T k G, k diagonal: K_N, K_T, K_r of contacts, -F0/D0 of distant pairs.
 struct Definiteness {
   bool positive = false;
-  std::optional<double> smallest_pivot;  ///< of K scaled to a unit diagonal; none when the factorisation broke down
+  /// Smallest pivot of K scaled to a unit diagonal; none when the factorisation broke down.
+  std::optional<double> smallest_pivot;
 };
 
 /// Smaller pivots of K (unit diagonal) count as zero.

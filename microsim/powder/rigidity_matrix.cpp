@@ -80,7 +80,7 @@ class Builder {
   const System<2>& system_;
   PairStiffness k_;
   int strains_;
-  std::int64_t columns_ = 0;  ///< of disks
+  std::int64_t columns_ = 0;  ///< columns of all disks
   std::vector<std::int64_t> first_;
   RigidityMatrix out_;
 };

@@ -17,14 +17,14 @@ struct PairStiffness {
   double distant = 0.0;     ///< -F0/D0: attraction that fades with the gap
 };
 
-/// Of the law of the first material with itself. Throws std::logic_error when that is not a cohesive disk.
+/// Stiffnesses of the law of the first material with itself. Throws std::logic_error when that is not a cohesive disk.
 PairStiffness pair_stiffness(const System<2>& system);
 
 /// Motions of the cell that a matrix has columns for.
 enum class CellMotions : int {
   none = 0,
   lengths = 2,  ///< strains xx and yy
-  strain = 3    ///< and gamma_xy = 2 eps_xy
+  strain = 3    ///< strains xx and yy, and gamma_xy = 2 eps_xy
 };
 
 /// G: one row per contact and component of its relative displacement, du_N = (u_i - u_j).n, with friction
@@ -35,15 +35,15 @@ enum class CellMotions : int {
 /// counts in full, whether it slides or not.
 struct RigidityMatrix {
   SparseEntries entries;          ///< M rows, N_f columns
-  std::vector<double> stiffness;  ///< per row
+  std::vector<double> stiffness;  ///< stiffness of each row
   std::int64_t contacts = 0;      ///< N_c
   std::int64_t distant = 0;       ///< N_d
   int per_disk = 3;               ///< columns of a disk
-  std::int64_t disk_columns = 0;  ///< of all disks; strains of the cell follow
+  std::int64_t disk_columns = 0;  ///< columns of all disks; strains of the cell follow
 };
 
-/// Of the pairs between disks that `keep` names (by slot); the others have no columns. Arms and branches are those of
-/// the state, overlap included, so that a turn of a whole cluster moves no contact.
+/// Matrix of the pairs between disks that `keep` names (by slot); the other disks have no columns. Arms and branches
+/// are those of the state, overlap included, so that a turn of a whole cluster moves no contact.
 RigidityMatrix rigidity_matrix(const std::vector<PowderInteraction>& pairs, const System<2>& system,
                                const std::vector<bool>& keep, CellMotions cell);
 

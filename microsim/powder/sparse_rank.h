@@ -8,7 +8,7 @@
 
 namespace softgrain {
 
-/// At most one entry per place.
+/// A sparse matrix with at most one entry per place.
 struct SparseEntries {
   struct Entry {
     std::int64_t row = 0;

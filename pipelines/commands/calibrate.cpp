@@ -1,5 +1,5 @@
 // softgrain calibrate DATA...: fits the contact laws to measurements; writes law.toml, law.h5 and summary.json.
-// Files of crowd measurements: see calibrate_crowd.h; of experiments (CSV): see calibrate_curves.h.
+// Files of multi-contact measurements: see calibrate_multi_contact.h; of experiments (CSV): see calibrate_curves.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 #include "calibrate/merge_measurements.h"
 #include "calibrate/threshold_fit.h"
-#include "pipelines/commands/calibrate_crowd.h"
 #include "pipelines/commands/calibrate_curves.h"
+#include "pipelines/commands/calibrate_multi_contact.h"
 #include "pipelines/law/fit_settings.h"
 #include "pipelines/law/fit_text.h"
 #include "pipelines/law/law_json.h"
@@ -31,7 +31,7 @@ FitOptions read_options(const SceneTable& t) {
 }
 
 Measurements load_all(const std::vector<std::string>& files) {
-  if (files.empty()) throw BadInput("calibrate: no measurement file given (softgrain calibrate DATA.h5...)");
+  if (files.empty()) throw InputError("calibrate: no measurement file given (softgrain calibrate DATA.h5...)");
   std::vector<Measurements> parts;
   for (const std::string& file : files) parts.push_back(load_measurements(file));
   return merge_measurements(parts, files);
@@ -62,7 +62,7 @@ json options_json(const FitOptions& o) {
           {"seed", o.seed}};
 }
 
-std::string people_line(const FitReport& report, const SoftParticleSpec& spec) {
+std::string console_line(const FitReport& report, const SoftParticleSpec& spec) {
   const PairLaw& law = report.law;
   const std::string line = verdict_text(law) + "\n";
   if (law.normal.b.value <= 0.0) return line;
@@ -75,7 +75,7 @@ std::string people_line(const FitReport& report, const SoftParticleSpec& spec) {
 
 ExitStatus command_calibrate(const CommonOptions& options) {
   if (are_curve_files(options)) return calibrate_curves(options);
-  if (are_crowd_files(options.inputs)) return calibrate_crowd(options);
+  if (are_multi_contact_files(options.inputs)) return calibrate_multi_contact(options);
   const Scene settings = Scene::parse("", "calibrate", options.overrides);
   FitOptions fit = settings.read(read_options);
   const Measurements data = load_all(options.inputs);
@@ -87,9 +87,9 @@ ExitStatus command_calibrate(const CommonOptions& options) {
 
   const bool good = std::all_of(card.pairs.begin(), card.pairs.end(),
                                 [](const PairLaw& law) { return law.status == LawStatus::good; });
-  std::string people;
-  for (const FitReport& report : reports) people += people_line(report, card.spec);
-  people += "law card: " + run.path("law.toml") + "\n";
+  std::string console;
+  for (const FitReport& report : reports) console += console_line(report, card.spec);
+  console += "law card: " + run.path("law.toml") + "\n";
   json summary = {{"status", good ? "good" : "not usable"},
                   {"inputs", options.inputs},
                   {"relaxation", card.relaxation},
@@ -97,7 +97,7 @@ ExitStatus command_calibrate(const CommonOptions& options) {
                   {"laws", json_of(summary_of(card))},
                   {"fits", reports_json(reports)},
                   {"options", options_json(fit)}};
-  run.finish(std::move(summary), people);
+  run.finish(std::move(summary), console);
   return good ? ExitStatus::good : ExitStatus::not_usable;
 }
 

@@ -35,10 +35,10 @@ std::optional<double> quantity(const char* option, const std::string& text, Unit
   double value = 0.0;
   try {
     value = parse_quantity(text, unit);
-  } catch (const BadInput& e) {
-    throw BadInput(fmt::format("{} {}: {}", option, text, e.what()));
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("{} {}: {}", option, text, e.what()));
   }
-  if (!(value > 0.0)) throw BadInput(fmt::format("{} {}: must be above 0", option, text));
+  if (!(value > 0.0)) throw InputError(fmt::format("{} {}: must be above 0", option, text));
   return value;
 }
 
@@ -52,8 +52,8 @@ CurveSettings read_settings(const SceneTable& t, const CommonOptions& options) {
   s.curves.secant_angle_deg = s.fit.secant_angle_deg.value_or(s.curves.secant_angle_deg);
   t.finish();
   if (!options.kind.empty()) {
-    s.curves.kind = from_word<PairKind>(options.kind);
-    if (!s.curves.kind) throw BadInput("--kind " + options.kind + ": must be soft-solid or soft-soft");
+    s.curves.kind = parse_enum<PairKind>(options.kind);
+    if (!s.curves.kind) throw InputError("--kind " + options.kind + ": must be soft-solid or soft-soft");
   }
   s.curves.shell_radius = quantity("--radius", options.radius, Unit::length);
   s.curves.youngs_modulus = quantity("--modulus", options.modulus, Unit::pressure);
@@ -64,8 +64,8 @@ CurveSettings read_settings(const SceneTable& t, const CommonOptions& options) {
 constexpr std::size_t kMostDrawn = 4000;
 constexpr std::size_t kMostSamples = 100;
 
-/// At most `most` of n points: of every even stretch the lowest and the highest force, and both ends, so that what lies
-/// far from the law is among them.
+/// Numbers of at most `most` of n points: both ends, and the lowest and the highest force of every even stretch, so
+/// that points far from the law are among them.
 std::vector<std::size_t> drawn_points(const std::vector<ForcePoint>& points, std::size_t most) {
   const std::size_t n = points.size();
   std::vector<std::size_t> out;
@@ -152,12 +152,12 @@ void add_missing_kind(const ExperimentFit& fit, std::vector<std::string>& remark
 bool are_curve_files(const CommonOptions& options) {
   const auto curves = std::count_if(options.inputs.begin(), options.inputs.end(), is_curve_file);
   if (curves != 0 && curves != static_cast<std::ptrdiff_t>(options.inputs.size()))
-    throw BadInput("calibrate: tables of an experiment and files of this program need a run each");
+    throw InputError("calibrate: tables of an experiment and files of this program need a run each");
   if (curves == 0)
     for (const auto& [option, value] : {std::pair{"--kind", &options.kind}, std::pair{"--radius", &options.radius},
                                         std::pair{"--modulus", &options.modulus}})
       if (!value->empty())
-        throw BadInput(fmt::format("calibrate: {} is for tables of an experiment (.csv, .tsv, .txt, .dat)", option));
+        throw InputError(fmt::format("calibrate: {} is for tables of an experiment (.csv, .tsv, .txt, .dat)", option));
   return curves != 0;
 }
 
@@ -179,9 +179,9 @@ ExitStatus calibrate_curves(const CommonOptions& options) {
       summary.head.warnings.push_back(to_string(kind.kind) + ": " + one);
   add_missing_kind(fit, remarks);
   if (const std::string remark = kt_remark(fit.card); !remark.empty()) summary.head.warnings.push_back(remark);
-  std::string people;
+  std::string console;
   for (const FitReport& r : fit.reports) {
-    people += force_line(r, fit.card.spec);
+    console += force_line(r, fit.card.spec);
     if (r.law.status == LawStatus::good || is_by_symmetry(r.law)) continue;
     summary.head.status = RunStatus::not_usable;
     remarks.insert(remarks.begin(),
@@ -189,12 +189,12 @@ ExitStatus calibrate_curves(const CommonOptions& options) {
   }
   summary.experiment = drawn_samples(fit.curves);
   note_thinned(fit.curves, summary.experiment, remarks);
-  people += "law card: " + run.path("law.toml") + "; report: " + run.path("report.html") + "\n";
+  console += "law card: " + run.path("law.toml") + "; report: " + run.path("report.html") + "\n";
   summary.inputs = options.inputs;
   summary.relaxation = fit.card.relaxation;
   summary.intervals = fit.card.intervals;
   summary.laws = summary_of(fit.card);
-  run.finish(json_of(summary), provenance, people);
+  run.finish(json_of(summary), provenance, console);
   write_report(run.directory());
   return summary.head.status == RunStatus::good ? ExitStatus::good : ExitStatus::not_usable;
 }

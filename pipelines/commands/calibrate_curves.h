@@ -5,7 +5,7 @@
 
 namespace softgrain {
 
-/// Whether the inputs are tables in text (.csv, .tsv, .txt, .dat). Throws BadInput when only some are, or when an
+/// Whether the inputs are tables in text (.csv, .tsv, .txt, .dat). Throws InputError when only some are, or when an
 /// option for such tables stands beside other files.
 bool are_curve_files(const CommonOptions& options);
 

@@ -23,7 +23,7 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
   const Scene scene = Scene::load(path, options.overrides);
   const SceneKind& kind = kind_of(scene);
   out.add("kind", kind.name, std::string("scene of kind ") + kind.name);
-  if (!options.law.empty() && !kind.takes_law) throw BadInput("check: --law goes with scenes of kind \"macro\"");
+  if (!options.law.empty() && !kind.takes_law) throw InputError("check: --law goes with scenes of kind \"macro\"");
   kind.check(scene, options.law, out);
 }
 
@@ -58,7 +58,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 }  // namespace
 
 ExitStatus command_check(const CommonOptions& options) {
-  if (options.inputs.size() != 1) throw BadInput("check: give one file");
+  if (options.inputs.size() != 1) throw InputError("check: give one file");
   const std::string& path = options.inputs[0];
   Findings out;
   check_file(path, options, out);

@@ -19,25 +19,25 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// To standard output alone, or also to --out with a report.
-ExitStatus finish(const CommonOptions& options, json summary, const std::string& people) {
+/// Writes the summary to standard output alone, or also to --out with a report.
+ExitStatus finish(const CommonOptions& options, json summary, const std::string& console) {
   const bool usable = is_good(summary.value("status", ""));
   if (!options.out.empty()) {
     const RunContext context(options, "compare", "compare");
     summary["files"] = {{"report", context.path("report.html")}};
-    context.finish(summary, people + "report: " + context.path("report.html"));
+    context.finish(summary, console + "report: " + context.path("report.html"));
     write_report(context.directory());
   } else {
     const Provenance build = build_provenance();
     summary.update({{"command", "compare"}, {"version", build.version}, {"commit", build.commit}});
-    write_standard_output(options.json ? summary.dump(2, ' ', false, json::error_handler_t::replace) + "\n" : people);
+    write_standard_output(options.json ? summary.dump(2, ' ', false, json::error_handler_t::replace) + "\n" : console);
   }
   return usable ? ExitStatus::good : ExitStatus::not_usable;
 }
 
 ExitStatus compare_inside(const CommonOptions& options) {
   const std::string& path = options.inputs.front();
-  if (options.different) throw BadInput("compare: --different goes with two runs or more");
+  if (options.different) throw InputError("compare: --different goes with two runs or more");
   const CompareResult result = compare_within(load_side(path));
   json summary = to_json(result);
   summary["status"] = to_string(result.undefined.empty() ? RunStatus::good : RunStatus::not_usable);
@@ -57,7 +57,7 @@ SetSummary set_of(const CommonOptions& options) {
   set.differences = scene_differences(options.inputs);
   for (std::size_t k = 0; k < options.inputs.size(); ++k) {
     const std::string& path = options.inputs[k];
-    if (!fs::exists(path)) throw FileTrouble(path + ": no such file or directory");
+    if (!fs::exists(path)) throw IoError(path + ": no such file or directory");
     RunEntry entry{.name = path, .directory = place_of(path, options.out)};
     for (const RunEntry& other : set.runs)
       if (other.name == path) entry.name = path + " (" + std::to_string(k + 1) + ")";
@@ -78,7 +78,7 @@ bool has_numbers(const RunEntry& run) { return !run.numbers.empty(); }
 std::optional<CompareSide> side_of(const std::string& path, const RunEntry& entry) {
   try {
     return load_side(path);
-  } catch (const BadInput&) {
+  } catch (const InputError&) {
     if (!has_numbers(entry)) throw;
     return std::nullopt;
   }
@@ -111,7 +111,7 @@ Norms norms_of(const std::optional<CompareSide>& candidate, const std::optional<
   const bool two = options.inputs.size() == 2;
   try {
     out.result = compare_sides(*candidate, *reference, options.different);
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     if (two) throw;  // it was all that was asked for
     out.reason = e.what();
   }
@@ -143,7 +143,7 @@ ExitStatus compare_several(const CommonOptions& options) {
     comparisons.push_back(to_json(*norms.result));
     comparisons.back()["candidate"] = run.name;
     if (two) details = to_text(*norms.result);
-    for (const std::string& one : norms.result->undefined) set.head.reject(run.name + ": " + one);
+    for (const std::string& one : norms.result->undefined) set.head.mark_unusable(run.name + ": " + one);
   }
   json summary = json_of(set);
   if (two && !comparisons.empty()) summary.update(comparisons.front());
@@ -163,7 +163,7 @@ ExitStatus compare_several(const CommonOptions& options) {
 
 ExitStatus command_compare(const CommonOptions& options) {
   if (options.inputs.empty())
-    throw BadInput(
+    throw InputError(
         "compare: needs runs, the reference last (directories, macro.h5, measurements.h5 or law.toml), or one run to "
         "compare within");
   return options.inputs.size() == 1 ? compare_inside(options) : compare_several(options);

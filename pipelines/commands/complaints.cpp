@@ -11,17 +11,17 @@
 #include <utility>
 #include <vector>
 
-#include "common/core/words.h"
+#include "common/core/enum_names.h"
 #include "common/io/run_log.h"
 
 namespace softgrain {
 
 template <>
-inline constexpr auto words<ExitStatus> = word_list<ExitStatus>({{ExitStatus::good, "good"},
-                                                                 {ExitStatus::bad_input, "bad input"},
-                                                                 {ExitStatus::not_usable, "not usable"},
-                                                                 {ExitStatus::file_trouble, "file trouble"},
-                                                                 {ExitStatus::interrupted, "interrupted"}});
+inline constexpr auto enum_names<ExitStatus> = enum_name_list<ExitStatus>({{ExitStatus::good, "good"},
+                                                                           {ExitStatus::bad_input, "bad input"},
+                                                                           {ExitStatus::not_usable, "not usable"},
+                                                                           {ExitStatus::file_trouble, "file trouble"},
+                                                                           {ExitStatus::interrupted, "interrupted"}});
 
 namespace {
 

@@ -42,7 +42,7 @@ std::string text_of(const std::vector<ExportedSeries>& all, const std::string& d
 }  // namespace
 
 ExitStatus command_export(const CommonOptions& options) {
-  if (options.inputs.size() != 1) throw BadInput("export: needs one run directory or file of states");
+  if (options.inputs.size() != 1) throw InputError("export: needs one run directory or file of states");
   const std::string& run = options.inputs.front();
   const ExportFormat format = export_format(options.to);
   const std::string directory = options.out.empty() ? default_directory(run, format) : options.out;

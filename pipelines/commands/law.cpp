@@ -33,7 +33,7 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
 
 void refuse(const LawOptions& o, std::initializer_list<const char*> names, const std::string& why) {
   for (const char* name : names)
-    if (has(o.given, name)) throw BadInput("law " + to_string(*o.action) + ": " + name + " " + why);
+    if (has(o.given, name)) throw InputError("law " + to_string(*o.action) + ": " + name + " " + why);
 }
 
 /// What goes with cards does not go with tables, and the reverse.
@@ -58,19 +58,20 @@ void require_fitting_options(const LawOptions& o, const LawFile& file) {
 
 double positive(const LawOptions& o, const char* name, double value, double high) {
   if (std::isfinite(value) && value > 0.0 && value <= high) return value;
-  throw BadInput(fmt::format("law {}: {} {}: must be above 0 and at most {}", to_string(*o.action), name, value, high));
+  throw InputError(
+      fmt::format("law {}: {} {}: must be above 0 and at most {}", to_string(*o.action), name, value, high));
 }
 
 double overlap(const LawOptions& o, const char* name, double value) {
   if (std::isfinite(value) && value >= 0.0 && value < 2.0) return value;
-  throw BadInput(fmt::format("law {}: {} {}: must be at least 0 and below 2", to_string(*o.action), name, value));
+  throw InputError(fmt::format("law {}: {} {}: must be at least 0 and below 2", to_string(*o.action), name, value));
 }
 
 std::size_t whole(const LawOptions& o, const char* name, std::int64_t value, std::int64_t low) {
   constexpr std::int64_t kMost = 1000000;
   if (value >= low && value <= kMost) return static_cast<std::size_t>(value);
-  throw BadInput(fmt::format("law {}: {} {}: must be a whole number from {} to {}", to_string(*o.action), name, value,
-                             low, kMost));
+  throw InputError(fmt::format("law {}: {} {}: must be a whole number from {} to {}", to_string(*o.action), name, value,
+                               low, kMost));
 }
 
 /// Delta of every value: those given, or evenly spread up to the end of the measured range.
@@ -84,7 +85,7 @@ std::vector<double> overlaps(const LawOptions& o, double end, std::int64_t steps
   const double low = overlap(o, "--from", o.from);
   const double high = has(o.given, last) ? overlap(o, last, o.to_delta) : end;
   if (!(low < high))
-    throw BadInput(fmt::format("law {}: --from {} must be below {} {}", to_string(*o.action), low, last, high));
+    throw InputError(fmt::format("law {}: --from {} must be below {} {}", to_string(*o.action), low, last, high));
   return law::even(low, high, whole(o, "--steps", has(o.given, "--steps") ? o.steps : steps, 2));
 }
 
@@ -93,7 +94,7 @@ std::optional<double> fraction_of(const LawOptions& o) {
   return positive(o, "--solid-fraction", o.solid_fraction, 1.0);
 }
 
-/// Those that were named, in the order of the file.
+/// Kinds of pairs that were named, in the order of the file.
 std::vector<PairKind> kinds_of(const LawOptions& o) {
   std::vector<PairKind> kinds;
   for (const PairKind kind : kPairKinds)
@@ -109,10 +110,10 @@ double quantity(const LawOptions& o, const char* name, const std::string& text, 
   try {
     const double value = parse_quantity(text, unit);
     if (std::isfinite(value) && value > 0.0) return value;
-  } catch (const BadInput& e) {
-    throw BadInput(fmt::format("law {}: {} \"{}\": {}", to_string(*o.action), name, text, e.what()));
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("law {}: {} \"{}\": {}", to_string(*o.action), name, text, e.what()));
   }
-  throw BadInput(fmt::format("law {}: {} \"{}\": must be above 0", to_string(*o.action), name, text));
+  throw InputError(fmt::format("law {}: {} \"{}\": must be above 0", to_string(*o.action), name, text));
 }
 
 ValueUnits units_of(const LawOptions& o, const LawFile& file) {
@@ -143,28 +144,28 @@ std::vector<ValueTable> card_tables(const LawOptions& o, const LawFile& file, st
     t.points = values(overlaps(o, pair->delta_max, steps));
     out.push_back(std::move(t));
   }
-  if (out.empty()) throw NotUsable(file.path + ": the card has no usable law (softgrain law show says why)");
+  if (out.empty()) throw UnusableResult(file.path + ": the card has no usable law (softgrain law show says why)");
   return out;
 }
 
-std::string question_text(const law::CrowdQuestion& q, const law::CrowdAnswer& a) {
+std::string question_text(const law::MultiContactQuestion& q, const law::MultiContactAnswer& a) {
   const std::string size = q.partner == PartnerKind::plane ? "" : fmt::format(" of ratio {:g}", q.ratio);
   return fmt::format("{} {}{}, {} law at solid fraction {:.4f}", to_string(q.arrangement), to_string(q.partner), size,
                      to_string(a.form), a.entry.solid_fraction);
 }
 
 /// What a colleague would add to numbers of a table: how far off the law is, and where it was not measured.
-std::string table_remark(const law::CrowdAnswer& a) {
-  const CrowdLaw& form = *a.entry.find(a.form);
+std::string table_remark(const law::MultiContactAnswer& a) {
+  const MultiContactLaw& form = *a.entry.find(a.form);
   std::string text = std::isnan(form.error_cross)
                          ? std::string("fitted to one loading of planes, so that nothing could be left out")
                          : fmt::format("off by {:.1f} % leaving one loading of planes out", 100.0 * form.error_cross);
   return a.remark.empty() ? text : text + "; " + a.remark;
 }
 
-/// Which law of a table is meant.
-law::CrowdQuestion fraction_question(const LawOptions& o) {
-  law::CrowdQuestion q;
+/// Question to a table that says which of its laws is meant.
+law::MultiContactQuestion fraction_question(const LawOptions& o) {
+  law::MultiContactQuestion q;
   q.form = o.form;
   q.solid_fraction = fraction_of(o);
   q.range = o.range;
@@ -173,13 +174,13 @@ law::CrowdQuestion fraction_question(const LawOptions& o) {
 }
 
 ValueTable table_values(const LawOptions& o, const LawFile& file, std::int64_t steps) {
-  law::CrowdQuestion q = fraction_question(o);
+  law::MultiContactQuestion q = fraction_question(o);
   q.arrangement = o.arrangement;
   q.partner = o.partner;
   q.ratio = positive(o, "--ratio", o.ratio, 1e6);
   q.shallow = positive(o, "--shallow", o.shallow, 1.0);
-  const double end = law::crowd_values(*file.table, q, {}).overlap_max;
-  const law::CrowdAnswer answer = law::crowd_values(*file.table, q, overlaps(o, end, steps));
+  const double end = law::multi_contact_values(*file.table, q, {}).overlap_max;
+  const law::MultiContactAnswer answer = law::multi_contact_values(*file.table, q, overlaps(o, end, steps));
   ValueTable t;
   t.law = question_text(q, answer);
   t.status = answer.entry.find(answer.form)->status;
@@ -239,7 +240,7 @@ json units_json(const ValueUnits& units) {
 LawFile load_contact_law(const LawOptions& o, const std::string& path) {
   LawFile file = law::load_law_file(path);
   if (file.cells)
-    throw BadInput(
+    throw InputError(
         fmt::format("law {}: {} is a card of the cell law, a pressure over a volume: softgrain law show "
                     "has its numbers",
                     to_string(*o.action), path));
@@ -293,7 +294,7 @@ std::string lammps_file(const LawOptions& o, const LawFile& file, const ValueUni
                                             units.modulus),
                                 "a soft particle with several neighbours is stiffer than a pair potential can say"};
   if (file.table) {
-    const law::CrowdAnswer a = law::crowd_values(*file.table, fraction_question(o), {});
+    const law::MultiContactAnswer a = law::multi_contact_values(*file.table, fraction_question(o), {});
     head.push_back(fmt::format("the {} law at solid fraction {:.4f} of the table{}", to_string(a.form),
                                a.entry.solid_fraction, a.remark.empty() ? "" : " (" + a.remark + ")"));
   }
@@ -315,7 +316,7 @@ json full_json(const LawOptions& o, const LawFile& file, const std::vector<Value
 }
 
 ExitStatus export_law(const LawOptions& o) {
-  if (!o.format) throw BadInput("law export: give --to lammps-table, csv or json");
+  if (!o.format) throw InputError("law export: give --to lammps-table, csv or json");
   const LawFile file = load_contact_law(o, o.files.front());
   require_fitting_options(o, file);
   const ValueUnits units = units_of(o, file);
@@ -393,15 +394,15 @@ ExitStatus show(const LawOptions& o) {
 
 void require_files(const LawOptions& o, std::size_t most) {
   if (!o.files.empty() && o.files.size() <= most) return;
-  throw BadInput(fmt::format("law {} needs {} LAW, {} given (see softgrain law {} --help)", to_string(*o.action),
-                             most == 1 ? "1" : "1 or 2", o.files.size(), to_string(*o.action)));
+  throw InputError(fmt::format("law {} needs {} LAW, {} given (see softgrain law {} --help)", to_string(*o.action),
+                               most == 1 ? "1" : "1 or 2", o.files.size(), to_string(*o.action)));
 }
 
 }  // namespace
 
 ExitStatus command_law(const LawOptions& options) {
   if (options.action == LawAction::none)
-    throw BadInput("law: give show, eval, export or plan and a law (see softgrain law --help)");
+    throw InputError("law: give show, eval, export or plan and a law (see softgrain law --help)");
   require_files(options, options.action == LawAction::show ? 2 : 1);
   if (options.action == LawAction::show) return show(options);
   if (options.action == LawAction::plan) return plan_next(options);

@@ -7,21 +7,21 @@ namespace softgrain {
 namespace {
 
 /// "error|clamp|extrapolate"
-template <Worded Enum>
+template <NamedEnum Enum>
 std::string alternatives() {
   std::string text;
-  for (const Word<Enum>& w : words<Enum>) text += (text.empty() ? "" : "|") + std::string(w.text);
+  for (const EnumName<Enum>& w : enum_names<Enum>) text += (text.empty() ? "" : "|") + std::string(w.text);
   return text;
 }
 
 /// An option that takes the words of an enum.
-template <Worded Enum, class Target>
+template <NamedEnum Enum, class Target>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target, const std::string& help) {
   return app
       .add_option_function<std::string>(
-          name, [&target](const std::string& word) { target = *from_word<Enum>(word); }, help)
+          name, [&target](const std::string& word) { target = *parse_enum<Enum>(word); }, help)
       ->option_text(alternatives<Enum>())
-      ->check(CLI::IsMember(all_words<Enum>()).description(""));
+      ->check(CLI::IsMember(all_enum_names<Enum>()).description(""));
 }
 
 void add_files(CLI::App& app, LawOptions& o, const char* help) {
@@ -30,7 +30,7 @@ void add_files(CLI::App& app, LawOptions& o, const char* help) {
 }
 
 void add_overlaps(CLI::App& app, LawOptions& o, const std::string& to) {
-  app.add_option("--delta", o.deltas, "Overlaps Delta = h/R (crowds: h/Rs)")->option_text("D1 D2 ...");
+  app.add_option("--delta", o.deltas, "Overlaps Delta = h/R (multi-contact laws: h/Rs)")->option_text("D1 D2 ...");
   app.add_option("--from", o.from, "First overlap; default 0")->option_text("D");
   app.add_option(to, o.to_delta, "Last overlap; default the end of the measured range")->option_text("D");
   app.add_option("--steps", o.steps, "Overlaps from first to last")->option_text("N");
@@ -40,17 +40,17 @@ void add_law_choices(CLI::App& app, LawOptions& o) {
   app.add_option_function<std::vector<std::string>>(
          "--kind",
          [&o](const std::vector<std::string>& kinds) {
-           for (const std::string& word : kinds) o.kinds.push_back(*from_word<PairKind>(word));
+           for (const std::string& word : kinds) o.kinds.push_back(*parse_enum<PairKind>(word));
          },
          "Cards and pair tables: kind of pair; default all")
       ->option_text(alternatives<PairKind>())
-      ->check(CLI::IsMember(all_words<PairKind>()).description(""));
-  add_choice<Beyond>(app, "--beyond", o.beyond, "Beyond the measured range, instead of what the law says");
+      ->check(CLI::IsMember(all_enum_names<PairKind>()).description(""));
+  add_choice<Extrapolation>(app, "--beyond", o.beyond, "Beyond the measured range, instead of what the law says");
   app.add_option("--E", o.modulus, "Young's modulus, \"0.5 MPa\" or in Pa; default as measured. Asks for SI units")
       ->option_text("E");
   app.add_option("--radius", o.radius, "Radius of the soft particle, \"16 mm\" or in m; as measured. Asks for SI units")
       ->option_text("R");
-  add_choice<Crowd>(app, "--form", o.form, "Tables: form of the law; default the best");
+  add_choice<LawForm>(app, "--form", o.form, "Tables: form of the law; default the best");
   app.add_option("--solid-fraction", o.solid_fraction, "Tables: of the soft particle; default that of the main entry")
       ->option_text("PHI");
   add_choice<RangePolicy>(app, "--range", o.range, "Tables: what to do with solid fractions that were not measured");
@@ -87,7 +87,7 @@ void add_plan(CLI::App& app, LawOptions& o) {
   app.add_option("--narrow", o.narrow, "Wanted: what packings leave open over what they do now; default 0.5")
       ->option_text("SHARE");
   app.add_option("--out", o.out, "Directory of the run of --for SCENE; default results/plan_SCENE")->option_text("DIR");
-  add_choice<Crowd>(app, "--form", o.form, "Form of the law; default the best that the run has error bars of");
+  add_choice<LawForm>(app, "--form", o.form, "Form of the law; default the best that the run has error bars of");
   app.add_flag("--toml", o.as_scene, "The plan as [[plan]] tables, to be appended to the law-table scene");
 }
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/core/error.h"
-#include "common/data/crowd_law.h"
-#include "microsim/crowd_arrangements.h"
+#include "common/data/multi_contact_law.h"
+#include "microsim/multi_contact_arrangements.h"
 
 namespace CLI {
 class App;
@@ -18,18 +18,18 @@ namespace softgrain {
 enum class LawAction { none, show, eval, export_law, plan };
 
 template <>
-inline constexpr auto words<LawAction> = word_list<LawAction>({{LawAction::none, "none"},
-                                                               {LawAction::show, "show"},
-                                                               {LawAction::eval, "eval"},
-                                                               {LawAction::export_law, "export"},
-                                                               {LawAction::plan, "plan"}});
+inline constexpr auto enum_names<LawAction> = enum_name_list<LawAction>({{LawAction::none, "none"},
+                                                                         {LawAction::show, "show"},
+                                                                         {LawAction::eval, "eval"},
+                                                                         {LawAction::export_law, "export"},
+                                                                         {LawAction::plan, "plan"}});
 
 enum class LawFormat { lammps_table, csv, json };
 
 template <>
-inline constexpr auto words<LawFormat> = word_list<LawFormat>({{LawFormat::lammps_table, "lammps-table"},
-                                                               {LawFormat::csv, "csv"},
-                                                               {LawFormat::json, "json"}});
+inline constexpr auto enum_names<LawFormat> = enum_name_list<LawFormat>({{LawFormat::lammps_table, "lammps-table"},
+                                                                         {LawFormat::csv, "csv"},
+                                                                         {LawFormat::json, "json"}});
 
 struct LawOptions {
   std::optional<LawAction> action;  ///< empty: another command; none: no action is given
@@ -38,12 +38,12 @@ struct LawOptions {
 
   std::vector<double> deltas;  ///< --delta
   double from = 0.0;
-  double to_delta = -1.0;  ///< --to of eval, negative: the end of the range
+  double to_delta = -1.0;  ///< end of the range of overlaps, --to of eval; negative: the end of the law's range
   std::int64_t steps = 11;
   std::vector<PairKind> kinds;  ///< --kind
   TangentialSlope tangential = TangentialSlope::initial;
-  std::optional<Beyond> beyond;  ///< empty: what the law says
-  std::string modulus;           ///< --E, with or without unit; with --radius: SI units
+  std::optional<Extrapolation> beyond;  ///< empty: what the law says
+  std::string modulus;                  ///< --E, with or without unit; with --radius: SI units
   std::string radius;
 
   WantedForm form;
@@ -54,18 +54,18 @@ struct LawOptions {
   double solid_fraction = -1.0;  ///< negative: the main entry
   RangePolicy range = RangePolicy::reject;
 
-  std::optional<LawFormat> format;  ///< --to of export
+  std::optional<LawFormat> format;  ///< file format, --to of export
   std::string out;                  ///< --out FILE; empty: standard output
   std::vector<double> ratios{1.0};
   std::int64_t rows = 1001;
   double delta_max = -1.0;  ///< negative: the end of the range
 
-  std::string target;          ///< --for of plan: macro scene, or a run of one
+  std::string target;          ///< scene of plan, --for: macro scene, or a run of one
   std::string measure;         ///< --measure: law-table scene with the configurations that could be measured
   std::int64_t packings = 8;   ///< --packings: added at a time
   double narrow = 0.5;         ///< --narrow: wanted width over what it is
   bool as_scene = false;       ///< --toml of plan: as tables of a law-table scene
-  std::string command_line{};  ///< as given, for provenance
+  std::string command_line{};  ///< command line as given, for provenance
 
   std::vector<std::string> given;  ///< names of the options on the command line, for those that do not go together
 };

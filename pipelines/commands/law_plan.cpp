@@ -37,7 +37,7 @@ std::vector<std::string> curve_files(const std::string& directory) {
 
 std::vector<MacroCurve> curves_in(const std::string& directory) {
   const std::vector<std::string> files = curve_files(directory);
-  if (files.empty()) throw BadInput("law plan: " + directory + " holds no macro.h5 or macro_SCENE.h5: no macro run");
+  if (files.empty()) throw InputError("law plan: " + directory + " holds no macro.h5 or macro_SCENE.h5: no macro run");
   std::vector<MacroCurve> out;
   for (const std::string& file : files)
     for (MacroCurve& c : load_macro(file)) out.push_back(std::move(c));
@@ -59,7 +59,7 @@ std::string run_of(const LawOptions& o, const std::string& law) {
   options.resume = fs::exists(options.out + "/log.txt");
   install_interrupt_handler();
   if (const ExitStatus status = kind.run(scene, options); status != ExitStatus::good)
-    throw NotUsable("law plan: the run of " + o.target + " is not usable; see " + options.out);
+    throw UnusableResult("law plan: the run of " + o.target + " is not usable; see " + options.out);
   return options.out;
 }
 
@@ -101,13 +101,13 @@ json json_of(const LawPlan& plan, const std::string& law, const std::string& run
 
 void require_plan_options(const LawOptions& o) {
   if (o.target.empty())
-    throw BadInput("law plan: give --for SCENE, a macro scene with bands, or the directory of its run");
+    throw InputError("law plan: give --for SCENE, a macro scene with bands, or the directory of its run");
   if (o.measure.empty())
-    throw BadInput("law plan: give --measure TABLE.toml, a law-table scene with what could be measured");
+    throw InputError("law plan: give --measure TABLE.toml, a law-table scene with what could be measured");
   if (o.packings < 1 || o.packings > 100000)
-    throw BadInput(fmt::format("law plan: --packings {}: must be from 1 to 100000", o.packings));
+    throw InputError(fmt::format("law plan: --packings {}: must be from 1 to 100000", o.packings));
   if (!(o.narrow > 0.0) || !(o.narrow < 1.0))
-    throw BadInput(fmt::format("law plan: --narrow {}: must be above 0 and below 1", o.narrow));
+    throw InputError(fmt::format("law plan: --narrow {}: must be above 0 and below 1", o.narrow));
 }
 
 }  // namespace
@@ -116,13 +116,13 @@ ExitStatus plan_next(const LawOptions& o) {
   require_plan_options(o);
   const law::LawFile file = law::load_law_file(o.files.front());
   if (!file.table)
-    throw BadInput("law plan: " + file.path +
-                   " is no law table: it has no configurations of several neighbours to plan with");
+    throw InputError("law plan: " + file.path +
+                     " is no law table: it has no configurations of several neighbours to plan with");
   const Scene table_scene = Scene::load(o.measure);
   const LawTableSetup candidates = read_law_table(table_scene);
   const std::string run = fs::is_directory(o.target) ? o.target : run_of(o, file.path);
   const LawPlan plan =
-      plan_law(*file.table, file.path, candidates.crowd, curves_in(run), {o.packings, o.narrow, o.form});
+      plan_law(*file.table, file.path, candidates.multi_contact, curves_in(run), {o.packings, o.narrow, o.form});
   if (o.json)
     write_standard_output(json_of(plan, file.path, run).dump(2, ' ', false, json::error_handler_t::replace) + "\n");
   else

@@ -68,7 +68,7 @@ Columns force_columns(const Measurements& data) {
   ForceColumns first = forces_of(data, PairKind::soft_solid);
   ForceColumns second = forces_of(data, PairKind::soft_soft);
   if (first.delta.empty()) std::swap(first, second);
-  if (first.delta.empty()) throw BadInput("observables: the run measured no force");
+  if (first.delta.empty()) throw InputError("observables: the run measured no force");
   Columns out{{"Delta", first.delta}, {"Fn", first.mean}, {"Fn_error", first.error}};
   if (second.delta == first.delta)
     out.insert(out.end(), {{"Fn_soft_soft", second.mean}, {"Fn_soft_soft_error", second.error}});
@@ -98,7 +98,7 @@ Columns macro_columns(const std::vector<MacroCurve>& curves) {
     for (std::size_t k = 0; k < out.size(); ++k) add_to_rows(*parts[k], out[k].second, samples[k]);
   }
   const std::size_t rows = out.front().second.size();
-  if (rows == 0) throw BadInput("observables: the macro run recorded nothing");
+  if (rows == 0) throw InputError("observables: the macro run recorded nothing");
   for (std::size_t k = 0; k < out.size(); ++k) {
     std::vector<double>& values = out[k].second;
     for (std::size_t row = 0; row < values.size(); ++row) values[row] /= samples[k][row];
@@ -142,8 +142,8 @@ void require_observables(const std::string& scene, const std::vector<std::string
   const std::string kind = Scene::load(scene, overrides).root().text("kind");
   const std::set<std::string> known{"pipeline", "soft-particle", "macro"};
   if (known.count(kind) == 0)
-    throw BadInput(scene + ": --observables: a scene of kind \"" + kind +
-                   "\" has none; kinds pipeline, soft-particle and macro do");
+    throw InputError(scene + ": --observables: a scene of kind \"" + kind +
+                     "\" has none; kinds pipeline, soft-particle and macro do");
 }
 
 void write_observables(const std::string& directory, const std::vector<std::string>& overrides,

@@ -7,7 +7,8 @@
 
 namespace softgrain {
 
-/// Throws BadInput unless the scene is of a kind that has observables: pipeline, soft-particle, macro. Before any work.
+/// Throws InputError unless the scene is of a kind that has observables: pipeline, soft-particle, macro. Before any
+/// work.
 void require_observables(const std::string& scene, const std::vector<std::string>& overrides);
 
 /// Writes PREFIX_sim.txt and PREFIX_param.txt.
@@ -16,7 +17,7 @@ void require_observables(const std::string& scene, const std::vector<std::string
 ///   were measured, and those of soft-soft contacts as Fn_soft_soft beside it where the overlaps are the same.
 ///   The parameters are the overrides "key=value" that are plain numbers, named by the last part of their key (the
 ///   whole key when two would share it).
-/// Throws BadInput, FileTrouble.
+/// Throws InputError, IoError.
 void write_observables(const std::string& directory, const std::vector<std::string>& overrides,
                        const std::string& prefix);
 

@@ -36,7 +36,7 @@ struct Command {
   const char* inputs_help;
   int least;
   int most;
-  bool saves;  ///< at a signal it saves what it has done; others end at once
+  bool saves;  ///< whether it saves at a signal what it has done; others end at once
   ExitStatus (*function)(const CommonOptions&);
 };
 
@@ -191,8 +191,8 @@ void require_inputs(const Command& command, const CommonOptions& options) {
   const std::string wanted = command.least == command.most ? fmt::format("{}", command.least)
                              : given < command.least       ? fmt::format("at least {}", command.least)
                                                            : fmt::format("at most {}", command.most);
-  throw BadInput(fmt::format("{} needs {} {}, {} given (see softgrain {} --help)", command.name, wanted, command.inputs,
-                             given, command.name));
+  throw InputError(fmt::format("{} needs {} {}, {} given (see softgrain {} --help)", command.name, wanted,
+                               command.inputs, given, command.name));
 }
 
 /// A first word that is no command: names the nearest.
@@ -209,15 +209,15 @@ void require_command(int argc, char** argv) {
   const std::string word = argv[1];
   if (std::find(names.begin(), names.end(), word) != names.end()) return;
   const std::string near = nearest_word(word, names);
-  throw BadInput("unknown command '" + word + "'; " + (near.empty() ? "" : "nearest is '" + near + "'; ") +
-                 "commands are " + list);
+  throw InputError("unknown command '" + word + "'; " + (near.empty() ? "" : "nearest is '" + near + "'; ") +
+                   "commands are " + list);
 }
 
 /// A run that is refused leaves no directory behind.
 ExitStatus run_or_leave_nothing(const Command& command, const CommonOptions& options, const FreshDirectory& out) {
   try {
     return command.function(options);
-  } catch (const BadInput&) {
+  } catch (const InputError&) {
     out.remove_if_empty();
     throw;
   }
@@ -259,7 +259,7 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   for (const std::string& cache : {options.law_cache, options.packing_cache, options.twin_cache})
     if (!cache.empty()) require_writable_directory(cache);
   if (!observables.empty() && !options.seeds.empty())
-    throw BadInput("--observables: goes with one run, not with --seeds");
+    throw InputError("--observables: goes with one run, not with --seeds");
   if (chosen->saves) install_interrupt_handler();
   const ExitStatus status = run_or_leave_nothing(*chosen, options, out);
   if (!observables.empty()) write_observables(options.out, options.overrides, observables);

@@ -23,7 +23,7 @@ std::unique_ptr<DirectoryLock> lock_of(const std::string& directory) {
 }  // namespace
 
 ExitStatus command_report(const CommonOptions& options) {
-  if (options.inputs.size() != 1) throw BadInput("report: needs one run directory");
+  if (options.inputs.size() != 1) throw InputError("report: needs one run directory");
   const std::string& directory = options.inputs.front();
   {
     const std::unique_ptr<DirectoryLock> alone = lock_of(directory);

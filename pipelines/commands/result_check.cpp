@@ -27,8 +27,8 @@ void check_states_file(const std::string& path, Findings& out) {
   for (const std::string& name : states.children()) {
     try {
       contacts += read_snapshot(states.open(name)).contacts.size();
-    } catch (const FileTrouble& e) {
-      throw FileTrouble(path + ": state " + name + ": " + e.what());
+    } catch (const IoError& e) {
+      throw IoError(path + ": state " + name + ": " + e.what());
     }
   }
   out.add("kind", "states",
@@ -74,9 +74,9 @@ void check_data(const std::string& path, Findings& out) {
 
 void check_summary(const std::string& path, Findings& out) {
   const json summary = json::parse(read_text(path), nullptr, false);
-  if (summary.is_discarded()) throw BadInput(path + ": no JSON");
+  if (summary.is_discarded()) throw InputError(path + ": no JSON");
   const auto known = record_of<AnySummary>(summary);
-  if (known.status.empty()) throw BadInput(path + ": no summary of a run: it has no \"status\"");
+  if (known.status.empty()) throw InputError(path + ": no summary of a run: it has no \"status\"");
   out.add("kind", "summary",
           fmt::format("summary of softgrain {} ({} {}): {}", known.command, known.version, known.commit, known.status));
   out.facts["run_status"] = known.status;
@@ -107,7 +107,7 @@ void check_directory(const std::string& path, Findings& out) {
   const auto has = [&](const std::string& name) { return std::binary_search(names.begin(), names.end(), name); };
   for (const std::string& name : names)
     if (const auto check = check_of(name)) any = true, check_one(path, name, check, out);
-  if (!any) throw BadInput(path + ": no run directory: neither summary.json nor a file of results is in it");
+  if (!any) throw InputError(path + ": no run directory: neither summary.json nor a file of results is in it");
   if (!has("summary.json"))
     out.warn("no summary.json: the run has not ended; go on with --resume, or see log.txt for what stopped it");
   if (has("checkpoint.h5")) out.warn("a checkpoint is there: the run was stopped, --resume goes on with it");

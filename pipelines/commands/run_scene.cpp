@@ -39,17 +39,17 @@ void warn_of_cores(const CommonOptions& options) {
 
 ExitStatus run_scene(const CommonOptions& options, const std::string& command) {
   if (options.inputs.size() != 1)
-    throw BadInput(command + ": one scene is needed (softgrain " + command + " SCENE.toml)");
+    throw InputError(command + ": one scene is needed (softgrain " + command + " SCENE.toml)");
   const Scene scene = Scene::load(options.inputs.front(), options.overrides);
   const SceneKind& kind = kind_of(scene, command);
   if (!kind.takes_engine && (!options.engine.empty() || options.ranks > 0 || options.write_only))
-    throw BadInput(
+    throw InputError(
         fmt::format("{}: scenes of kind \"{}\" run in our own engine alone: --engine, --ranks and --write-only "
                     "go with {}",
                     command, kind.name, kinds_with_engine()));
   warn_of_cores(options);
   if (!options.seeds.empty()) {
-    if (options.seed_given) throw BadInput("--seeds: goes without --seed");
+    if (options.seed_given) throw InputError("--seeds: goes without --seed");
     return run_set(options, make_plan({}, options.seeds, options.overrides), command, "seeds");
   }
   return kind.run(scene, options);

@@ -5,7 +5,7 @@
 namespace softgrain {
 
 ExitStatus command_sweep(const CommonOptions& options) {
-  if (options.seed_given && !options.seeds.empty()) throw BadInput("--seeds: goes without --seed");
+  if (options.seed_given && !options.seeds.empty()) throw InputError("--seeds: goes without --seed");
   return run_set(options, make_plan(options.over, options.seeds, options.overrides), "sweep", "sweep");
 }
 

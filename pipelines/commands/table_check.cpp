@@ -25,7 +25,7 @@ bool has_column(const CsvFile& table, std::initializer_list<const char*> begins)
 }
 
 /// What the file may leave to the command line gets a value here, and a word about it.
-ForceCurveOptions stand_ins(const CsvFile& table, Findings& out) {
+ForceCurveOptions assumed_values(const CsvFile& table, Findings& out) {
   ForceCurveOptions options;
   options.unloading = Unloading::drop;
   const SaidByFile said = said_by_comments(table);
@@ -40,7 +40,7 @@ ForceCurveOptions stand_ins(const CsvFile& table, Findings& out) {
 }
 
 void check_force_curves(const CsvFile& table, Findings& out) {
-  const ForceCurveOptions options = stand_ins(table, out);
+  const ForceCurveOptions options = assumed_values(table, out);
   ForceCurves curves = read_force_curves(table.path(), options);
   (void)subtract_offsets(curves);  // its remarks say it
   std::size_t points = 0;
@@ -79,12 +79,12 @@ void check_packing(const CsvFile& table, Findings& out) {
   bool periodic = false;
   try {
     packing = read_packing_file(table.path());
-  } catch (const BadInput&) {
+  } catch (const InputError&) {
     if (!table.setting({"box"})) throw;
     try {
       packing = read_packing_file(table.path(), Boundary::periodic);
       periodic = true;
-    } catch (const BadInput&) {
+    } catch (const InputError&) {
     }
     if (!periodic) throw;
   }
@@ -123,7 +123,7 @@ void check_table(const std::string& path, Findings& out) {
   else if (has_column(table, {"radius", "diameter"}) || has("r") || has("d"))
     check_grading(read_radii(path), "radii of grains", out);
   else
-    throw BadInput(
+    throw InputError(
         path +
         ": a table of data, no scene, and none of those that softgrain reads: force over overlap (columns hn "
         "[mm], Fn [N]), a sieve curve (opening [mm], passing [%]), radii (radius [mm]), a packing (x [m], y [m], z "

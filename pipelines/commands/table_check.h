@@ -7,8 +7,8 @@
 
 namespace softgrain {
 
-/// Says which data a text of columns holds, how many, and what takes them. Throws BadInput where it holds none of these
-/// or they are not sound, FileTrouble.
+/// Says which data a text of columns holds, how many, and what takes them. Throws InputError where it holds none of
+/// these or they are not sound, IoError.
 void check_table(const std::string& path, Findings& out);
 
 }  // namespace softgrain

@@ -19,12 +19,13 @@ using Key = std::pair<MacroTest, std::int64_t>;
 
 void require_curve(const std::vector<double>& x, const std::vector<double>& y, const char* side) {
   if (x.size() != y.size())
-    throw BadInput(fmt::format("compare: {} has {} abscissae and {} values", side, x.size(), y.size()));
-  if (x.size() < 2) throw BadInput(fmt::format("compare: {} has fewer than two points", side));
+    throw InputError(fmt::format("compare: {} has {} abscissae and {} values", side, x.size(), y.size()));
+  if (x.size() < 2) throw InputError(fmt::format("compare: {} has fewer than two points", side));
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!std::isfinite(x[i]) || !std::isfinite(y[i]))
-      throw BadInput(fmt::format("compare: {} holds a value that is not finite at point {}", side, i));
-    if (i > 0 && !(x[i] > x[i - 1])) throw BadInput(fmt::format("compare: {} does not increase at point {}", side, i));
+      throw InputError(fmt::format("compare: {} holds a value that is not finite at point {}", side, i));
+    if (i > 0 && !(x[i] > x[i - 1]))
+      throw InputError(fmt::format("compare: {} does not increase at point {}", side, i));
   }
 }
 
@@ -32,8 +33,8 @@ std::pair<double, double> common_range(const std::vector<double>& a, const std::
   const double low = std::max(a.front(), b.front());
   const double high = std::min(a.back(), b.back());
   if (low < high) return {low, high};
-  throw BadInput(fmt::format("compare: no common range: candidate {} .. {}, reference {} .. {}", a.front(), a.back(),
-                             b.front(), b.back()));
+  throw InputError(fmt::format("compare: no common range: candidate {} .. {}, reference {} .. {}", a.front(), a.back(),
+                               b.front(), b.back()));
 }
 
 std::vector<double> union_grid(const std::vector<double>& a, const std::vector<double>& b, double low, double high) {
@@ -56,7 +57,7 @@ template <class Difference>
 double value_or_nan(const Difference& difference) {
   try {
     return difference();
-  } catch (const BadInput&) {
+  } catch (const InputError&) {
     return kNaN;
   }
 }
@@ -139,8 +140,8 @@ std::map<Key, const MacroCurve*> by_key(const std::vector<MacroCurve>& curves, c
   std::map<Key, const MacroCurve*> result;
   for (const MacroCurve& c : curves) {
     if (result.emplace(Key{c.test, c.sample}, &c).second) continue;
-    throw BadInput(fmt::format("compare: the {} holds test \"{}\", sample {} twice; choose one engine", side,
-                               to_string(c.test), c.sample));
+    throw InputError(fmt::format("compare: the {} holds test \"{}\", sample {} twice; choose one engine", side,
+                                 to_string(c.test), c.sample));
   }
   return result;
 }
@@ -307,7 +308,7 @@ double relative_difference(const std::vector<double>& candidate_x, const std::ve
 
 Comparison compare_curves(const std::vector<MacroCurve>& candidate, const std::vector<MacroCurve>& reference) {
   if (candidate.empty() || reference.empty()) {
-    throw BadInput(fmt::format("compare: the {} holds no curve", candidate.empty() ? "candidate" : "reference"));
+    throw InputError(fmt::format("compare: the {} holds no curve", candidate.empty() ? "candidate" : "reference"));
   }
   const auto candidates = by_key(candidate, "candidate");
   const auto references = by_key(reference, "reference");
@@ -327,7 +328,7 @@ Comparison compare_curves(const std::vector<MacroCurve>& candidate, const std::v
           fmt::format("{} sample {}: the candidate has no such sample", to_string(key.first), key.second));
   if (result.samples.empty() && !result.undefined.empty())
     throw ZeroReference("compare: no sample can be compared: " + result.undefined.front());
-  if (result.samples.empty()) throw BadInput("compare: no sample can be compared: " + result.left_out.front());
+  if (result.samples.empty()) throw InputError("compare: no sample can be compared: " + result.left_out.front());
   add_means(result);
   add_speedups(result);
   return result;

@@ -13,13 +13,13 @@
 namespace softgrain {
 
 /// A reference that is zero: what is relative to it is not defined.
-struct ZeroReference : BadInput {
-  using BadInput::BadInput;
+struct ZeroReference : InputError {
+  using InputError::InputError;
 };
 
 /// Relative L2 difference of two piecewise linear curves over their common range of x:
 /// sqrt( int (a - b)^2 dx / int b^2 dx ), b the reference; integrals exact on the union of both grids.
-/// Throws BadInput when a curve is shorter than two points, x does not increase, a value is not finite, there is no
+/// Throws InputError when a curve is shorter than two points, x does not increase, a value is not finite, there is no
 /// common range; ZeroReference when the reference is zero on it. Units cancel.
 double relative_difference(const std::vector<double>& candidate_x, const std::vector<double>& candidate_y,
                            const std::vector<double>& reference_x, const std::vector<double>& reference_y);
@@ -40,19 +40,19 @@ struct SampleComparison {
   /// Relative L2 difference of the axial stress over strain; in tests in stages over match_stages(), of the stages that
   /// do not impose it: NaN where all do.
   double axial_difference = 0.0;
-  double lateral_difference = 0.0;    ///< of the lateral stress, likewise; NaN too when it was not recorded or is zero
-  double deviator_difference = kNaN;  ///< of tests in stages, likewise
-  double strain_difference = kNaN;    ///< of the strains of axes that go by stress; NaN where none does
+  double lateral_difference = 0.0;    ///< L2 difference of the lateral stress; NaN where it was not recorded or is zero
+  double deviator_difference = kNaN;  ///< tests in stages: L2 difference of the deviator
+  double strain_difference = kNaN;    ///< L2 difference of the strains of axes that go by stress; NaN where none does
   double unloading_ratio = kNaN;      ///< mean over the stages that unload: modulus over that of the reference
-  bool axial_imposed = false;         ///< some stage imposes the axial stress
-  bool end_imposed = false;           ///< the last one does
+  bool axial_imposed = false;         ///< whether some stage imposes the axial stress
+  bool end_imposed = false;           ///< whether the last stage imposes it
   double axial_end_ratio = 0.0;  ///< candidate over reference at the end of the common range; NaN where it is imposed
   double lateral_end_ratio = 0.0;
   double lateral_stress_ratio_candidate = 0.0;  ///< lateral over axial stress at the end of the common range
   double lateral_stress_ratio_reference = 0.0;
   double in_band = 0.0;      ///< share of the reference's axial stresses in the candidate's 95 % band; NaN: it has none
-  double end_in_band = 0.0;  ///< 1 or 0: the last of them; NaN likewise
-  double band_width = 0.0;   ///< half of it over the stress, at the candidate's end; NaN likewise
+  double end_in_band = 0.0;  ///< 1 or 0: whether the last of them is in the band; NaN: there is no band
+  double band_width = 0.0;   ///< half width of the band over the stress, at the candidate's end; NaN: there is no band
   Cost candidate_cost;
   Cost reference_cost;
 };
@@ -61,7 +61,7 @@ struct Comparison {
   std::vector<SampleComparison> samples;
   std::vector<std::string> left_out;   ///< one sentence for each sample that could not be compared
   std::vector<std::string> undefined;  ///< one for each side that carries no stress, so that ratios are not defined
-  MeanError axial_difference;          ///< over samples
+  MeanError axial_difference;          ///< mean over the samples, as are those below
   MeanError lateral_difference;
   MeanError strain_difference;
   MeanError deviator_difference;
@@ -69,7 +69,7 @@ struct Comparison {
   MeanError axial_end_ratio;
   MeanError lateral_stress_ratio_candidate;
   MeanError lateral_stress_ratio_reference;
-  MeanError in_band;  ///< of no sample: the candidate has no error bars
+  MeanError in_band;  ///< share in the band; of no sample where the candidate has no error bars
   MeanError end_in_band;
   MeanError band_width;
   double speedup_seconds = 0.0;  ///< reference over candidate, summed over samples; NaN when not recorded
@@ -77,7 +77,7 @@ struct Comparison {
 };
 
 /// Pairs the curves by test and sample. Curves marked unusable, or without a partner, are left out and named.
-/// Throws BadInput when nothing remains to compare, or when one side holds the same test and sample twice.
+/// Throws InputError when nothing remains to compare, or when one side holds the same test and sample twice.
 Comparison compare_curves(const std::vector<MacroCurve>& candidate, const std::vector<MacroCurve>& reference);
 
 /// What is said first of a comparison: of tests in stages what these do not impose, deviator, strains and unloading

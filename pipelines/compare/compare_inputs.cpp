@@ -51,7 +51,7 @@ CompareSide load_one_file(const std::string& path) {
   } else if (form == FileForm::hdf5) {
     side.measurements = load_measurements(path);
   } else {
-    throw BadInput(path + ": expected a run directory, macro.h5, material.h5, measurements.h5 or law.toml");
+    throw InputError(path + ": expected a run directory, macro.h5, material.h5, measurements.h5 or law.toml");
   }
   return side;
 }
@@ -84,7 +84,7 @@ void attempt(CompareResult& result, const std::string& what, Compare&& compare) 
     compare();
   } catch (const ZeroReference& error) {
     result.undefined.push_back(what + ": " + error.what());
-  } catch (const BadInput& error) {
+  } catch (const InputError& error) {
     result.remarks.push_back(what + ": " + error.what());
   }
 }
@@ -132,10 +132,11 @@ Differences all_differences(const CompareSide& candidate, const CompareSide& ref
 void refuse(const CompareSide& candidate, const CompareSide& reference, const std::vector<std::string>& obstacles) {
   std::string text;
   for (const std::string& one : obstacles) text += "\n  " + one;
-  throw BadInput("compare: " + candidate.name + " and " + reference.name +
-                 " are not of the same, and a difference of their results would say nothing (--different compares them "
-                 "all the same):" +
-                 text);
+  throw InputError(
+      "compare: " + candidate.name + " and " + reference.name +
+      " are not of the same, and a difference of their results would say nothing (--different compares them "
+      "all the same):" +
+      text);
 }
 
 /// One test stands for another: what is asked for with --different.
@@ -198,17 +199,17 @@ void require_something(const CompareResult& result) {
       !result.measurements.empty() || !result.laws.empty())
     return;
   const std::string why = result.remarks.empty() ? "the sides hold no data of the same kind" : result.remarks.front();
-  throw BadInput("compare: nothing can be compared: " + why);
+  throw InputError("compare: nothing can be compared: " + why);
 }
 
 }  // namespace
 
 CompareSide load_side(const std::string& path) {
-  if (!fs::exists(path)) throw FileTrouble(path + ": no such file or directory");
+  if (!fs::exists(path)) throw IoError(path + ": no such file or directory");
   CompareSide side = fs::is_directory(path) ? load_directory(path) : load_one_file(path);
   side.name = path;
   if (side.macro.empty() && !side.measurements && !side.card) {
-    throw BadInput(path + ": holds nothing to compare (macro.h5, material.h5, measurements.h5 or law.toml)");
+    throw InputError(path + ": holds nothing to compare (macro.h5, material.h5, measurements.h5 or law.toml)");
   }
   return side;
 }

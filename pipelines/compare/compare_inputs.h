@@ -24,7 +24,7 @@ struct CompareSide {
 };
 
 /// `path` is a run directory, or a file named like macro*.h5, material*.h5, law*.toml or another .h5 with measurements.
-/// Throws FileTrouble when it does not exist or is damaged, BadInput when it is none of these or holds nothing to
+/// Throws IoError when it does not exist or is damaged, InputError when it is none of these or holds nothing to
 /// compare.
 CompareSide load_side(const std::string& path);
 
@@ -52,11 +52,11 @@ struct CompareResult {
 
 /// Candidate against reference: engines and relaxations of the same name; when the sides share none, the first of each.
 /// Sides that differ in what makes a comparison mean something (differences.h) are refused unless `different`; then a
-/// test stands against another test by its sample. Throws BadInput for these, and when nothing can be compared.
+/// test stands against another test by its sample. Throws InputError for these, and when nothing can be compared.
 CompareResult compare_sides(const CompareSide& candidate, const CompareSide& reference, bool different = false);
 
 /// Inside one run: engine "law" against "shelled", and every other relaxation against "published".
-/// Throws BadInput when nothing can be compared.
+/// Throws InputError when nothing can be compared.
 CompareResult compare_within(const CompareSide& side);
 
 nlohmann::json to_json(const CompareResult& result);

@@ -95,8 +95,8 @@ std::vector<const PackingRun*> require_runs(const Measurements& data, PairKind k
   if (!runs.empty()) return runs;
   std::string present;
   for (const std::string& name : relaxations_of(data, kind)) present += (present.empty() ? "" : ", ") + name;
-  throw BadInput(std::string("compare: the ") + side + " has no " + to_string(kind) + " runs with relaxation \"" +
-                 relaxation + "\"; present: " + (present.empty() ? "none" : present));
+  throw InputError(std::string("compare: the ") + side + " has no " + to_string(kind) + " runs with relaxation \"" +
+                   relaxation + "\"; present: " + (present.empty() ? "none" : present));
 }
 
 PointCost per_point(const Cost& total, std::int64_t points) {
@@ -136,7 +136,7 @@ void add_costs(Comparison& result, const std::vector<const PackingRun*>& candida
 
 const PairLaw& require_law(const LawCard& card, PairKind kind, const char* side) {
   const PairLaw* law = card.find(kind);
-  if (law == nullptr) throw BadInput(fmt::format("compare: the {} law card has no {} law", side, to_string(kind)));
+  if (law == nullptr) throw InputError(fmt::format("compare: the {} law card has no {} law", side, to_string(kind)));
   return *law;
 }
 
@@ -163,7 +163,7 @@ RelaxationComparison compare_relaxations(const Measurements& data, const std::st
   result.candidate = candidate;
   result.normal = paired_rows(normal_forces(a), normal_forces(b));
   if (result.normal.empty())
-    throw BadInput(fmt::format("compare: no packing and overlap is in both \"{}\" and \"{}\"", candidate, reference));
+    throw InputError(fmt::format("compare: no packing and overlap is in both \"{}\" and \"{}\"", candidate, reference));
   const double shell_radius = data.spec.shell_radius;
   result.stiffness_initial = paired_rows(initial_stiffness(a, angles, shell_radius),
                                          initial_stiffness(b, angles, shell_radius), 1.0, 1.0, true);
@@ -193,7 +193,7 @@ MeasurementComparison compare_measurements(const Measurements& candidate, const 
     return result.paired ? paired_rows(x, y, x_unit, y_unit, find_jumps) : independent_rows(x, x_unit, y, y_unit);
   };
   result.normal = rows(normal_forces(a), force_a, normal_forces(b), force_b);
-  if (result.normal.empty()) throw BadInput("compare: the two measurements have no overlap Delta in common");
+  if (result.normal.empty()) throw InputError("compare: the two measurements have no overlap Delta in common");
   result.stiffness_initial = rows(initial_stiffness(a, angles, candidate.spec.shell_radius), stiffness_a,
                                   initial_stiffness(b, angles, reference.spec.shell_radius), stiffness_b, true);
   result.stiffness_secant = rows(secant_stiffness(a, angles, candidate.spec.shell_radius), stiffness_a,

@@ -49,7 +49,7 @@ struct RelaxationComparison {
 };
 
 /// Compares two relaxations of one file, packing by packing.
-/// Throws BadInput when a relaxation is absent for this kind (naming those present) or no packing and overlap is in
+/// Throws InputError when a relaxation is absent for this kind (naming those present) or no packing and overlap is in
 /// both.
 RelaxationComparison compare_relaxations(const Measurements& data, const std::string& reference,
                                          const std::string& candidate, PairKind kind,
@@ -72,7 +72,7 @@ struct MeasurementComparison {
   PointCost candidate_tangential_cost;
 };
 
-/// Throws BadInput when a side has no such runs or no overlap is in both.
+/// Throws InputError when a side has no such runs or no overlap is in both.
 MeasurementComparison compare_measurements(const Measurements& candidate, const std::string& candidate_relaxation,
                                            const Measurements& reference, const std::string& reference_relaxation,
                                            PairKind kind, const StiffnessAngles& angles = {});
@@ -87,7 +87,7 @@ struct LawRow {
 };
 
 /// Parameters of the laws of one pair kind and normal forces over the common range of validity, dimensionless.
-/// Throws BadInput when a card has no law of this kind.
+/// Throws InputError when a card has no law of this kind.
 std::vector<LawRow> compare_laws(const LawCard& candidate, const LawCard& reference, PairKind kind);
 
 }  // namespace softgrain

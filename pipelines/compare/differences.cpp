@@ -15,14 +15,15 @@ void note(List& out, const char* what, const T& candidate, const T& reference) {
   if (candidate != reference) out.push_back(fmt::format("{}: {} against {}", what, candidate, reference));
 }
 
-/// Of soft particles not all is known; what neither side knows is no difference, what one does not know may be one.
+/// Notes a difference in a property of soft particles that may not be known. What neither side knows is no difference;
+/// what one does not know may be one.
 void note_known(List& obstacles, List& said, const char* what, double candidate, double reference) {
   if (is_known(candidate) && is_known(reference)) return note(obstacles, what, candidate, reference);
   if (is_known(candidate) || is_known(reference))
     said.push_back(fmt::format("{}: not known of the {}", what, is_known(candidate) ? "reference" : "candidate"));
 }
 
-/// At least one is no power law of an exponent.
+/// Notes different sizes of grains, of which at least one is no power law of an exponent.
 void note_sizes(const SoftParticleSpec& candidate, const SoftParticleSpec& reference, Differences& out) {
   if (!packing_known(candidate) || !packing_known(reference)) {
     out.said.push_back(

@@ -41,7 +41,7 @@ double difference(const std::vector<double>& xa, const std::vector<double>& a, c
                   const std::vector<double>& b) {
   try {
     return relative_difference(xa, a, xb, b);
-  } catch (const BadInput&) {
+  } catch (const InputError&) {
     return kNaN;
   }
 }
@@ -53,7 +53,7 @@ double stage_difference(const MacroCurve& c, const MacroCurve& twin, Compared wh
   };
   try {
     return staged_difference(match_stages(c, twin), column(c), column(twin), what);
-  } catch (const BadInput&) {
+  } catch (const InputError&) {
     return kNaN;
   }
 }
@@ -67,7 +67,7 @@ double strain_error(const MacroCurve& c, const MacroCurve& twin) {
   if (c.test != MacroTest::stages || twin.test != MacroTest::stages) return kNaN;
   try {
     return strain_difference(match_stages(c, twin), c, twin);
-  } catch (const BadInput&) {
+  } catch (const InputError&) {
     return kNaN;
   }
 }
@@ -201,10 +201,10 @@ double own_noise(const MacroCurve& c) {
   return axial_difference(second, c) / std::numbers::sqrt2;
 }
 
-/// A crowd law goes over its contacts once for the sums of each particle and once for the forces.
+/// A multi-contact law goes over its contacts once for the sums of each particle and once for the forces.
 double visits(const MacroCurve& c) {
-  const bool crowd = c.law.form && *c.law.form != Crowd::pair;
-  return (crowd ? 2.0 : 1.0) * static_cast<double>(c.cost.contact_evaluations);
+  const bool multi_contact = c.law.form && *c.law.form != LawForm::pair;
+  return (multi_contact ? 2.0 : 1.0) * static_cast<double>(c.cost.contact_evaluations);
 }
 
 TwinErrors errors_against(const Pairs& pairs) {
@@ -350,7 +350,7 @@ ScoreTable score_table(const std::vector<EngineScore>& scores) {
                   "end of the twin in band"};
   for (const char* partner : kPlacesPartners)
     table.header.push_back(fmt::format("force on {} at the twin's places: law/twin", partner));
-  for (const auto& [ignored, twin] : words<Twin>)
+  for (const auto& [ignored, twin] : enum_names<Twin>)
     for (const char* what :
          {"stress error", "stress error of the mean", "end stress ratio", "deviator error", "strain error",
           "unloading modulus ratio", "lateral/axial difference", "coordination difference", "fabric difference",

@@ -16,14 +16,14 @@ struct TwinErrors {
   std::size_t pairs = 0;         ///< samples that both ran usably
   bool staged = false;           ///< the test is one in stages: what these impose does not count in the differences
   MeanError axial;               ///< relative L2 difference of the axial stress, as relative_difference, per sample
-  MeanError axial_of_mean;       ///< the same of the mean curves over the samples; error by jackknife over them
+  MeanError axial_of_mean;       ///< relative L2 difference of the mean curves over the samples; error by jackknife
   MeanError axial_end;           ///< axial stress over that of the twin, at the end
   MeanError deviator;            ///< shear and stages: relative L2 difference of axial minus x stress after the preload
-  MeanError strains;             ///< stages: the same of the strains of axes that go by stress
+  MeanError strains;             ///< stages: relative L2 difference of the strains of axes that go by stress
   MeanError unloading;           ///< stages: unloading modulus over that of the twin
   MeanError lateral_ratio;       ///< lateral over axial stress at the end, minus that of the twin
-  MeanError coordination;        ///< of bodies at the end, minus that of the twin
-  MeanError fabric;              ///< of bodies at the end, minus that of the twin
+  MeanError coordination;        ///< coordination number of bodies at the end, minus that of the twin
+  MeanError fabric;              ///< fabric anisotropy of bodies at the end, minus that of the twin
   MeanError force_mean;          ///< mean contact force over that of the twin
   MeanError force_distance;      ///< Kolmogorov-Smirnov distance of the forces, each over its mean
   double speedup_seconds = 0.0;  ///< twin over engine, summed over samples; NaN when not recorded
@@ -40,26 +40,27 @@ struct PlacesScore {
 
 struct EngineScore {
   std::string engine;
-  std::size_t samples = 0;  ///< usable
+  std::size_t samples = 0;  ///< number of usable samples
   /// Relative L2 difference of the axial stress of one run from the same one with strains that differ in the twelfth
   /// digit, over sqrt(2): what paths alone make of one run. Empty: not run.
   MeanError noise;
   PlacesScore places;
-  MeanError band_width;  ///< of the axial stress at the end: half of its 95 % band over it; empty: no bands
+  MeanError band_width;  ///< half of the 95 % band over the axial stress at the end; empty: no bands
   MeanError coverage;    ///< share of the points of the shelled twin, from 5 % of its last axial stress on, in the band
-  MeanError coverage_end;            ///< share of the samples whose last point is
-  MeanError axial;                   ///< stress at the end [Pa]
-  MeanError lateral_ratio;           ///< lateral over axial stress at the end
-  MeanError coordination;            ///< of bodies at the end
-  MeanError fabric;                  ///< of bodies at the end
-  MeanError force_mean;              ///< of contacts between bodies at the end [N]
-  MeanError force_variation;         ///< their standard deviation over their mean
-  double contact_evaluations = 0.0;  ///< per sample; a crowd law's visits to a contact count each: there are two
-  double seconds = 0.0;              ///< per sample
-  TwinErrors shelled;                ///< against the shelled twin; empty means (n = 0) when there is none
+  MeanError coverage_end;     ///< share of the samples whose last point is in the band
+  MeanError axial;            ///< axial stress at the end [Pa]
+  MeanError lateral_ratio;    ///< lateral over axial stress at the end
+  MeanError coordination;     ///< coordination number of bodies at the end
+  MeanError fabric;           ///< fabric anisotropy of bodies at the end
+  MeanError force_mean;       ///< mean force of contacts between bodies at the end [N]
+  MeanError force_variation;  ///< standard deviation of these forces over their mean
+  double contact_evaluations =
+      0.0;               ///< per sample; a multi-contact law's visits to a contact count each: there are two
+  double seconds = 0.0;  ///< per sample
+  TwinErrors shelled;    ///< against the shelled twin; empty means (n = 0) when there is none
   TwinErrors free;
 
-  [[nodiscard]] std::optional<Twin> twin() const { return from_word<Twin>(engine); }
+  [[nodiscard]] std::optional<Twin> twin() const { return parse_enum<Twin>(engine); }
 };
 
 /// One score per engine, in the order in which engines first appear. Unusable curves count nowhere; differences that

@@ -21,7 +21,8 @@ std::vector<std::vector<std::size_t>> points_of_stages(const MacroCurve& c) {
   std::size_t begin = 0;
   for (std::size_t k = 1; k < c.stage.size(); ++k) {
     const auto stage = static_cast<std::size_t>(c.stage[k]);
-    if (stage >= out.size()) throw BadInput("compare: a recorded point belongs to a stage that the test does not have");
+    if (stage >= out.size())
+      throw InputError("compare: a recorded point belongs to a stage that the test does not have");
     if (out[stage].empty()) out[stage].push_back(begin);
     out[stage].push_back(k);
     begin = k;
@@ -119,7 +120,7 @@ bool match_by_driver(const MacroCurve& candidate, const MacroCurve& reference, M
 std::vector<MatchedStage> match_whole(const MacroCurve& candidate, const MacroCurve& reference) {
   const std::size_t n = reference.strain.size();
   if (candidate.strain.size() != n || n < 2)
-    throw BadInput(fmt::format(
+    throw InputError(fmt::format(
         "compare: at least one of the curves does not say which stage its points belong to, and they have {} and {} "
         "points",
         candidate.strain.size(), n));
@@ -150,9 +151,9 @@ std::vector<double> grid_of(const MatchedStage& stage) {
 }
 
 void require_values(const std::vector<double>& column, std::size_t points) {
-  if (column.size() != points) throw BadInput("compare: a column has another number of points than its curve");
+  if (column.size() != points) throw InputError("compare: a column has another number of points than its curve");
   for (const double x : column)
-    if (!std::isfinite(x)) throw BadInput("compare: a curve holds a value that is not finite");
+    if (!std::isfinite(x)) throw InputError("compare: a curve holds a value that is not finite");
 }
 
 }  // namespace
@@ -201,7 +202,7 @@ std::vector<MatchedStage> match_stages(const MacroCurve& candidate, const MacroC
     const auto [low, high] = common_part(stage);
     if (low < high) out.push_back(std::move(stage));
   }
-  if (out.empty()) throw BadInput("compare: no stage has a common range of strain or stress");
+  if (out.empty()) throw InputError("compare: no stage has a common range of strain or stress");
   return out;
 }
 
@@ -244,7 +245,7 @@ double staged_difference(const std::vector<MatchedStage>& stages, const std::vec
                          const std::vector<double>& reference, Compared what) {
   for (const MatchedStage& stage : stages) {
     if (stage.candidate.point.back() >= candidate.size() || stage.reference.point.back() >= reference.size())
-      throw BadInput("compare: a column has fewer points than its curve");
+      throw InputError("compare: a column has fewer points than its curve");
   }
   require_values(candidate, candidate.size());
   require_values(reference, reference.size());

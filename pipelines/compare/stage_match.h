@@ -20,11 +20,11 @@ enum class Compared {
 /// leaves out z where that went to a stress.
 std::array<bool, 3> stress_axes(const StageRecord& stage);
 
-/// Whether a stage imposes it: every run has it there, and no law is right or wrong by it.
+/// Whether a stage imposes the compared stress: every run has it there, and no law is right or wrong by it.
 bool imposed(const StageRecord& stage, Compared what);
 
-/// The same of every recorded point of a curve, by the stage that ends at the point or comes to it; none of curves that
-/// do not say their stages.
+/// Whether the compared stress is imposed at each recorded point of a curve, by the stage that ends at the point or
+/// comes to it. False for curves that do not say their stages.
 std::vector<bool> imposed_points(const MacroCurve& curve, Compared what);
 
 /// One side of a stage: its recorded points, with the one at which it begins, and how far it has come at each.
@@ -38,17 +38,17 @@ struct MatchedStage {
   StageRecord record;
   StageSide candidate;
   StageSide reference;
-  bool first = false;  ///< of the test
+  bool first = false;  ///< whether it is the first stage of the test
 };
 
 /// Points belong together where the same has been driven as far: to the same strain since the stage began, of the axis
 /// that is driven by strain; to the same stress where none is. A stage that drives nothing, or whose stress does not go
 /// one way, goes by the share of its points. Numbers of points play no part: both may have any steps. Stages are paired
 /// in their order, as far as both have them. Curves that do not say their stages are one stage, and need as many points
-/// as each other. Throws BadInput where that is not so, or where no stage has a common range.
+/// as each other. Throws InputError where that is not so, or where no stage has a common range.
 std::vector<MatchedStage> match_stages(const MacroCurve& candidate, const MacroCurve& reference);
 
-/// Where both have values: from .. to of `at`.
+/// Part of `at` where both sides have values: from its begin to its end.
 std::array<double, 2> common_part(const MatchedStage& stage);
 
 /// Value of one side at `at`, between its points linearly.
@@ -66,11 +66,12 @@ struct StageSquares {
   [[nodiscard]] double relative() const;
 };
 
-/// Over the stages that do not impose it.
+/// Relative L2 difference over the stages that do not impose the compared stress.
 double staged_difference(const std::vector<MatchedStage>& stages, const std::vector<double>& candidate,
                          const std::vector<double>& reference, Compared what);
 
-/// Of the strains that stages do not impose: those of the axes that go by stress, from the start of the test.
+/// Relative L2 difference of the strains that stages do not impose: those of the axes that go by stress, from the start
+/// of the test.
 double strain_difference(const std::vector<MatchedStage>& stages, const MacroCurve& candidate,
                          const MacroCurve& reference);
 

@@ -22,27 +22,27 @@ enum class Modulus {
 };
 
 template <>
-inline constexpr auto words<Modulus> = word_list<Modulus>({{Modulus::constrained, "constrained"},
-                                                           {Modulus::young, "Young"},
-                                                           {Modulus::bulk, "bulk"},
-                                                           {Modulus::shear, "shear"},
-                                                           {Modulus::axial, "axial"},
-                                                           {Modulus::none, "none"}});
+inline constexpr auto enum_names<Modulus> = enum_name_list<Modulus>({{Modulus::constrained, "constrained"},
+                                                                     {Modulus::young, "Young"},
+                                                                     {Modulus::bulk, "bulk"},
+                                                                     {Modulus::shear, "shear"},
+                                                                     {Modulus::axial, "axial"},
+                                                                     {Modulus::none, "none"}});
 
 Modulus modulus_of(StageKind way);
 
 /// The stress whose change over the strain a modulus is: sigma_z; bulk: p; shear: (sigma_z - sigma_x)/2.
 const char* stress_of(Modulus modulus);
 
-/// Of one stage of one sample. p = (sigma_x + sigma_y + sigma_z)/3, q = sqrt(3 J2), which is |sigma_z - sigma_x| where
-/// two axes bear alike. NaN where it is not defined.
+/// Results of one stage of one sample. p = (sigma_x + sigma_y + sigma_z)/3, q = sqrt(3 J2), which is |sigma_z -
+/// sigma_x| where two axes bear alike. NaN where a result is not defined.
 struct StageResult {
   StageRecord record;
-  double strain_begin = kNaN;  ///< nominal, of z, from the start of the test
+  double strain_begin = kNaN;  ///< nominal strain of z from the start of the test
   double strain_end = kNaN;
   double volumetric_begin = kNaN;  ///< loss of volume over the volume at the start of the test
   double volumetric_end = kNaN;
-  double axial_end = kNaN;  ///< stress [Pa]
+  double axial_end = kNaN;  ///< stress at the end [Pa]
   double lateral_end = kNaN;
   /// Secant between two stresses [Pa]: those of the record; without any from half the stress at the end to the end
   /// (constrained, bulk, axial; from the begin where that is more), from the begin to half of the largest change
@@ -50,25 +50,25 @@ struct StageResult {
   /// both.
   double modulus = kNaN;
   double modulus_from = kNaN;       ///< the stress where the interval begins; see stress_of() [Pa]
-  double modulus_to = kNaN;         ///< where it ends
+  double modulus_to = kNaN;         ///< stress where the interval ends [Pa]
   double modulus_begin = kNaN;      ///< tangent at the first point: of unload the unloading modulus [Pa]
   double modulus_end = kNaN;        ///< tangent at the last point, from few points and one side: scatters [Pa]
   double poisson_begin = kNaN;      ///< Young's way: -d(eps_x + eps_y)/(2 d eps_z) at the first point
   double ratio_peak = kNaN;         ///< largest q/p
-  double ratio_peak_strain = kNaN;  ///< of z, where it is
-  double ratio_end = kNaN;          ///< q/p
+  double ratio_peak_strain = kNaN;  ///< strain of z at the largest q/p
+  double ratio_end = kNaN;          ///< q/p at the end
 };
 
 /// Change of stress over that of strain between two stresses (the second lies behind the first), straight between
 /// points; NaN where the points do not go through both.
 double secant_modulus(const std::vector<double>& strain, const std::vector<double>& stress, double from, double to);
 
-/// Of every stage that has two points at least; empty for curves that do not say their stages. Tangents are those of a
-/// parabola by least squares through the four points (or as many as there are) next to that end; where that is no
-/// continuation of the points, of another sign than the secant of the last two or beyond thrice it, the secant.
+/// Results of every stage that has two points at least; empty for curves that do not say their stages. Tangents are
+/// those of a parabola by least squares through the four points (or as many as there are) next to that end; where that
+/// is no continuation of the points, of another sign than the secant of the last two or beyond thrice it, the secant.
 std::vector<StageResult> stage_results(const MacroCurve& curve);
 
-/// The same over the usable samples of one engine; empty where no sample has a value.
+/// Means over the usable samples of one engine; empty where no sample has a value.
 struct StageMeans {
   StageRecord record;
   std::optional<MeanError> strain_end;
@@ -86,8 +86,8 @@ struct StageMeans {
   std::optional<MeanError> ratio_end;
 };
 
-/// Between which stresses the modulus of a stage is taken, in words without numbers where they are its own: "2 MPa to
-/// 5 MPa", "upper half of the stress", "first half of the largest stress", "whole stage".
+/// Stresses between which the modulus of a stage is taken, in words without numbers where they are its own: "2 MPa to 5
+/// MPa", "upper half of the stress", "first half of the largest stress", "whole stage".
 std::string modulus_interval(const StageMeans& stage);
 
 /// "constrained modulus 6.5e+08 +- 2e+07 Pa from 2.5e+06 to 5e+06 Pa of axial stress (upper half of the stress)", or

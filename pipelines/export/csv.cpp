@@ -64,10 +64,12 @@ std::string walls_csv(const Snapshot& s) {
 
 std::vector<ExportFile> csv_files(const Snapshot& s, std::int64_t number) {
   std::vector<ExportFile> files{
-      {Holds::particles, state_file_name(s, Holds::particles, number, "csv"), particles_csv(s)}};
+      {StateContent::particles, state_file_name(s, StateContent::particles, number, "csv"), particles_csv(s)}};
   if (s.has_contacts)
-    files.push_back({Holds::contacts, state_file_name(s, Holds::contacts, number, "csv"), contacts_csv(s)});
-  if (!s.walls.empty()) files.push_back({Holds::walls, state_file_name(s, Holds::walls, number, "csv"), walls_csv(s)});
+    files.push_back(
+        {StateContent::contacts, state_file_name(s, StateContent::contacts, number, "csv"), contacts_csv(s)});
+  if (!s.walls.empty())
+    files.push_back({StateContent::walls, state_file_name(s, StateContent::walls, number, "csv"), walls_csv(s)});
   return files;
 }
 

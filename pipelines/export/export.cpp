@@ -66,8 +66,8 @@ class Exporter {
     Entry entry{s.moment(), s.frame, s.particles.size(), s.contacts.size(), "", ""};
     for (const ExportFile& file : files_of(s, number)) {
       write(file.name, file.text);
-      if (file.holds == Holds::particles) entry.particles_file = file.name;
-      if (file.holds == Holds::contacts) entry.contacts_file = file.name;
+      if (file.content == StateContent::particles) entry.particles_file = file.name;
+      if (file.content == StateContent::contacts) entry.contacts_file = file.name;
     }
     series.entries.push_back(entry);
     ++series.facts.states;
@@ -93,7 +93,7 @@ class Exporter {
     return all_.back();
   }
 
-  /// Of particles, and of contacts where a format has two.
+  /// Names of the index files: of particles, and of contacts where a format has two.
   [[nodiscard]] std::vector<std::string> index_files(const Series& s) const {
     const std::string stem = file_name_of(s.facts.name);
     if (format_ == ExportFormat::vtp) return {stem + "_particles.pvd", stem + "_contacts.pvd"};
@@ -135,11 +135,11 @@ class Exporter {
 }  // namespace
 
 ExportFormat export_format(const std::string& name) {
-  if (const auto format = from_word<ExportFormat>(name)) return *format;
-  if (name.empty()) throw BadInput("export: which form? give --to vtp, --to lammps-dump or --to csv");
+  if (const auto format = parse_enum<ExportFormat>(name)) return *format;
+  if (name.empty()) throw InputError("export: which form? give --to vtp, --to lammps-dump or --to csv");
   const std::string near = nearest_word(name, {"vtp", "lammps-dump", "csv"});
-  throw BadInput(fmt::format("export: --to {}: unknown form; {}allowed are vtp, lammps-dump, csv", name,
-                             near.empty() ? "" : "nearest is " + near + "; "));
+  throw InputError(fmt::format("export: --to {}: unknown form; {}allowed are vtp, lammps-dump, csv", name,
+                               near.empty() ? "" : "nearest is " + near + "; "));
 }
 
 std::string file_name_of(const std::string& series) {
@@ -149,8 +149,9 @@ std::string file_name_of(const std::string& series) {
   return name;
 }
 
-std::string state_file_name(const Snapshot& snapshot, Holds holds, std::int64_t number, const std::string& extension) {
-  return fmt::format("{}_{}_{:06}.{}", file_name_of(snapshot.series), to_string(holds), number, extension);
+std::string state_file_name(const Snapshot& snapshot, StateContent content, std::int64_t number,
+                            const std::string& extension) {
+  return fmt::format("{}_{}_{:06}.{}", file_name_of(snapshot.series), to_string(content), number, extension);
 }
 
 std::vector<ExportedSeries> export_states(const std::string& run, ExportFormat format, const std::string& directory) {
@@ -163,10 +164,10 @@ std::vector<ExportedSeries> export_states(const std::string& run, ExportFormat f
     exporter->add(s);
   });
   if (!exporter)
-    throw BadInput(run +
-                   ": holds no states (run.h5, states_*.h5, powder.h5 or grain_box.h5): runs of kind particles, "
-                   "soft-particle, pipeline, macro, macro-comparison, cohesive-powder and grain-box keep them, "
-                   "unless [output] says snapshots = 0 or record = false");
+    throw InputError(run +
+                     ": holds no states (run.h5, states_*.h5, powder.h5 or grain_box.h5): runs of kind particles, "
+                     "soft-particle, pipeline, macro, macro-comparison, cohesive-powder and grain-box keep them, "
+                     "unless [output] says snapshots = 0 or record = false");
   return exporter->finish();
 }
 

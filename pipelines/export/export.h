@@ -12,25 +12,25 @@ namespace softgrain {
 enum class ExportFormat { vtp, lammps_dump, csv };
 
 template <>
-inline constexpr auto words<ExportFormat> = word_list<ExportFormat>({{ExportFormat::vtp, "vtp"},
-                                                                     {ExportFormat::lammps_dump, "lammps-dump"},
-                                                                     {ExportFormat::csv, "csv"}});
+inline constexpr auto enum_names<ExportFormat> = enum_name_list<ExportFormat>(
+    {{ExportFormat::vtp, "vtp"}, {ExportFormat::lammps_dump, "lammps-dump"}, {ExportFormat::csv, "csv"}});
 
-/// Throws BadInput that names the nearest for a word that is none of them.
+/// Throws InputError that names the nearest for a word that is none of them.
 ExportFormat export_format(const std::string& name);
 
 /// What a file of a state is of.
-enum class Holds { particles, contacts, wall_contacts, walls };
+enum class StateContent { particles, contacts, wall_contacts, walls };
 
 template <>
-inline constexpr auto words<Holds> = word_list<Holds>({{Holds::particles, "particles"},
-                                                       {Holds::contacts, "contacts"},
-                                                       {Holds::wall_contacts, "wall_contacts"},
-                                                       {Holds::walls, "walls"}});
+inline constexpr auto enum_names<StateContent> = enum_name_list<StateContent>({{StateContent::particles, "particles"},
+                                                                               {StateContent::contacts, "contacts"},
+                                                                               {StateContent::wall_contacts,
+                                                                                "wall_contacts"},
+                                                                               {StateContent::walls, "walls"}});
 
 /// One file of a state.
 struct ExportFile {
-  Holds holds = Holds::particles;
+  StateContent content = StateContent::particles;
   std::string name;  ///< relative to the directory of the export
   std::string text;
 };
@@ -42,7 +42,8 @@ std::vector<ExportFile> dump_files(const Snapshot& snapshot, std::int64_t number
 std::vector<ExportFile> csv_files(const Snapshot& snapshot, std::int64_t number);
 
 /// SERIES_KIND_NUMBER.extension
-std::string state_file_name(const Snapshot& snapshot, Holds holds, std::int64_t number, const std::string& extension);
+std::string state_file_name(const Snapshot& snapshot, StateContent content, std::int64_t number,
+                            const std::string& extension);
 std::string file_name_of(const std::string& series);
 
 /// What a series became.
@@ -51,12 +52,12 @@ struct ExportedSeries {
   SnapshotKind kind = SnapshotKind::particles;
   std::int64_t states = 0;
   std::int64_t with_contacts = 0;
-  std::vector<std::string> files;  ///< to open: the .pvd of a VTP series, the table of a CSV series, the first dump
+  std::vector<std::string> files;  ///< files to open: .pvd of a VTP series, table of a CSV series, first dump
 };
 
 /// Writes all states of a run (as read_snapshots() takes it) to `directory`, which is made; every file atomically. What
 /// an earlier export of the same form left there is removed first (export_files.h); other files stay.
-/// Throws BadInput when there are none, FileTrouble.
+/// Throws InputError when there are none, IoError.
 std::vector<ExportedSeries> export_states(const std::string& run, ExportFormat format, const std::string& directory);
 
 }  // namespace softgrain

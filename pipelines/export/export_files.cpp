@@ -63,7 +63,7 @@ void ExportList::remove(const std::string& name) const {
   const std::string path = directory_ + "/" + name;
   std::error_code error;
   fs::remove(path, error);
-  if (error) throw FileTrouble(path + ": of an earlier export, cannot be removed: " + error.message());
+  if (error) throw IoError(path + ": of an earlier export, cannot be removed: " + error.message());
 }
 
 void ExportList::remove_listed() const {
@@ -93,7 +93,7 @@ void ExportList::add(const std::string& name) const {
   std::ofstream list(path, std::ios::app);
   list << name << '\n';
   list.flush();
-  if (!list) throw FileTrouble(path + ": cannot be written");
+  if (!list) throw IoError(path + ": cannot be written");
 }
 
 std::string export_folder(ExportFormat format) { return "export-" + to_string(format); }

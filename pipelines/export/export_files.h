@@ -13,13 +13,14 @@ class ExportList {
  public:
   ExportList(const std::string& directory, ExportFormat format);
 
-  /// Files that an earlier export of this form listed, and the list. Throws FileTrouble.
+  /// Removes the files that an earlier export of this form listed, and the list. Throws IoError.
   void remove_listed() const;
-  /// Files of one series by the names that this form gives them, whether listed or not: earlier versions kept no list.
+  /// Removes the files of one series by the names that this form gives them, whether listed or not: earlier versions
+  /// kept no list.
   void remove_series(const std::string& series) const;
-  /// Every file with a name that this form gives.
+  /// Removes every file with a name that this form gives.
   void remove_named() const;
-  /// Before the file is written, so that an export that breaks off has listed it. Throws FileTrouble.
+  /// Lists a file before it is written, so that an export that breaks off has listed it. Throws IoError.
   void add(const std::string& name) const;
   /// Whether an export of this form kept a list here.
   [[nodiscard]] bool exists() const;

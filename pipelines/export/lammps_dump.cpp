@@ -99,12 +99,13 @@ std::string contacts_dump(const Snapshot& s, bool with_walls) {
 
 std::vector<ExportFile> dump_files(const Snapshot& s, std::int64_t number) {
   std::vector<ExportFile> files{
-      {Holds::particles, state_file_name(s, Holds::particles, number, "dump"), particles_dump(s)}};
+      {StateContent::particles, state_file_name(s, StateContent::particles, number, "dump"), particles_dump(s)}};
   if (!s.has_contacts) return files;
-  files.push_back({Holds::contacts, state_file_name(s, Holds::contacts, number, "dump"), contacts_dump(s, false)});
+  files.push_back(
+      {StateContent::contacts, state_file_name(s, StateContent::contacts, number, "dump"), contacts_dump(s, false)});
   if (!s.walls.empty())
-    files.push_back(
-        {Holds::wall_contacts, state_file_name(s, Holds::wall_contacts, number, "dump"), contacts_dump(s, true)});
+    files.push_back({StateContent::wall_contacts, state_file_name(s, StateContent::wall_contacts, number, "dump"),
+                     contacts_dump(s, true)});
   return files;
 }
 

@@ -117,9 +117,10 @@ std::string contacts_vtp(const Snapshot& s) {
 
 std::vector<ExportFile> vtp_files(const Snapshot& s, std::int64_t number) {
   std::vector<ExportFile> files{
-      {Holds::particles, state_file_name(s, Holds::particles, number, "vtp"), particles_vtp(s)}};
+      {StateContent::particles, state_file_name(s, StateContent::particles, number, "vtp"), particles_vtp(s)}};
   if (s.has_contacts)
-    files.push_back({Holds::contacts, state_file_name(s, Holds::contacts, number, "vtp"), contacts_vtp(s)});
+    files.push_back(
+        {StateContent::contacts, state_file_name(s, StateContent::contacts, number, "vtp"), contacts_vtp(s)});
   return files;
 }
 

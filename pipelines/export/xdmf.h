@@ -7,7 +7,7 @@
 namespace softgrain {
 
 /// Beside run.h5 of kind "particles": run.xdmf with the particles of every frame, run_contacts.xdmf with the contacts
-/// of the frames that kept them, each a temporal collection. Atomic. Throws FileTrouble.
+/// of the frames that kept them, each a temporal collection. Atomic. Throws IoError.
 void write_run_xdmf(const std::string& run_file);
 
 /// Beside a file of states (states_*.h5): one collection per series in NAME.xdmf (particles) and NAME_contacts.xdmf.

@@ -30,7 +30,7 @@ const SceneKind* find(const std::string& name) {
   return at == kinds.end() ? nullptr : &*at;
 }
 
-/// Of the kinds that `command` runs; of all when it is empty.
+/// Names of the kinds that `command` runs; names of all kinds when it is empty.
 std::vector<const char*> names_of(const std::string& command) {
   std::vector<const char*> names;
   for (const SceneKind& k : scene_kinds())
@@ -66,8 +66,8 @@ const SceneKind& kind_of(const Scene& scene, const std::string& command) {
   const SceneTable root = scene.root();
   const SceneKind* named = root.is_text("kind") ? find(root.text("kind")) : nullptr;
   if (named != nullptr && command != named->command)
-    root.reject("kind",
-                "scenes of this kind run with softgrain " + std::string(named->command) + ", not with " + command);
+    root.throw_error("kind",
+                     "scenes of this kind run with softgrain " + std::string(named->command) + ", not with " + command);
   return *find(root.choice("kind", names_of(command)));
 }
 

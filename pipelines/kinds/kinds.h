@@ -10,10 +10,11 @@ namespace softgrain {
 
 std::span<const SceneKind> scene_kinds();
 
-/// The kind that the scene names. Throws BadInput.
+/// The kind that the scene names. Throws InputError.
 const SceneKind& kind_of(const Scene& scene);
 
-/// The same when `command` runs it. Throws BadInput at `kind`, naming the command that does.
+/// The kind that the scene names, if `command` runs it. Otherwise throws InputError at `kind`, naming the command that
+/// does.
 const SceneKind& kind_of(const Scene& scene, const std::string& command);
 
 }  // namespace softgrain

@@ -27,7 +27,7 @@ Where place(const PairLaw& law, double delta) {
 }  // namespace
 
 std::vector<LawPoint> card_values(const LawCard& card, PairKind kind, const std::vector<double>& deltas,
-                                  std::optional<Beyond> beyond) {
+                                  std::optional<Extrapolation> beyond) {
   const auto contact = [&](bool secant) { return make_soft_contact(card, kind, 1.0, 0.0, 0.0, secant, beyond); };
   const SoftContact initial = contact(false);
   const SoftContact secant = contact(true);
@@ -37,7 +37,7 @@ std::vector<LawPoint> card_values(const LawCard& card, PairKind kind, const std:
     LawPoint p;
     p.delta = delta;
     p.where = place(law, delta);
-    p.refused = p.where == Where::beyond && initial.range.beyond == Beyond::error;
+    p.refused = p.where == Where::beyond && initial.range.beyond == Extrapolation::error;
     const ContactResponse<3> r = ask(initial, delta);
     const bool measured = p.where != Where::beyond;
     const auto quantity = [&](double value, const auto& interval, LawPart part) {
@@ -55,7 +55,7 @@ std::vector<LawPoint> card_values(const LawCard& card, PairKind kind, const std:
   return out;
 }
 
-std::string where_text(const LawPoint& point, Beyond beyond) {
+std::string where_text(const LawPoint& point, Extrapolation beyond) {
   switch (point.where) {
     case Where::no_contact:
       return "no contact";
@@ -65,7 +65,7 @@ std::string where_text(const LawPoint& point, Beyond beyond) {
       return "";
     default:
       if (point.refused) return "beyond range: refused";
-      return beyond == Beyond::clamp ? "beyond range: clamped" : "beyond range: extrapolated";
+      return beyond == Extrapolation::clamp ? "beyond range: clamped" : "beyond range: extrapolated";
   }
 }
 

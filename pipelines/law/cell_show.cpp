@@ -50,9 +50,9 @@ std::string plot_of(const CellCard& card, bool utf8) {
 
 }  // namespace
 
-std::string cells_text_for_people(const LawFile& file, bool utf8) {
+std::string show_cells(const LawFile& file, bool utf8) {
   const CellCard& card = *file.cells;
-  std::string text = wrapped("cell law " + file.path + ": coarse grains in cells of fines, matter without shells", 2);
+  std::string text = wrapped("cell law " + file.path + ": coarse grains in cells of fines, material without shells", 2);
   if (const std::string origin = origin_text(file.origin); !origin.empty()) text += wrapped(origin, 2);
   text += wrapped(
       fmt::format("measured on {} samples each, fines {}, largest over smallest {}, split at {} of the largest grain; "

@@ -12,7 +12,7 @@ struct DrawnSample {
   std::string name;
   std::vector<double> delta;
   std::vector<double> force;  ///< [N]
-  std::vector<double> error;  ///< NaN: not known; empty: none was given
+  std::vector<double> error;  ///< errors of the force; NaN: not known; empty: none was given
   std::optional<std::size_t> points;
   std::size_t tangential_points = 0;
 };
@@ -31,7 +31,7 @@ struct ExperimentSummary {
   SummaryHead head;
   std::vector<std::string> inputs;
   std::string relaxation;
-  std::string intervals;  ///< where the 95 % intervals come from
+  std::string intervals;  ///< origin of the 95 % intervals
   std::map<std::string, PairLawSummary> laws;
   std::vector<DrawnSample> experiment;
 };

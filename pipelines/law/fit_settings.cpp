@@ -6,9 +6,10 @@ namespace softgrain {
 
 namespace {
 
-/// In degrees. `plain` is another name of the key, without its unit, in scenes and command lines of earlier versions.
+/// Reads an angle in degrees. `plain` is another name of the key, without its unit, in scenes and command lines of
+/// earlier versions.
 std::optional<double> read_angle(const SceneTable& t, const std::string& key, const std::string& plain) {
-  if (t.has(plain) && t.has(key)) t.reject(plain, "is another name of " + key + ": give one of them");
+  if (t.has(plain) && t.has(key)) t.throw_error(plain, "is another name of " + key + ": give one of them");
   const std::string& given = t.has(plain) ? plain : key;
   if (!t.has(given)) return std::nullopt;
   return t.number(given, Unit::angle_degree, Range::positive());

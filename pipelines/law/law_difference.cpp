@@ -26,19 +26,19 @@ std::optional<Source> card_source(const LawCard& card, PairKind kind) {
   const PairLaw* law = card.find(kind);
   if (law == nullptr || !comparable(*law)) return std::nullopt;
   return Source{law->delta_min, law->delta_max, [&card, kind](const std::vector<double>& deltas) {
-                  return card_values(card, kind, deltas, Beyond::extrapolate);
+                  return card_values(card, kind, deltas, Extrapolation::extrapolate);
                 }};
 }
 
 std::optional<Source> table_source(const LawTable& table, PairKind kind, double solid_fraction) {
-  CrowdQuestion q;
+  MultiContactQuestion q;
   q.solid_fraction = solid_fraction;
   q.partner = kind == PairKind::soft_solid ? PartnerKind::plane : PartnerKind::soft;
-  q.beyond = Beyond::extrapolate;
-  const auto ask = [&table, q](const std::vector<double>& deltas) { return crowd_values(table, q, deltas); };
+  q.beyond = Extrapolation::extrapolate;
+  const auto ask = [&table, q](const std::vector<double>& deltas) { return multi_contact_values(table, q, deltas); };
   try {
     return Source{0.0, ask({}).overlap_max, [ask](const std::vector<double>& deltas) { return ask(deltas).points; }};
-  } catch (const BadInput&) {  // no comparable law, or none for soft neighbours
+  } catch (const InputError&) {  // no comparable law, or none for soft neighbours
     return std::nullopt;
   }
 }
@@ -48,12 +48,12 @@ std::optional<Source> source(const LawFile& file, PairKind kind, const LawFile& 
 }
 
 using Get = std::function<std::optional<Quantity>(const LawPoint&)>;
-struct Wanted {
+struct ComparedQuantity {
   const char* name;
   Get get;
 };
-const std::array<Wanted, 3>& wanted() {
-  static const std::array<Wanted, 3> all{
+const std::array<ComparedQuantity, 3>& compared_quantities() {
+  static const std::array<ComparedQuantity, 3> all{
       {{"F/(E Rs^2)", [](const LawPoint& p) { return std::optional<Quantity>(p.force); }},
        {"kt/(E Rs) initial", [](const LawPoint& p) { return p.tangential_initial; }},
        {"kt/(E Rs) secant", [](const LawPoint& p) { return p.tangential_secant; }}}};
@@ -94,7 +94,7 @@ void add(std::vector<LawDifference>& out, PairKind kind, const Source& a, const 
   const std::vector<double> deltas = even(low, high, points);
   const std::vector<LawPoint> of_a = a.values(deltas);
   const std::vector<LawPoint> of_b = b.values(deltas);
-  for (const Wanted& w : wanted()) {
+  for (const ComparedQuantity& w : compared_quantities()) {
     LawDifference d{to_string(kind), w.name, low, high, {}, 0.0, 0.0};
     for (std::size_t k = 0; k < deltas.size(); ++k) {
       const auto x = w.get(of_a[k]);
@@ -118,10 +118,11 @@ double compared_fraction(const LawFile& file, const LawFile& other) {
   const auto alike = std::find_if(entries.begin(), entries.end(), drawn_alike);
   if (alike != entries.end()) return alike->solid_fraction;
   if (other.card) return main_entry(*file.table).solid_fraction;
-  const double wanted = main_entry(*other.table).solid_fraction;
+  const double compared_quantities = main_entry(*other.table).solid_fraction;
   return std::min_element(entries.begin(), entries.end(),
-                          [wanted](const auto& x, const auto& y) {
-                            return std::abs(x.solid_fraction - wanted) < std::abs(y.solid_fraction - wanted);
+                          [compared_quantities](const auto& x, const auto& y) {
+                            return std::abs(x.solid_fraction - compared_quantities) <
+                                   std::abs(y.solid_fraction - compared_quantities);
                           })
       ->solid_fraction;
 }

@@ -14,7 +14,7 @@ struct DifferenceRow {
   Quantity a;
   Quantity b;
   double relative = 0.0;  ///< b/a - 1; NaN where a is zero
-  bool known = false;     ///< whether intervals say anything
+  bool known = false;     ///< whether at least one of both has an interval
   bool within = false;    ///< |b - a| below the root of the squares of both half intervals
 };
 
@@ -24,9 +24,9 @@ struct LawDifference {
   std::string quantity;  ///< "F/(E Rs^2)", "kt/(E Rs) initial", "kt/(E Rs) secant"
   double low = 0.0;      ///< common range of Delta
   double high = 0.0;
-  std::vector<DifferenceRow> rows;  ///< where at least one of the two is not zero
-  double root_mean_square = 0.0;    ///< of (b - a), over that of a
-  double largest = 0.0;             ///< of |b - a|, over the largest a
+  std::vector<DifferenceRow> rows;  ///< overlaps at which at least one of both is not zero
+  double root_mean_square = 0.0;    ///< root mean square of (b - a) over that of a
+  double largest = 0.0;             ///< largest |b - a| over the largest a
 };
 
 /// Every quantity that both files have, at `points` overlaps over the common range. A table stands for one plane

@@ -7,13 +7,13 @@
 #include <numeric>
 
 #include "calibrate/effect_components.h"
-#include "common/contact/crowd_from_table.h"
+#include "common/contact/multi_contact_from_table.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/core/statistics.h"
 #include "common/data/card_text.h"
-#include "common/data/crowd_replicates.h"
-#include "microsim/crowd_arrangements.h"
+#include "common/data/multi_contact_replicates.h"
+#include "microsim/multi_contact_arrangements.h"
 
 namespace softgrain {
 
@@ -39,7 +39,7 @@ class LogForces {
 
 // Of tables: a, b, delta, m0, m1, m2, then weight and exponent of every row. a and the weights are positive.
 bool is_logarithm(std::size_t k) {
-  const std::size_t planes = kCrowdParameters.size();
+  const std::size_t planes = kMultiContactParameters.size();
   return k == 0 || (k >= planes && (k - planes) % 2 == 0);
 }
 
@@ -49,7 +49,7 @@ std::vector<double> with_logarithms(std::vector<double> numbers) {
   return numbers;
 }
 
-CrowdLaw law_of_numbers(const CrowdLaw& law, std::vector<double> numbers) {
+MultiContactLaw law_of_numbers(const MultiContactLaw& law, std::vector<double> numbers) {
   constexpr double kLeastExponent = 1.01;
   for (std::size_t k = 0; k < numbers.size(); ++k)
     if (is_logarithm(k)) numbers[k] = std::exp(numbers[k]);
@@ -58,72 +58,74 @@ CrowdLaw law_of_numbers(const CrowdLaw& law, std::vector<double> numbers) {
   return with_numbers(law, numbers);
 }
 
-/// Of neighbours of all kinds on all sides.
-std::vector<double> crowd_probes(const CrowdLaw& law) {
-  const CrowdModel model = crowd_model(law);
+/// Forces on the first of several neighbours around the soft particle: for each kind of neighbour, two arrangements and
+/// the overlaps kProbes.
+std::vector<double> multi_contact_probes(const MultiContactLaw& law) {
+  const MultiContactModel model = multi_contact_model(law);
   std::vector<double> out;
   for (const PartnerKind kind : {PartnerKind::plane, PartnerKind::solid, PartnerKind::soft})
     for (const Arrangement around : {Arrangement::tetrahedron, Arrangement::random_8}) {
-      std::vector<CrowdPartner> partners;
+      std::vector<MultiContactPartner> partners;
       for (const Vec3& d : directions_of(around)) partners.push_back({kind, kind == PartnerKind::plane ? 0.0 : 1.0, d});
       for (const double h : kProbes)
-        out.push_back(crowd_forces(model, partners, std::vector<double>(partners.size(), h)).front());
+        out.push_back(multi_contact_forces(model, partners, std::vector<double>(partners.size(), h)).front());
     }
   return out;
 }
 
-const CrowdLaw& drawn_law_of(const LawTableEntry& entry, Crowd form) {
-  const CrowdLaw* law = entry.find(form);
-  if (law == nullptr) throw BadInput("law table: no law of the form \"" + to_string(form) + "\"");
+const MultiContactLaw& drawn_law_of(const LawTableEntry& entry, LawForm form) {
+  const MultiContactLaw* law = entry.find(form);
+  if (law == nullptr) throw InputError("law table: no law of the form \"" + to_string(form) + "\"");
   return *law;
 }
 
 LawDraws table_draws(const LawSources& sources, const NamedLaws& named, const MacroSpec& spec, double fraction,
                      std::int64_t count) {
-  const Crowd form = named.form;
+  const LawForm form = named.form;
   LawTable table = *sources.table;
   read_replicates(table, sources.table_file);
   const std::size_t kept = replicate_count(table, form);
   if (kept == 0)
-    throw BadInput(
+    throw InputError(
         fmt::format("bands: {} keeps no refits of its {} law: the .h5 beside it holds them; \"softgrain "
-                    "calibrate crowd.h5\" makes both from the measurements",
+                    "calibrate multi_contact.h5\" makes both from the measurements",
                     sources.table_file, to_string(form)));
   if (static_cast<std::size_t>(count) > kept)
-    throw BadInput(
+    throw InputError(
         fmt::format("bands = {}: {} keeps {} refits of its {} law; allowed: at most {}, or more refits by "
-                    "\"softgrain calibrate crowd.h5 --set replicates=...\"",
+                    "\"softgrain calibrate multi_contact.h5 --set replicates=...\"",
                     count, sources.table_file, kept, to_string(form), kept));
   std::string ignored;
   const LawTableEntry entry = law_entry(sources, fraction, ignored);
-  const CrowdLaw best = drawn_law_of(entry, form);
+  const MultiContactLaw best = drawn_law_of(entry, form);
   LawDraws out;
   out.law = named;
-  out.numbers = with_logarithms(crowd_numbers(best));
+  out.numbers = with_logarithms(multi_contact_numbers(best));
   // Refits to few packings scatter too little.
   const double factor = factor_of_several(entry.packings);
   LawSources drawn = sources;
   for (std::size_t r = 0; r < static_cast<std::size_t>(count); ++r) {
     drawn.table = replicate_of(table, form, r);
-    out.draws.push_back(with_logarithms(crowd_numbers(drawn_law_of(law_entry(drawn, fraction, ignored), form))));
+    out.draws.push_back(
+        with_logarithms(multi_contact_numbers(drawn_law_of(law_entry(drawn, fraction, ignored), form))));
     for (std::size_t k = 0; k < out.numbers.size(); ++k)
       out.draws.back()[k] = out.numbers[k] + factor * (out.draws.back()[k] - out.numbers[k]);
   }
   out.origin = fmt::format("{} refits to packings drawn with replacement", count);
   out.discrepancy = form_discrepancy(best);
   out.discrepancy_origin = "configurations that the fit did not see";
-  const LogForces log_forces(crowd_probes(best));
-  out.crowd_forces = [=](const std::vector<double>& numbers, const std::vector<PressedNeighbours>& states) {
-    const CrowdModel model = crowd_model(law_of_numbers(best, numbers));
+  const LogForces log_forces(multi_contact_probes(best));
+  out.multi_contact_forces = [=](const std::vector<double>& numbers, const std::vector<PressedNeighbours>& states) {
+    const MultiContactModel model = multi_contact_model(law_of_numbers(best, numbers));
     std::vector<double> sums;
     for (const PressedNeighbours& s : states) {
-      const std::vector<double> forces = softgrain::crowd_forces(model, s.partners, s.overlap);
+      const std::vector<double> forces = softgrain::multi_contact_forces(model, s.partners, s.overlap);
       sums.push_back(std::accumulate(forces.begin(), forces.end(), 0.0));
     }
     return sums;
   };
   out.effects = [=](const std::vector<double>& numbers) {
-    return log_forces(crowd_probes(law_of_numbers(best, numbers)));
+    return log_forces(multi_contact_probes(law_of_numbers(best, numbers)));
   };
   for (const FormOffset& o : form_offsets(best)) {
     std::vector<double> direction(out.numbers.size(), 0.0);
@@ -134,7 +136,7 @@ LawDraws table_draws(const LawSources& sources, const NamedLaws& named, const Ma
   out.with = [=](const std::vector<double>& numbers) {
     LawSources one = sources;
     LawTableEntry changed = entry;
-    for (CrowdLaw& law : changed.laws)
+    for (MultiContactLaw& law : changed.laws)
       if (law.form == form) law = law_of_numbers(best, numbers);
     one.table = LawTable{};
     one.table->entries = {changed};
@@ -190,8 +192,8 @@ std::vector<std::vector<double>> pair_draws(const PairLaw& p, std::int64_t count
   std::vector<double> covariance = p.covariance;
   if (covariance.size() != kPairNumbers * kPairNumbers ||
       std::all_of(covariance.begin(), covariance.end(), [](double c) { return c == 0.0; }))
-    throw BadInput("bands: the law card has no covariance of its " + to_string(p.kind) +
-                   " law: calibrate it from measurements of several packings (\"softgrain calibrate\")");
+    throw InputError("bands: the law card has no covariance of its " + to_string(p.kind) +
+                     " law: calibrate it from measurements of several packings (\"softgrain calibrate\")");
   if (p.band_origin != kFromResiduals && p.packings > 1) {
     const double students = student95(p.packings - 1) / kNormal95;  // of few packings, as in intervals
     for (double& c : covariance) c *= students * students;
@@ -243,10 +245,11 @@ LawDraws card_draws(const LawSources& sources, const NamedLaws& named, const Mac
 
 }  // namespace
 
-double form_discrepancy(const CrowdLaw& law) {
+double form_discrepancy(const MultiContactLaw& law) {
   std::array<std::vector<double>, 2> squares;  // out of proportion, in proportion
   for (const ConfigurationError& e : law.errors)
-    if (e.use == CrowdUse::predicted) squares[e.in_proportion ? 1 : 0].push_back(e.error * e.error - e.noise * e.noise);
+    if (e.use == MultiContactUse::predicted)
+      squares[e.in_proportion ? 1 : 0].push_back(e.error * e.error - e.noise * e.noise);
   if (squares[0].empty() && squares[1].empty()) return std::isfinite(law.error_cross) ? law.error_cross : 0.0;
   double worst = 0.0;
   for (const std::vector<double>& path : squares)
@@ -254,10 +257,10 @@ double form_discrepancy(const CrowdLaw& law) {
   return std::sqrt(worst);
 }
 
-std::vector<FormOffset> form_offsets(const CrowdLaw& law) {
+std::vector<FormOffset> form_offsets(const MultiContactLaw& law) {
   std::vector<double> onsets;
   for (const ConfigurationError& e : law.errors)
-    if (e.use == CrowdUse::predicted && e.offset) onsets.push_back(e.offset->onset * e.offset->onset);
+    if (e.use == MultiContactUse::predicted && e.offset) onsets.push_back(e.offset->onset * e.offset->onset);
   std::vector<FormOffset> out;
   if (const double force = form_discrepancy(law); force > 0.0) out.push_back({force, 0.0});
   if (const double onset = std::sqrt(mean_error(onsets).mean); onset > 0.0) out.push_back({0.0, onset});
@@ -267,8 +270,8 @@ std::vector<FormOffset> form_offsets(const CrowdLaw& law) {
 LawDraws law_draws(const LawSources& sources, const NamedLaws& law, const MacroSpec& spec, double contents_fraction,
                    std::int64_t count) {
   if (sources.cells)
-    throw BadInput("bands: the card of a cell law keeps no refits; runs with cells have no bands: leave the key out");
-  const bool card = sources.card && (law.form == Crowd::pair || !sources.table);
+    throw InputError("bands: the card of a cell law keeps no refits; runs with cells have no bands: leave the key out");
+  const bool card = sources.card && (law.form == LawForm::pair || !sources.table);
   return card ? card_draws(sources, law, spec, count) : table_draws(sources, law, spec, contents_fraction, count);
 }
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "common/core/error.h"
-#include "common/data/crowd_replicates.h"
+#include "common/data/multi_contact_replicates.h"
 #include "common/io/scene.h"
 #include "pipelines/law/law_file_kind.h"
 
@@ -16,7 +16,7 @@ std::string file_in(const std::string& path) {
   if (!std::filesystem::is_directory(path, ignored)) return path;
   for (const char* name : {"law_table.toml", "law.toml", "cell_law.toml"})
     if (std::filesystem::exists(path + "/" + name, ignored)) return path + "/" + name;
-  throw BadInput(path + ": a directory without law_table.toml, law.toml or cell_law.toml");
+  throw InputError(path + ": a directory without law_table.toml, law.toml or cell_law.toml");
 }
 
 LawOrigin read_origin(const SceneTable& root) {
@@ -30,7 +30,7 @@ LawFile load_law_file(const std::string& given) {
   LawFile out;
   out.path = file_in(given);
   if (std::filesystem::path(out.path).extension() == ".h5")
-    throw BadInput(out.path + ": give the card or table itself, the .toml beside it");
+    throw InputError(out.path + ": give the card or table itself, the .toml beside it");
   const Scene text = Scene::load(out.path);
   const SceneTable root = text.root();
   const LawFileKind kind = law_file_kind(out.path);

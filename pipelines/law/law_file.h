@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/data/cell_card.h"
-#include "common/data/crowd_law.h"
 #include "common/data/law_card.h"
+#include "common/data/multi_contact_law.h"
 
 namespace softgrain::law {
 
@@ -22,15 +22,15 @@ struct LawOrigin {
 
 struct LawFile {
   std::string path;
-  std::optional<LawCard> card;    ///< with bands and measured curve when the .h5 is beside it
-  std::optional<LawTable> table;  ///< with replicates when the .h5 is beside it
+  std::optional<LawCard> card;    ///< law card, with bands and measured curve when the .h5 is beside it
+  std::optional<LawTable> table;  ///< law table, with replicates when the .h5 is beside it
   std::optional<CellCard> cells;
   LawOrigin origin;
 };
 
 /// Reads a card, a table, a card of the cell law, or those of a run directory (law_table.toml before law.toml and
-/// cell_law.toml). Throws BadInput with file and
-/// line for wrong content, FileTrouble for files.
+/// cell_law.toml). Throws InputError with file and
+/// line for wrong content, IoError for files.
 LawFile load_law_file(const std::string& path);
 
 /// n >= 2 values evenly spread over [low, high], the ends exact.

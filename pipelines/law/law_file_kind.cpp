@@ -15,12 +15,12 @@ LawFileKind law_file_kind(const std::string& path) {
   if (file.root().has("entry")) return LawFileKind::table;
   if (file.root().has("cell")) return LawFileKind::cells;
   if (is_material_card(path))
-    throw BadInput(path +
-                   ": the card of a whole material, whose bodies no scene has: take the card of the cell law "
-                   "that its recipe left beside it");
-  throw BadInput(path +
-                 ": neither a law card (it has no [[pair]]) nor a law table (it has no [[entry]]) nor a card of "
-                 "the cell law (it has no [cell])");
+    throw InputError(path +
+                     ": the card of a whole material, whose bodies no scene has: take the card of the cell law "
+                     "that its recipe left beside it");
+  throw InputError(path +
+                   ": neither a law card (it has no [[pair]]) nor a law table (it has no [[entry]]) nor a card of "
+                   "the cell law (it has no [cell])");
 }
 
 }  // namespace softgrain

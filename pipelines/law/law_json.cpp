@@ -59,15 +59,15 @@ json slide_json(const SlideLaw& slide) {
     put(out, "rolling", slide.rolling);
     put(out, "rolling_friction", slide.rolling_friction);
   }
-  if (slide.retreats) put(out, "retreat", slide.retreat);
+  if (slide.has_unloading) put(out, "retreat", slide.unloading);
   return out;
 }
 
-json crowd_json(const CrowdLaw& law) {
+json multi_contact_json(const MultiContactLaw& law) {
   json out = verdict_json(law);
   out["reason"] = law.reason;
   out["partners"] = json::array();
-  for (const CrowdParameterName& p : kCrowdParameters) put(out, p.key, law.*p.estimate);
+  for (const MultiContactParameterName& p : kMultiContactParameters) put(out, p.key, law.*p.estimate);
   for (const PartnerRow& row : law.partners) {
     json one{
         {"kind", to_string(row.kind)}, {"ratio", row.ratio}, {"overlap_max", row.overlap_max}, {"error", row.error}};
@@ -80,7 +80,7 @@ json crowd_json(const CrowdLaw& law) {
 
 }  // namespace
 
-json verdict_json(const CrowdLaw& law) {
+json verdict_json(const MultiContactLaw& law) {
   return {{"form", to_string(law.form)},
           {"status", to_string(law.status)},
           {"error_fitted", json_of(law.error_fitted)},
@@ -103,11 +103,11 @@ json law_table_json(const LawTable& table) {
     one["main"] = &e == &main_entry(table);
     one["relaxation"] = e.relaxation;
     one["beyond"] = to_string(e.beyond);
-    put(one, "retreat", e.retreat);
+    put(one, "retreat", e.unloading);
     one["slides"] = {
         {"plane", slide_json(e.slide_plane)}, {"solid", slide_json(e.slide_solid)}, {"soft", slide_json(e.slide_soft)}};
     one["laws"] = json::array();
-    for (const CrowdLaw& law : e.laws) one["laws"].push_back(crowd_json(law));
+    for (const MultiContactLaw& law : e.laws) one["laws"].push_back(multi_contact_json(law));
     out["entries"].push_back(std::move(one));
   }
   return out;

@@ -10,8 +10,8 @@
 
 #include "common/core/limits.h"
 #include "common/data/cell_card.h"
-#include "common/data/crowd_law.h"
 #include "common/data/law_card.h"
+#include "common/data/multi_contact_law.h"
 #include "common/io/json_record.h"
 
 namespace softgrain {
@@ -35,7 +35,7 @@ struct LawNumbers {
   struct PerDegree {
     Estimate a;
     Estimate c;
-    double angle_deg = 0.0;  ///< that it was measured over
+    double angle_deg = 0.0;  ///< angle over which it was measured
     std::string meaning;     ///< initial slope or secant
   };
   std::optional<PerDegree> per_degree;
@@ -71,7 +71,7 @@ void fields(auto&& visit, Of<LawParts> auto& s) {
 struct PairLawSummary {
   LawStatus status = LawStatus::not_run;
   std::string reason;
-  LawParts parts;  ///< in N (times E Rs^2) and N/m (times E Rs)
+  LawParts parts;  ///< laws in N (times E Rs^2) and N/m (times E Rs)
   LawParts dimensionless;
   std::array<double, 2> delta_range{};
   double max_overlap = 0.0;
@@ -94,7 +94,7 @@ void fields(auto&& visit, Of<PairLawSummary> auto& s) {
   visit("quality", s.quality);
 }
 
-/// By the kind of contact.
+/// Laws of a card, by the kind of contact.
 std::map<std::string, PairLawSummary> summary_of(const LawCard& card);
 
 /// { "entries": [ { "solid_fraction", "packings", "best", "volume_max", "overlap_max", "beyond", "retreat", "slides",
@@ -105,9 +105,9 @@ nlohmann::json law_table_json(const LawTable& table);
 /// Numbers with { "value", "standard_error", "interval" }, ranges, and what they were measured on; dimensionless.
 nlohmann::json cell_law_json(const CellCard& card);
 
-/// What every list of laws says of one: form, status, errors.
-nlohmann::json verdict_json(const CrowdLaw& law);
-/// And of an entry: which packings, the best form, up to where it was measured.
+/// What every list of laws says of a law: form, status, errors.
+nlohmann::json verdict_json(const MultiContactLaw& law);
+/// What every list of laws says of an entry: which packings, the best form, up to where it was measured.
 nlohmann::json verdict_json(const LawTableEntry& entry);
 
 }  // namespace softgrain

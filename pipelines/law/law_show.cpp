@@ -122,7 +122,7 @@ std::string origin_text(const LawOrigin& o) {
   return o.command.empty() ? text : text + ": " + o.command;
 }
 
-std::string spec_text_for_people(const SoftParticleSpec& s) {
+std::string show_spec(const SoftParticleSpec& s) {
   const auto known = [](double x) { return is_known(x) ? number(x) : std::string("?"); };
   std::string text = fmt::format("Rs = {} m, E = {} Pa, nu = {}, mu = {}, {} kg/m^3; ", number(s.shell_radius),
                                  number(s.youngs_modulus), known(s.poisson_ratio), known(s.friction), known(s.density));
@@ -133,10 +133,10 @@ std::string spec_text_for_people(const SoftParticleSpec& s) {
                             s.placement == Placement::voids ? " in voids" : "");
 }
 
-std::string card_text_for_people(const LawFile& file, bool utf8) {
+std::string show_card(const LawFile& file, bool utf8) {
   const LawCard& card = *file.card;
   std::string text = wrapped(fmt::format("{}: law card, {}", file.path, measured_text(card)), 2);
-  text += wrapped("  " + spec_text_for_people(card.spec), 2);
+  text += wrapped("  " + show_spec(card.spec), 2);
   const std::string origin = origin_text(file.origin);
   if (!origin.empty()) text += wrapped("  " + origin, 2);
   for (const std::string& note : card.notes) text += wrapped("  note: " + note, 4);
@@ -150,8 +150,8 @@ std::string card_text_for_people(const LawFile& file, bool utf8) {
 }
 
 std::string law_text(const LawFile& file, bool utf8) {
-  if (file.cells) return cells_text_for_people(file, utf8);
-  return file.card ? card_text_for_people(file, utf8) : table_text_for_people(file, utf8);
+  if (file.cells) return show_cells(file, utf8);
+  return file.card ? show_card(file, utf8) : show_table(file, utf8);
 }
 
 }  // namespace softgrain::law

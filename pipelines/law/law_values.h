@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "common/data/crowd_law.h"
 #include "common/data/law_band.h"
-#include "microsim/crowd_arrangements.h"
+#include "common/data/multi_contact_law.h"
+#include "microsim/multi_contact_arrangements.h"
 
 namespace softgrain::law {
 
@@ -35,19 +35,19 @@ struct LawPoint {
   Quantity force;                                ///< F/(E R^2)
   Quantity stiffness;                            ///< dF/dDelta = kn/(E R)
   std::optional<Quantity> tangential_initial{};  ///< kt/(E R), initial slope; empty: not fitted
-  std::optional<Quantity> tangential_secant{};   ///< secant
-  std::vector<double> forces{};                  ///< crowds: on every neighbour
-  double volume = 0.0;                           ///< crowds: equivalent volume S
-  double friction_limit = 0.0;                   ///< crowds: mu F, over E R^2
+  std::optional<Quantity> tangential_secant{};   ///< kt/(E R), secant; empty: not fitted
+  std::vector<double> forces{};                  ///< multi-contact laws: on every neighbour
+  double volume = 0.0;                           ///< multi-contact laws: equivalent volume S
+  double friction_limit = 0.0;                   ///< multi-contact laws: mu F, over E R^2
 };
 
-/// The law of a card at overlaps Delta. `beyond` instead of what the card says. Throws BadInput when the card has no
+/// The law of a card at overlaps Delta. `beyond` instead of what the card says. Throws InputError when the card has no
 /// usable law of this kind.
 std::vector<LawPoint> card_values(const LawCard& card, PairKind kind, const std::vector<double>& deltas,
-                                  std::optional<Beyond> beyond = std::nullopt);
+                                  std::optional<Extrapolation> beyond = std::nullopt);
 
 /// What a law of a table is asked: neighbours of one kind around a soft particle, all pressed in by Delta = h/Rs.
-struct CrowdQuestion {
+struct MultiContactQuestion {
   WantedForm form{};
   Arrangement arrangement = Arrangement::one;
   PartnerKind partner = PartnerKind::plane;
@@ -55,23 +55,24 @@ struct CrowdQuestion {
   double shallow = 0.5;                    ///< beside-five: share of the overlap that the first neighbour gets
   std::optional<double> solid_fraction{};  ///< empty: that of the main entry
   RangePolicy range = RangePolicy::reject;
-  std::optional<Beyond> beyond{};
+  std::optional<Extrapolation> beyond{};
 };
 
-struct CrowdAnswer {
-  Crowd form = Crowd::pair;
-  LawTableEntry entry;             ///< at the solid fraction
+struct MultiContactAnswer {
+  LawForm form = LawForm::pair;
+  LawTableEntry entry;             ///< entry of the table at the solid fraction
   std::string remark;              ///< clamped solid fraction, ratio that no row has; empty: none
   double overlap_max = 0.0;        ///< h/Rs up to which single contacts of this kind were measured
-  std::size_t replicates = 0;      ///< behind the intervals; 0: there are none
+  std::size_t replicates = 0;      ///< number of replicates behind the intervals; 0: there are none
   std::vector<LawPoint> points{};  ///< force, stiffness and tangential (secant) of the first neighbour
 };
 
-/// Forces and stiffnesses of a law of a table. Throws BadInput for a solid fraction that was
+/// Forces and stiffnesses of a law of a table. Throws InputError for a solid fraction that was
 /// not measured (policy reject), no usable law of the form.
-CrowdAnswer crowd_values(const LawTable& table, const CrowdQuestion& question, const std::vector<double>& deltas);
+MultiContactAnswer multi_contact_values(const LawTable& table, const MultiContactQuestion& question,
+                                        const std::vector<double>& deltas);
 
 /// "no contact", "below range", "beyond range: extrapolated"...; empty inside.
-std::string where_text(const LawPoint& point, Beyond beyond);
+std::string where_text(const LawPoint& point, Extrapolation beyond);
 
 }  // namespace softgrain::law

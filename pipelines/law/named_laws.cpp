@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "common/contact/crowd_from_table.h"
 #include "common/contact/law_file.h"
+#include "common/contact/multi_contact_from_table.h"
 #include "common/contact/soft_contact_from_card.h"
 #include "common/core/error.h"
 #include "common/data/card_text.h"
@@ -25,11 +25,11 @@ std::int32_t law_of(const System3& s, const ContactRecord<3>& c) {
   return s.laws.index(material[static_cast<std::size_t>(c.i)], material[static_cast<std::size_t>(c.j)]);
 }
 
-/// What the crowd laws of a run meet at its end that was not measured: single overlaps beyond the end of the table,
-/// ratios that no row covers.
+/// What the multi-contact laws of a run meet at its end that was not measured: single overlaps beyond the end of the
+/// table, ratios that no row covers.
 class RangeCheck {
  public:
-  RangeCheck(const LawTableEntry& entry, Crowd form) : entry_(entry), law_(*entry.find(form)) {}
+  RangeCheck(const LawTableEntry& entry, LawForm form) : entry_(entry), law_(*entry.find(form)) {}
 
   /// Contacts of partners whose size the table does not have.
   [[nodiscard]] std::string note(const System3& s) const {
@@ -59,7 +59,7 @@ class RangeCheck {
   [[nodiscard]] Counts count(const System3& s) const {
     Counts out;
     for (const ContactRecord<3>& c : contact_records(s)) {
-      if (!is_crowd_law(s.laws.law(law_of(s, c)))) continue;
+      if (!is_multi_contact_law(s.laws.law(law_of(s, c)))) continue;
       ++out.all;
       const auto& p = s.particles;
       const double ri = p.sphere[static_cast<std::size_t>(c.i)].r;
@@ -81,17 +81,17 @@ class RangeCheck {
     return out;
   }
 
-  static constexpr std::int32_t kSoftMaterial = 1;  ///< of make_law_system
-  static bool is_crowd_law(const AnyLaw& law) {
+  static constexpr std::int32_t kSoftMaterial = 1;  ///< number of the soft material in make_law_system()
+  static bool is_multi_contact_law(const AnyLaw& law) {
     return std::visit([]<class Law>(const Law&) { return law_serves<Law, 3>() && !law_serves<Law, 2>(); }, law);
   }
 
   LawTableEntry entry_;
-  CrowdLaw law_;
+  MultiContactLaw law_;
 };
 
 /// A short name of all numbers of a law, so that a run that goes on does not mistake another law for this one.
-std::string tag_of(const LawTableEntry& entry, const LawSources& sources, Crowd form) {
+std::string tag_of(const LawTableEntry& entry, const LawSources& sources, LawForm form) {
   return short_hash(fmt::format("{}{} {} {} {} {:a}", sources.rolling ? "" : "rolls freely ",
                                 sources.friction.value_or(-1.0), sources.unloading, numbers_of(entry, form),
                                 to_string(sources.beyond.value_or(entry.beyond)), entry.volume_max));
@@ -101,14 +101,14 @@ std::string tag_of(const LawTableEntry& entry, const LawSources& sources, Crowd 
 void require_same_material(const LawTableEntry& entry, const MacroSpec& spec) {
   const SoftParticleSpec& measured = entry.spec;
   if (measured.poisson_ratio != spec.poisson_ratio || measured.friction != spec.friction)
-    throw BadInput(
+    throw InputError(
         fmt::format("law table: it was measured with nu = {}, mu = {} and serves no grains of nu = {}, mu = {}: "
                     "measure a table for "
                     "them",
                     measured.poisson_ratio, measured.friction, spec.poisson_ratio, spec.friction));
 }
 
-/// Of everything that forces depend on, however it came about.
+/// Hash of everything that forces depend on, however it came about.
 std::string hash_of(const SoftLaws& l) {
   return short_hash(laws_text({{"soft-solid", l.soft_solid},
                                {"solid-soft", l.solid_soft},
@@ -116,7 +116,7 @@ std::string hash_of(const SoftLaws& l) {
                                {"soft-soft", l.soft_soft}}));
 }
 
-LawIdentity identity_of(Crowd form, double solid_fraction, const MacroSpec& spec, const SoftParticleSpec& measured,
+LawIdentity identity_of(LawForm form, double solid_fraction, const MacroSpec& spec, const SoftParticleSpec& measured,
                         const SoftLaws& laws) {
   const auto known = [](double x) { return is_known(x) ? std::optional(x) : std::nullopt; };
   return {form,         solid_fraction, spec.youngs_modulus, known(measured.poisson_ratio), known(measured.friction),
@@ -124,9 +124,9 @@ LawIdentity identity_of(Crowd form, double solid_fraction, const MacroSpec& spec
 }
 
 /// A branch that was not measured is none; what stands in for other numbers that were not is said.
-std::string stand_ins(const LawTableEntry& entry, const LawSources& sources) {
-  if (sources.unloading && !entry.retreat_measured)
-    throw BadInput(
+std::string assumed_values(const LawTableEntry& entry, const LawSources& sources) {
+  if (sources.unloading && !entry.unloading_measured)
+    throw InputError(
         fmt::format("unloading = true: unloading was not measured at solid fraction {:.4f} of the law table: "
                     "measure it (path = \"unload\"), or leave it out",
                     entry.solid_fraction));
@@ -181,9 +181,10 @@ void read_table_choices(const SceneTable& t, LawSources& out) {
 std::vector<WantedForm> read_forms(const SceneTable& law, bool has_table) {
   std::vector<WantedForm> forms;
   for (const std::string& word : law.texts("forms")) {
-    const auto form = from_word<Crowd>(word);
-    if (!form) law.reject("forms", "\"" + word + "\" is none of pair, bag, directional");
-    if (form != Crowd::pair && !has_table) law.reject("forms", "the " + word + " law needs a law table (key table)");
+    const auto form = parse_enum<LawForm>(word);
+    if (!form) law.throw_error("forms", "\"" + word + "\" is none of pair, isotropic, directional");
+    if (form != LawForm::pair && !has_table)
+      law.throw_error("forms", "the " + word + " law needs a law table (key table)");
     forms.emplace_back(form);
   }
   return forms;
@@ -195,8 +196,8 @@ void require_fraction(const SceneTable& t, const LawSources& sources) {
   std::string ignored;
   try {
     (void)law_entry(sources, 0.0, ignored);
-  } catch (const BadInput& e) {
-    t.mistake("solid_fraction", e.what());
+  } catch (const InputError& e) {
+    t.add_error("solid_fraction", e.what());
   }
 }
 
@@ -231,29 +232,30 @@ NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const Macro
     remark += fmt::format("{}the law was taken at solid fraction {:.4f}, the contents of the twins have {:.4f}",
                           remark.empty() ? "" : "; ", entry.solid_fraction, contents_fraction);
   require_same_material(entry, spec);
-  const std::string stands_in = stand_ins(entry, sources);
+  const std::string stands_in = assumed_values(entry, sources);
   remark += (remark.empty() || stands_in.empty() ? "" : "; ") + stands_in;
-  const Crowd form = wanted.value_or(entry.best);
-  CrowdChoices choices;
+  const LawForm form = wanted.value_or(entry.best);
+  MultiContactChoices choices;
   choices.form = form;
   choices.modulus = spec.youngs_modulus;
   choices.friction = sources.friction.value_or(-1.0);
   choices.unloading = sources.unloading;
   choices.rolling = sources.rolling;
   choices.beyond = sources.beyond;
-  const CrowdLaws laws = make_crowd_laws(entry, choices);
+  const MultiContactLaws laws = make_multi_contact_laws(entry, choices);
   choices.friction = spec.wall_friction;
   choices.wall_friction = spec.wall_friction;
   const std::string unloads =
       sources.unloading
           ? ""
-          : no_unloading_text(spec, entry.retreat_measured
+          : no_unloading_text(spec, entry.unloading_measured
                                         ? fmt::format("the {} law as it is taken (unloading = true takes the branch "
                                                       "that was measured)",
                                                       to_string(form))
                                         : fmt::format("the {} law", to_string(form)));
   const RangeCheck check(entry, form);
-  const SoftLaws soft{laws.soft_solid, laws.solid_soft, make_crowd_laws(entry, choices).soft_plane, laws.soft_soft};
+  const SoftLaws soft{laws.soft_solid, laws.solid_soft, make_multi_contact_laws(entry, choices).soft_plane,
+                      laws.soft_soft};
   return {to_string(form),
           form,
           soft,
@@ -269,15 +271,15 @@ NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const Macro
 }
 
 NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::string& name,
-                      std::optional<Beyond> beyond) {
+                      std::optional<Extrapolation> beyond) {
   const auto contact = [&](PairKind kind) {
     return make_soft_contact(card, kind, spec.youngs_modulus, spec.friction, 0.0, spec.kt_secant, beyond);
   };
   const SoftLaws laws = pair_soft_laws(contact(PairKind::soft_solid), contact(PairKind::soft_soft), spec.wall_friction);
   return {name,
-          Crowd::pair,
+          LawForm::pair,
           laws,
-          identity_of(Crowd::pair, 0.0, spec, card.spec, laws),
+          identity_of(LawForm::pair, 0.0, spec, card.spec, laws),
           beyond ? to_string(*beyond) : "",
           card_note(card, spec)};
 }
@@ -295,19 +297,19 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
     out.files.push_back(out.table_file);
     out.text += read_text(out.files.back());
   }
-  if (!out.card && !out.table) law.reject("table", "give a law table, a law card, or both");
+  if (!out.card && !out.table) law.throw_error("table", "give a law table, a law card, or both");
   if (law.has("forms")) out.forms = read_forms(law, out.table.has_value());
-  if (!out.table) out.forms = {Crowd::pair};
+  if (!out.table) out.forms = {LawForm::pair};
   read_table_choices(law, out);
-  if (!out.table && law.has("form")) law.mistake("form", "goes with a law table; a card holds the pair law alone");
+  if (!out.table && law.has("form")) law.add_error("form", "goes with a law table; a card holds the pair law alone");
   for (const char* key : kTableKeys)
-    if (!out.table && law.has(key)) law.mistake(key, "goes with a law table (key table)");
+    if (!out.table && law.has(key)) law.add_error(key, "goes with a law table (key table)");
   require_fraction(law, out);
   return out;
 }
 
 void read_law_choices(const SceneTable& root, LawSources& out) {
-  out.forms = {from_word<Crowd>(root.choice("form", {"pair", "bag", "directional", "cell", "best"}, "best"))};
+  out.forms = {parse_enum<LawForm>(root.choice("form", {"pair", "isotropic", "directional", "cell", "best"}, "best"))};
   read_table_choices(root, out);
 }
 
@@ -319,11 +321,12 @@ LawSources read_scene_law(const SceneTable& root, const std::string& path) {
   const LawFileKind kind = law_file_kind(path);
   const bool asks_cells = root.has("form") && root.text("form") == "cell";
   if (asks_cells && kind != LawFileKind::cells)
-    root.mistake("form", "\"cell\" goes with a card of the cell law, and " + path + " is a law of soft particles");
+    root.add_error("form", "\"cell\" goes with a card of the cell law, and " + path + " is a law of soft particles");
   if (kind == LawFileKind::cells) {
-    if (!asks_cells && root.has("form")) root.mistake("form", path + " is a card of the cell law: \"cell\"");
+    if (!asks_cells && root.has("form")) root.add_error("form", path + " is a card of the cell law: \"cell\"");
     for (const char* key : {"solid_fraction", "range", "mu", "unloading", "rolling", "beyond"})
-      if (root.has(key)) root.mistake(key, "goes with laws of soft particles; " + path + " is a card of the cell law");
+      if (root.has(key))
+        root.add_error(key, "goes with laws of soft particles; " + path + " is a card of the cell law");
     out.cells = read_cell_card(path);
     return out;
   }
@@ -335,9 +338,9 @@ LawSources read_scene_law(const SceneTable& root, const std::string& path) {
   }
   out.card = load_card(path);
   const auto refuse = [&](const char* key) {
-    root.mistake(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
+    root.add_error(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
   };
-  if (root.has("form") && out.forms.front() != Crowd::pair) refuse("form");
+  if (root.has("form") && out.forms.front() != LawForm::pair) refuse("form");
   for (const char* key : kTableKeys)
     if (root.has(key)) refuse(key);
   return out;
@@ -363,7 +366,7 @@ void add_law_texts(const NamedLaws& law, const System3& end, MacroCurve& curve) 
 std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec, double contents_fraction) {
   std::vector<NamedLaws> laws;
   for (const WantedForm form : sources.forms) {
-    if (form == Crowd::pair && sources.card)
+    if (form == LawForm::pair && sources.card)
       laws.push_back(pair_law_of(*sources.card, spec, "pair", sources.beyond));
     else
       laws.push_back(table_law_of(sources, form, spec, contents_fraction));

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "common/data/cell_card.h"
-#include "common/data/crowd_law.h"
 #include "common/data/law_card.h"
 #include "common/data/macro_result.h"
+#include "common/data/multi_contact_law.h"
 #include "common/io/scene.h"
 #include "macrosim/macro_spec.h"
 #include "macrosim/macro_system.h"
@@ -18,20 +18,21 @@
 namespace softgrain {
 
 struct NamedLaws {
-  std::string name;  ///< engine of the curves: "law" or "pair", "bag", "directional"
-  Crowd form = Crowd::pair;
+  std::string name;  ///< engine of the curves: "law" or "pair", "isotropic", "directional"
+  LawForm form = LawForm::pair;
   SoftLaws laws;
   LawIdentity identity{};
   std::string tag;  ///< changes with the numbers of the law: part of the name of checkpoints; empty: none
-  /// What to say about the end of a run (contacts that no measurement covers); empty text when nothing; may be empty.
+  /// Text about the end of a run: contacts that no measurement covers. Empty when there is nothing to say; the function
+  /// may be empty.
   std::function<std::string(const System3&)> note;
-  /// The same of what may make the result wrong: contacts deeper than any that was measured.
+  /// Text about what may make the result wrong: contacts deeper than any that was measured.
   std::function<std::string(const System3&)> warning{};
 };
 
-/// The pair law of a card; `beyond` instead of what the card says. Throws BadInput when the card has no usable law.
+/// The pair law of a card; `beyond` instead of what the card says. Throws InputError when the card has no usable law.
 NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::string& name,
-                      std::optional<Beyond> beyond = std::nullopt);
+                      std::optional<Extrapolation> beyond = std::nullopt);
 
 /// What a law has to say about the end of a run goes to the note and the warning of its curve.
 void add_law_texts(const NamedLaws& law, const System3& end, MacroCurve& curve);
@@ -39,49 +40,49 @@ void add_law_texts(const NamedLaws& law, const System3& end, MacroCurve& curve);
 /// Where a scene takes its laws from: table [law] of a comparison, keys of a macro scene.
 struct LawSources {
   std::optional<LawCard> card;    ///< pair law, as published
-  std::optional<LawTable> table;  ///< bag and directional law, and the pair law when there is no card
-  std::optional<CellCard> cells;  ///< of macro scenes: fines without shells; then there is no other law
-  std::vector<WantedForm> forms{Crowd::pair, Crowd::bag, Crowd::directional};  ///< one for a macro scene
-  std::optional<double> solid_fraction{};   ///< at which the table is taken; empty: see law_fraction()
-  RangePolicy range = RangePolicy::reject;  ///< of solid fractions outside the table
+  std::optional<LawTable> table;  ///< isotropic and directional law, and the pair law when there is no card
+  std::optional<CellCard> cells;  ///< card of the cell law of a macro scene (fines without shells), then the only law
+  std::vector<WantedForm> forms{LawForm::pair, LawForm::isotropic, LawForm::directional};  ///< one for a macro scene
+  std::optional<double> solid_fraction{};   ///< solid fraction at which the table is taken; empty: see law_fraction()
+  RangePolicy range = RangePolicy::reject;  ///< policy for solid fractions outside the table
   std::optional<double> friction;           ///< mu_soft of the table's laws; empty: as measured
-  bool unloading = false;                   ///< with the measured unloading branch
-  bool rolling = true;                      ///< with the measured rolling resistance
-  std::optional<Beyond> beyond{};           ///< instead of what card or table say
-  std::vector<std::string> files{};         ///< that they come from
-  std::string table_file{};                 ///< of them, that of the table
-  std::string text;                         ///< of these
+  bool unloading = false;                   ///< whether the measured unloading branch is used
+  bool rolling = true;                      ///< whether the measured rolling resistance is used
+  std::optional<Extrapolation> beyond{};    ///< policy beyond the range, instead of that of card or table
+  std::vector<std::string> files{};         ///< files that the laws come from
+  std::string table_file{};                 ///< file of the table among them
+  std::string text;                         ///< content of these files
 };
 
-/// At which a table is taken: what the scene says, else the mean of the contents of its soft particles, else (0: there
-/// are none) that of the main entry.
+/// Solid fraction at which a table is taken: what the scene says, else the mean of the contents of its soft particles,
+/// else (0: there are none) that of the main entry.
 double law_fraction(const LawSources& sources, double contents_fraction);
 
-/// The table there, with a remark (or none) on what that means. Throws BadInput (policy reject).
+/// Entry of the table at law_fraction(), with a remark (or none) on what that means. Throws InputError (policy reject).
 LawTableEntry law_entry(const LawSources& sources, double contents_fraction, std::string& remark);
 
 /// The soft particles that the law of a scene was measured on, and the contents of its twins; of a table those of the
 /// entry nearest to the solid fraction that the scene says, else of the main one.
 const SoftParticleSpec& measured_spec(const LawSources& sources);
 
-/// Reads [law]; paths are relative to the scene. Throws BadInput, FileTrouble.
+/// Reads [law]; paths are relative to the scene. Throws InputError, IoError.
 LawSources read_law_sources(const Scene& scene, const SceneTable& law);
 
 /// The one law of a macro scene: key `beyond`, and keys `form` (default the best of the table; a card has the pair law
 /// only, a card of the cell law "cell"), `solid_fraction`, `range`, `mu` and `unloading` of `root`, which go with
-/// tables, and the card or table at `path`. Throws BadInput, FileTrouble.
+/// tables, and the card or table at `path`. Throws InputError, IoError.
 LawSources read_scene_law(const SceneTable& root, const std::string& path);
 
-/// The keys of read_scene_law() alone, for scenes that are read without their law. Throws BadInput.
+/// The keys of read_scene_law() alone, for scenes that are read without their law. Throws InputError.
 void read_law_choices(const SceneTable& root, LawSources& out);
 
 /// The law that read_scene_law() chose, under the name `name`. `contents_fraction` as in law_fraction(). Throws
-/// BadInput.
+/// InputError.
 NamedLaws scene_law(const LawSources& sources, const MacroSpec& spec, double contents_fraction,
                     const std::string& name);
 
-/// A law of a table at law_fraction(); An empty form is the one that the entry prefers. Throws BadInput when the table
-/// has no such law, was measured with grains of another nu or mu, or does not reach this solid fraction (policy
+/// A law of a table at law_fraction(); An empty form is the one that the entry prefers. Throws InputError when the
+/// table has no such law, was measured with grains of another nu or mu, or does not reach this solid fraction (policy
 /// reject).
 NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const MacroSpec& spec, double contents_fraction);
 

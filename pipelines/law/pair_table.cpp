@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "common/contact/crowd_from_table.h"
+#include "common/contact/multi_contact_from_table.h"
 #include "common/contact/soft_contact_from_card.h"
 #include "common/core/error.h"
 #include "pipelines/law/law_values.h"
@@ -27,7 +27,7 @@ struct Pair {
   double ratio = 1.0;
   double deepest = 0.0;   ///< h [m]
   double measured = 0.0;  ///< h up to which the law was measured [m]
-  Beyond beyond = Beyond::extrapolate;
+  Extrapolation beyond = Extrapolation::extrapolate;
   std::function<Response(double)> at;
 };
 
@@ -45,11 +45,11 @@ PairTable tabulate(const Pair& pair, const PairTableChoice& choice) {
                   pair.kind == PairKind::soft_solid ? "solid sphere" : "soft particle", t.other_radius, pair.deepest);
   if (pair.deepest > pair.measured * (1.0 + 1e-12))
     t.meaning += fmt::format("; measured to {:.4g} m, {} beyond: nothing says how far off rows with r below {:.6g} are",
-                             pair.measured, pair.beyond == Beyond::clamp ? "clamped" : "extrapolated",
+                             pair.measured, pair.beyond == Extrapolation::clamp ? "clamped" : "extrapolated",
                              t.soft_radius + t.other_radius - pair.measured);
   const double touch = t.soft_radius + t.other_radius;
   if (!(pair.deepest < std::min(t.soft_radius, t.other_radius) * 2.0) || !(pair.deepest < touch))
-    throw BadInput(
+    throw InputError(
         fmt::format("law export: {}: an overlap of {:.4g} m passes through a body of radius {:.4g} m: give a "
                     "smaller --delta-max",
                     t.keyword, pair.deepest, std::min(t.soft_radius, t.other_radius)));
@@ -64,7 +64,7 @@ PairTable tabulate(const Pair& pair, const PairTableChoice& choice) {
 }
 
 [[noreturn]] void refuse_depth(double wanted, double end, const char* what) {
-  throw BadInput(
+  throw InputError(
       fmt::format("law export: --delta-max {} lies beyond the end of the measured range, {} = {:.4g}, and the "
                   "law allows nothing there (beyond = \"error\")",
                   wanted, what, end));
@@ -74,7 +74,8 @@ Pair card_pair(const LawCard& card, PairKind kind, double ratio, const PairTable
   const SoftContact contact = make_soft_contact(card, kind, choice.modulus, 0.0, 0.0, false, choice.beyond);
   const PairLaw& law = *card.find(kind);
   const double wanted = choice.delta_max.value_or(law.delta_max);
-  if (wanted > law.delta_max && contact.range.beyond == Beyond::error) refuse_depth(wanted, law.delta_max, "Delta");
+  if (wanted > law.delta_max && contact.range.beyond == Extrapolation::error)
+    refuse_depth(wanted, law.delta_max, "Delta");
   const PairConstants constants = contact.pair_constants({choice.radius, choice.radius * ratio, 0.0, 0.0});
   return {kind, ratio, wanted * constants.a, law.delta_max * constants.a, contact.range.beyond, [=](double overlap) {
             ContactState<3> s;
@@ -100,7 +101,7 @@ std::vector<Pair> card_pairs(const LawCard& card, const PairTableChoice& choice)
 
 /// Energy over E R^3 of a soft particle that lost the equivalent volume s: the integral of p dS, which is that of the
 /// force of one plane over the depth D of its cap; of a clamped law at constant pressure beyond the end.
-double potential(const CrowdPressure& p, double s) {
+double potential(const MultiContactPressure& p, double s) {
   const double taken = std::min(s, p.range.clamp_at());
   const double d = cap_depth(taken);
   if (!(d > p.delta)) return 0.0;
@@ -111,31 +112,31 @@ double potential(const CrowdPressure& p, double s) {
 
 /// The single contact of one soft particle: x the overlap over its radius.
 struct Side {
-  CrowdPressure pressure;
+  MultiContactPressure pressure;
   PairConstants constants;
   double curvature = 0.0;  ///< own radius over that of the other body
 
   [[nodiscard]] Response at(double x) const {
     const LostVolume nu = lost_volume(lens(x, curvature), constants.a, constants.b);
-    const CrowdPressure::Value p = pressure.at(nu.nu);
+    const MultiContactPressure::Value p = pressure.at(nu.nu);
     return {potential(pressure, nu.nu), p.p * nu.slope, p.slope * nu.slope * nu.slope + p.p * nu.curvature};
   }
 };
 
 Pair table_pair(const LawTable& table, PairKind kind, double ratio, const PairTableChoice& choice) {
-  CrowdQuestion q;
+  MultiContactQuestion q;
   q.form = choice.form;
   q.partner = kind == PairKind::soft_solid ? PartnerKind::solid : PartnerKind::soft;
   q.ratio = ratio;
   q.solid_fraction = choice.solid_fraction;
   q.range = choice.range;
   q.beyond = choice.beyond;
-  const CrowdAnswer answer = crowd_values(table, q, {});
-  const Beyond beyond = choice.beyond.value_or(answer.entry.beyond);
+  const MultiContactAnswer answer = multi_contact_values(table, q, {});
+  const Extrapolation beyond = choice.beyond.value_or(answer.entry.beyond);
   const double end = answer.overlap_max;
   const double wanted = choice.delta_max.value_or(end);
-  if (wanted > end * (1.0 + 1e-12) && beyond == Beyond::error) refuse_depth(wanted, end, "h/R");
-  CrowdModel model = crowd_model(*answer.entry.find(answer.form));
+  if (wanted > end * (1.0 + 1e-12) && beyond == Extrapolation::error) refuse_depth(wanted, end, "h/R");
+  MultiContactModel model = multi_contact_model(*answer.entry.find(answer.form));
   if (answer.entry.volume_max > 0.0) model.form.pressure.range = {answer.entry.volume_max, beyond};
   const LostVolumeTable& partners = q.partner == PartnerKind::solid ? model.solid : model.soft;
   const Side own{model.form.pressure, partners.at(ratio), 1.0 / ratio};
@@ -167,7 +168,7 @@ std::vector<Pair> table_pairs(const LawTable& table, const PairTableChoice& choi
 
 std::vector<PairTable> pair_tables(const LawFile& file, const PairTableChoice& choice) {
   const std::vector<Pair> pairs = file.card ? card_pairs(*file.card, choice) : table_pairs(*file.table, choice);
-  if (pairs.empty()) throw BadInput(file.path + ": the card has no usable law");
+  if (pairs.empty()) throw InputError(file.path + ": the card has no usable law");
   std::vector<PairTable> out;
   for (const Pair& pair : pairs) out.push_back(tabulate(pair, choice));
   return out;

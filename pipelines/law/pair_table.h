@@ -10,14 +10,14 @@
 namespace softgrain::law {
 
 struct PairTableChoice {
-  std::vector<PairKind> kinds{};      ///< empty: every usable one
-  std::vector<double> ratios{1.0};    ///< radius of the other body over that of the soft particle
-  std::size_t rows = 1001;            ///< values per table, at least 2
-  double modulus = 0.0;               ///< E [Pa]
-  double radius = 0.0;                ///< R of the soft particle [m]
-  std::optional<double> delta_max{};  ///< deepest overlap; empty: the end of the measured range
-  std::optional<Beyond> beyond{};     ///< instead of what the law says
-  WantedForm form{};                  ///< of a table
+  std::vector<PairKind> kinds{};          ///< empty: every usable one
+  std::vector<double> ratios{1.0};        ///< radius of the other body over that of the soft particle
+  std::size_t rows = 1001;                ///< values per table, at least 2
+  double modulus = 0.0;                   ///< E [Pa]
+  double radius = 0.0;                    ///< R of the soft particle [m]
+  std::optional<double> delta_max{};      ///< deepest overlap; empty: the end of the measured range
+  std::optional<Extrapolation> beyond{};  ///< policy beyond the range, instead of that of the law
+  WantedForm form{};                      ///< form of the law of a table
   std::optional<double> solid_fraction{};
   RangePolicy range = RangePolicy::reject;
 };
@@ -36,7 +36,8 @@ struct PairTable {
 
 /// Conservative normal forces of two bodies alone. Soft-solid pairs of a card: Delta = h/R; soft-soft pairs: h over the
 /// smaller radius [SP 1.6]. Of a table: the single contact, whose lost volume knows the ratio of the radii. Throws
-/// BadInput: no usable law, `delta_max` beyond the range of a law that refuses that, an overlap that reaches a centre.
+/// InputError: no usable law, `delta_max` beyond the range of a law that refuses that, an overlap that reaches a
+/// centre.
 std::vector<PairTable> pair_tables(const LawFile& file, const PairTableChoice& choice);
 
 /// The file of LAMMPS' pair_style table, `units si`: one section per pair, keyword first. `head` goes into comments.

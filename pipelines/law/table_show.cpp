@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "common/data/crowd_choice.h"
+#include "common/data/multi_contact_choice.h"
 #include "pipelines/law/law_show.h"
 #include "pipelines/law/law_values.h"
 #include "pipelines/law/terminal_plot.h"
@@ -24,19 +24,19 @@ std::string percent(double share) { return std::isfinite(share) ? fmt::format("{
 
 std::string parameters_text(const LawTableEntry& entry) {
   Rows rows{{"form"}};
-  for (const CrowdParameterName& p : kCrowdParameters) rows.push_back({p.key});
+  for (const MultiContactParameterName& p : kMultiContactParameters) rows.push_back({p.key});
   for (const char* name : {"off by [%]: fitted", "held out", "leave one out", "criterion"}) rows.push_back({name});
-  for (const CrowdLaw& law : entry.laws) {
+  for (const MultiContactLaw& law : entry.laws) {
     std::size_t r = 0;
     rows[r++].push_back(form_label(entry, law));
-    for (const CrowdParameterName& p : kCrowdParameters) rows[r++].push_back(with_error(law.*p.estimate));
+    for (const MultiContactParameterName& p : kMultiContactParameters) rows[r++].push_back(with_error(law.*p.estimate));
     for (const double x : {law.error_fitted, law.error_held_out, law.error_cross}) rows[r++].push_back(percent(x));
     rows[r++].push_back(number(law.criterion, 5));
   }
   return aligned(rows, 2);
 }
 
-std::string partners_text(const CrowdLaw& law) {
+std::string partners_text(const MultiContactLaw& law) {
   Rows rows{{"neighbour", "R'/R", "w", "m", "h/min(R, R') to", "off by [%]"}};
   for (const PartnerRow& row : law.partners)
     rows.push_back({to_string(row.kind), number(row.ratio), with_error(row.weight), with_error(row.exponent),
@@ -64,7 +64,7 @@ std::string slides_table(const LawTableEntry& e) {
 /// Forms that are no good say why.
 std::string statuses_text(const LawTableEntry& e) {
   std::string text;
-  for (const CrowdLaw& law : e.laws)
+  for (const MultiContactLaw& law : e.laws)
     if (law.status != LawStatus::good)
       text += wrapped(fmt::format("  {} law: {}{}", to_string(law.form), to_string(law.status),
                                   law.reason.empty() ? "" : " (" + law.reason + ")"),
@@ -74,7 +74,7 @@ std::string statuses_text(const LawTableEntry& e) {
 
 /// Force of one plane and of each of six.
 std::string plot_of(const LawTableEntry& e, bool utf8) {
-  const CrowdLaw* best = e.find(e.best);
+  const MultiContactLaw* best = e.find(e.best);
   const bool usable = best->status != LawStatus::no_threshold_crossing && !best->rows(PartnerKind::solid).empty() &&
                       !best->rows(PartnerKind::soft).empty();
   if (!usable || !(e.overlap_max > 0.0)) return "";
@@ -82,12 +82,12 @@ std::string plot_of(const LawTableEntry& e, bool utf8) {
   constexpr std::size_t kPoints = 160;
   TerminalPlot plot{"h/Rs", "F/(E Rs^2) on each plane, " + to_string(e.best) + " law", 76, 10, utf8, {}};
   for (const Arrangement arranged : {Arrangement::one, Arrangement::cube}) {
-    CrowdQuestion q;
+    MultiContactQuestion q;
     q.arrangement = arranged;
-    q.beyond = Beyond::extrapolate;
+    q.beyond = Extrapolation::extrapolate;
     TerminalCurve curve;
     if (arranged == Arrangement::one) curve.look = TerminalCurve::Look::dotted;
-    for (const LawPoint& p : crowd_values(alone, q, even(0.0, e.overlap_max, kPoints)).points) {
+    for (const LawPoint& p : multi_contact_values(alone, q, even(0.0, e.overlap_max, kPoints)).points) {
       if (p.where == Where::beyond) break;
       curve.x.push_back(p.delta);
       curve.y.push_back(p.force.value);
@@ -98,10 +98,10 @@ std::string plot_of(const LawTableEntry& e, bool utf8) {
 }
 
 std::string unloading_of(const LawTableEntry& e) {
-  if (!e.retreat_measured) return "not measured";
-  std::string text = with_error(e.retreat) + " times as steep";
-  if (e.slide_solid.retreats) text += ", " + with_error(e.slide_solid.retreat) + " against solid spheres";
-  if (e.slide_soft.retreats) text += ", " + with_error(e.slide_soft.retreat) + " among soft particles";
+  if (!e.unloading_measured) return "not measured";
+  std::string text = with_error(e.unloading) + " times as steep";
+  if (e.slide_solid.has_unloading) text += ", " + with_error(e.slide_solid.unloading) + " against solid spheres";
+  if (e.slide_soft.has_unloading) text += ", " + with_error(e.slide_soft.unloading) + " among soft particles";
   return text;
 }
 
@@ -112,7 +112,7 @@ std::string entry_text(const LawTableEntry& e, bool main, bool utf8) {
                   e.grains > 0.0 ? fmt::format(", a soft particle represents {} grains", number(e.grains, 3)) : "",
                   e.relaxation),
       4);
-  text += wrapped("  " + spec_text_for_people(e.spec), 4);
+  text += wrapped("  " + show_spec(e.spec), 4);
   text +=
       wrapped(fmt::format("  valid up to an equivalent volume of {} and h/Rs = {} with a plane, where grains overlap "
                           "by up to {} of the smaller radius; beyond: {}; unloading {}",
@@ -120,13 +120,13 @@ std::string entry_text(const LawTableEntry& e, bool main, bool utf8) {
                           to_string(e.beyond), unloading_of(e)),
               4);
   text += statuses_text(e) + parameters_text(e);
-  if (const CrowdLaw* best = e.find(e.best)) text += partners_text(*best);
+  if (const MultiContactLaw* best = e.find(e.best)) text += partners_text(*best);
   return text + slides_table(e) + plot_of(e, utf8);
 }
 
 }  // namespace
 
-std::string table_text_for_people(const LawFile& file, bool utf8) {
+std::string show_table(const LawFile& file, bool utf8) {
   std::string text = wrapped(fmt::format("{}: law table, {} solid fraction{}", file.path, file.table->entries.size(),
                                          file.table->entries.size() == 1 ? "" : "s"),
                              2);

@@ -11,7 +11,7 @@ namespace softgrain::law {
 
 namespace {
 
-constexpr int kDotsAcross = 2;  ///< of one braille character
+constexpr int kDotsAcross = 2;  ///< dots per braille character
 constexpr int kDotsDown = 4;
 
 struct Extent {

@@ -25,8 +25,8 @@ struct TerminalCurve {
 struct TerminalPlot {
   std::string x_label;
   std::string y_label;
-  int columns = 80;  ///< of everything, axis labels included; at least 30
-  int rows = 12;     ///< of the drawing
+  int columns = 80;  ///< width of the whole text, axis labels included; at least 30
+  int rows = 12;     ///< height of the drawing
   bool utf8 = true;
   std::vector<TerminalCurve> curves;
 };

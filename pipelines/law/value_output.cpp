@@ -50,7 +50,7 @@ std::string mark(const LawPoint& p) {
   }
 }
 
-Row people_row(const LawPoint& p, const ValueTable& t, const ValueUnits& u) {
+Row console_row(const LawPoint& p, const ValueTable& t, const ValueUnits& u) {
   if (p.refused) return {short_number(p.delta), "refused", "", "", "", "", mark(p)};
   const auto& kt = tangential(p, t.use_secant);
   return {short_number(p.delta),
@@ -107,7 +107,7 @@ std::string values_text(const ValueTable& t, const ValueUnits& u) {
   std::vector<Row> rows{
       {"Delta", "F", "95 %", "dF/dh", "kt", "95 %", ""},
       {"", "[" + force_unit(u) + "]", "", "[" + stiffness_unit(u) + "]", "[" + stiffness_unit(u) + "]", "", ""}};
-  for (const LawPoint& p : t.points) rows.push_back(people_row(p, t, u));
+  for (const LawPoint& p : t.points) rows.push_back(console_row(p, t, u));
   text += aligned(rows, 0, 0) + legend(t);
   const std::string origin = origin_of(t);
   if (!any_contact(t)) return text;

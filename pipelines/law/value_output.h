@@ -23,13 +23,13 @@ struct ValueUnits {
 struct ValueTable {
   std::string law;  ///< "soft-solid", "cube of planes, directional law"
   LawStatus status = LawStatus::good;
-  std::string remark;  ///< for people; may be empty
-  Beyond beyond = Beyond::extrapolate;
-  bool use_secant = false;  ///< in the terminal, where there is room for one of the two
+  std::string remark;  ///< remark for human readers; may be empty
+  Extrapolation beyond = Extrapolation::extrapolate;
+  bool use_secant = false;  ///< whether the terminal shows the secant kt; it has room for one of the two
   std::vector<LawPoint> points;
 };
 
-/// At most 80 columns.
+/// Terminal table of at most 80 columns.
 std::string values_text(const ValueTable& table, const ValueUnits& units);
 
 /// One line per value with a header; empty cells where something is not known or refused.

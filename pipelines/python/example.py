@@ -40,7 +40,7 @@ try:
     numbers = pair.normal
     print(f"law ({pair.status}): F = {numbers.a:.4g} Delta^{numbers.b:.3g} {numbers.c:+.3g} from Delta = "
           f"{numbers.delta:.3g} on; fitted for {pair.delta_min:.3g} to {pair.delta_max:.3g}")
-except (softgrain.FileTrouble, KeyError):
+except (softgrain.IoError, KeyError):
     law = None
     print("no law in this run")
 except ImportError as e:

@@ -32,7 +32,7 @@ std::string decade_label(int mantissa, int exponent) {
   return (mantissa == 1 ? "" : format_number(mantissa, 1) + "\u00d7") + "10" + superscript(exponent);
 }
 
-/// Which of 1..9 carry a label when the axis spans this many decades.
+/// Whether a tick with mantissa 1..9 carries a label when the axis spans this many decades.
 bool labelled(int mantissa, int exponent, double decades) {
   if (decades < 0.8) return true;
   if (decades < 3.2) return mantissa == 1 || mantissa == 2 || mantissa == 5;

@@ -21,7 +21,7 @@ struct Known {
 constexpr Known kKnown[] = {
     {"law", "soft particles with their law", palette::blue, "", Marker::circle},
     {"pair", "pair law (one contact)", palette::green, "", Marker::triangle},
-    {"bag", "bag law", palette::purple, "", Marker::diamond},
+    {"isotropic", "isotropic law", palette::purple, "", Marker::diamond},
     {"directional", "directional law", palette::black, "", Marker::hollow},
     {"shelled", "resolved twin (shelled)", palette::vermillion, "6 3", Marker::square},
     {"free", "resolved twin (free)", palette::orange, "2 3", Marker::triangle},
@@ -56,7 +56,7 @@ std::string law_paragraph(const std::vector<MacroCurve>& curves) {
   std::string text;
   for (const std::string& line : lines) text += (text.empty() ? "Laws: " : "; ") + line;
   for (const std::string& picture : pictures)
-    if (!picture.empty()) text += ". Which matter: " + picture;
+    if (!picture.empty()) text += ". Which material: " + picture;
   return text.empty() ? "" : paragraph(text + ".");
 }
 

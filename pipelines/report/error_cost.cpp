@@ -61,7 +61,7 @@ void add_relaxation(const RunData& run, PairKind kind, std::vector<ErrorCost>& o
     out.push_back({"relaxation " + own + ", " + to_string(kind),
                    fmt::format("normal force against the published relaxation, {} overlaps", c.normal.size()), "", cost,
                    error, deviation});
-  } catch (const BadInput&) {  // said in the section of the relaxations
+  } catch (const InputError&) {  // said in the section of the relaxations
   }
 }
 

@@ -83,7 +83,7 @@ void remove_figures(const std::string& run_directory) {
     if (is_figure(entry.path())) found.push_back(entry.path());
   for (const fs::path& file : found) {
     fs::remove(file, error);
-    if (error) throw FileTrouble(file.string() + ": of an earlier report, cannot be removed: " + error.message());
+    if (error) throw IoError(file.string() + ": of an earlier report, cannot be removed: " + error.message());
   }
   if (fs::is_directory(directory, error) && fs::is_empty(directory, error)) fs::remove(directory, error);
 }

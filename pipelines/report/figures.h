@@ -14,7 +14,7 @@ struct Figure {
 /// Every svg element of an HTML body, in order; names are made unique by a number.
 std::vector<Figure> figures_of(const std::string& html);
 
-/// Writes them to DIR/figures in place of those that an earlier report left there. Throws FileTrouble.
+/// Writes them to DIR/figures in place of those that an earlier report left there. Throws IoError.
 void write_figures(const std::string& run_directory, const std::vector<Figure>& figures);
 
 /// Removes those that a report left in DIR/figures, and the directory when nothing else is in it.

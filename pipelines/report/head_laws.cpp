@@ -22,11 +22,11 @@ void add_once(std::vector<HeadLine>& lines, const char* label, const std::string
   if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
 }
 
-/// That curves were made with; by which engine where there are several.
+/// Adds the laws that curves were computed with, and their engine where it is not "law".
 void add_laws_of(const std::vector<MacroCurve>& curves, std::vector<HeadLine>& lines) {
   for (const MacroCurve& c : curves)
     if (!c.twin() && !c.law.hash.empty())
-      add_once(lines, "Law taken", (c.engine == "law" ? "" : engine_name(c.engine) + ": ") + identity_text(c.law));
+      add_once(lines, "Law used", (c.engine == "law" ? "" : engine_name(c.engine) + ": ") + identity_text(c.law));
 }
 
 /// E, nu and mu that a measured law is taken with where nothing else is said: those of the measurement.
@@ -42,7 +42,7 @@ MacroSpec spec_of(const SoftParticleSpec& measured) {
 void add_law(const LawSources& sources, const SoftParticleSpec& measured, double fraction,
              std::vector<HeadLine>& lines) {
   try {
-    add_once(lines, "Law made", identity_text(scene_law(sources, spec_of(measured), fraction, "law").identity));
+    add_once(lines, "Law written", identity_text(scene_law(sources, spec_of(measured), fraction, "law").identity));
   } catch (const Error&) {  // no usable law: the other lines say why
   }
 }
@@ -113,7 +113,7 @@ std::vector<HeadLine> material_lines(const RunData& run) {
   try {
     const std::string said = material_of_scene(summary.provenance->scene);
     if (!said.empty()) add_once(lines, "Material", said);
-  } catch (const BadInput&) {  // a scene that was edited by hand
+  } catch (const InputError&) {  // a scene that was edited by hand
   }
   return lines;
 }

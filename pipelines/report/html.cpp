@@ -28,6 +28,16 @@ bool is_long(const std::string& cell) {
   return cell.size() > kLong;
 }
 
+/// "Table of stage, engine, modulus and 3 more columns, 6 rows".
+std::string summary_of(const std::vector<std::string>& header, std::size_t rows) {
+  constexpr std::size_t kNamed = 3;
+  std::string text = "Table of ";
+  for (std::size_t k = 0; k < std::min(header.size(), kNamed); ++k) text += (k == 0 ? "" : ", ") + header[k];
+  const std::size_t more = header.size() - std::min(header.size(), kNamed);
+  if (more > 0) text += " and " + std::to_string(more) + " more column" + (more == 1 ? "" : "s");
+  return text + ", " + std::to_string(rows) + (rows == 1 ? " row" : " rows");
+}
+
 }  // namespace
 
 std::string escape(const std::string& text) {
@@ -72,9 +82,11 @@ std::string HtmlTable::html() const {
     if (i > 0 && std::any_of(rows_.begin(), rows_.end(), [i](const auto& cells) { return is_long(cells[i]); }))
       classes[i] = "t";
   }
-  std::string out = "<div class=\"scroll\"><table><thead>" + table_row(header_, classes, "th") + "</thead><tbody>\n";
+  std::string out = "<details class=\"table\"><summary>" + escape(summary_of(header_, rows_.size())) +
+                    "</summary>\n<div class=\"scroll\"><table><thead>" + table_row(header_, classes, "th") +
+                    "</thead><tbody>\n";
   for (const auto& cells : rows_) out += table_row(cells, classes, "td");
-  return out + "</tbody></table></div>\n";
+  return out + "</tbody></table></div></details>\n";
 }
 
 std::string paragraph(const std::string& text) { return "<p>" + escape(text) + "</p>\n"; }
@@ -89,11 +101,12 @@ std::string figure_row(const std::vector<std::string>& figures) {
   return out.empty() ? "" : "<div class=\"row\">\n" + out + "</div>\n";
 }
 
-std::string section(const std::string& id, const std::string& heading, const std::string& body) {
+std::string section(const std::string& id, const std::string& heading, const std::string& lead,
+                    const std::string& body) {
   if (body.empty()) return "";
   const bool figures = body.find("<figure") != std::string::npos;
   return "<section id=\"" + escape(id) + "\"" + (figures ? " class=\"page\"" : "") + ">\n<h2>" + escape(heading) +
-         "</h2>\n" + body + "</section>\n";
+         "</h2>\n<p class=\"what\">" + escape(lead) + "</p>\n" + body + "</section>\n";
 }
 
 std::string contents(const std::string& body) {

@@ -10,8 +10,8 @@ namespace softgrain::report {
 /// Text made safe for element content and quoted attributes; control characters that XML forbids are dropped.
 std::string escape(const std::string& text);
 
-/// A table of escaped texts. Columns after the first are aligned to the right unless `left_columns` says otherwise;
-/// columns with long texts to the left, in several lines.
+/// A table of escaped texts, folded under a line that names its first columns. Columns after the first are aligned to
+/// the right unless `left_columns` says otherwise; columns with long texts to the left, in several lines.
 class HtmlTable {
  public:
   explicit HtmlTable(std::vector<std::string> header, std::size_t left_columns = 1);
@@ -34,9 +34,10 @@ std::string figure(const std::string& svg, const std::string& caption);
 /// Figures side by side where the page is wide enough.
 std::string figure_row(const std::vector<std::string>& figures);
 
-/// A section with a heading; empty when the body is empty, so that a section without data leaves no trace. With figures
-/// it begins a page in print.
-std::string section(const std::string& id, const std::string& heading, const std::string& body);
+/// A section with a heading and a sentence, `lead`, that says what to see; empty when the body is empty, so that a
+/// section without data leaves no trace. With figures it begins a page in print.
+std::string section(const std::string& id, const std::string& heading, const std::string& lead,
+                    const std::string& body);
 
 /// Links to the sections of a body.
 std::string contents(const std::string& body);

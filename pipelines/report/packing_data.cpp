@@ -76,7 +76,7 @@ std::vector<std::size_t> spread_out(const std::vector<std::size_t>& numbers, std
   return out;
 }
 
-/// Of files that take long to read only the last states are looked at.
+/// The states to look at: only the last ones where files take long to read.
 SnapshotChoice affordable(const std::string& run) {
   constexpr std::uintmax_t kLarge = 300'000'000;  // [byte], seconds to read
   std::uintmax_t size = 0;
@@ -84,7 +84,7 @@ SnapshotChoice affordable(const std::string& run) {
   return size > kLarge ? SnapshotChoice::last : SnapshotChoice::all;
 }
 
-/// Of every series the numbers of the states that are taken.
+/// Numbers of the states that are taken, for every series.
 std::map<std::string, std::set<std::size_t>> chosen_states(const std::string& run, SnapshotChoice choice,
                                                            std::size_t most) {
   std::map<std::string, std::vector<bool>> has_contacts;

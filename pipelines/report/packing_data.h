@@ -46,7 +46,7 @@ PackingState packing_state(const Snapshot& snapshot);
 
 /// All series of a run directory, each with at most `states` evenly spread states, its last among them; states without
 /// contacts give way to those with. Soft particles come first, then macro runs, then their twins. Of files above 300 MB
-/// only the last states. Throws FileTrouble.
+/// only the last states. Throws IoError.
 std::vector<PackingSeries> packing_series_of(const std::string& run_directory, std::size_t states);
 
 /// Makes them fit into `budget` bytes: fewer states first, then the weakest contacts of what is still too large, then

@@ -62,7 +62,7 @@ Series law_line(const PairLaw& law, LawPart part, double unit, double low, doubl
   Series s{.label = "", .hover = "", .x = spread(low, high, 161), .y = {}};
   for (const double overlap : s.x) {
     // as contacts use it: a clamped law stays at the force of the end of its range
-    const double asked = law.beyond == Beyond::clamp ? std::min(overlap, law.delta_max) : overlap;
+    const double asked = law.beyond == Extrapolation::clamp ? std::min(overlap, law.delta_max) : overlap;
     s.y.push_back(part_of(law, part).value(asked) * unit);
   }
   s.sets_range = false;
@@ -90,10 +90,10 @@ void add_law(Plot& plot, const PairLaw& law, LawPart part, double unit, const st
   s.label = label;
   s.style = {.color = color, .width = 2.0};
   plot.add(std::move(s));
-  if (law.beyond == Beyond::error) return;
+  if (law.beyond == Extrapolation::error) return;
   Series beyond = law_line(law, part, unit, law.delta_max, kBeyond * law.delta_max);
   beyond.hover =
-      label + (law.beyond == Beyond::clamp ? ", clamped beyond its range" : ", extrapolated beyond its range");
+      label + (law.beyond == Extrapolation::clamp ? ", clamped beyond its range" : ", extrapolated beyond its range");
   beyond.style = {.color = color, .width = 1.6, .dash = "2 3"};
   beyond.group = label;
   plot.add(std::move(beyond));

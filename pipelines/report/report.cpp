@@ -16,7 +16,7 @@ namespace {
 
 using namespace report;
 
-/// Those of no kind in particular, and those of every kind, in the order of their places.
+/// Text of all sections, in the order of their places: those that belong to no kind of scene, and those of every kind.
 std::string sections_of(const RunData& run) {
   std::vector<ReportSection> sections{
       {Place::runs, runs_section},       {Place::own_data, own_data_section}, {Place::laws, laws_section},

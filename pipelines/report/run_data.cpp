@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 nlohmann::json parse_summary(const std::string& path) {
   auto summary = nlohmann::json::parse(read_text(path), nullptr, false);
-  if (summary.is_discarded() || !summary.is_object()) throw FileTrouble(path + ": is not a JSON object");
+  if (summary.is_discarded() || !summary.is_object()) throw IoError(path + ": is not a JSON object");
   return summary;
 }
 
@@ -33,7 +33,7 @@ std::vector<ComparedCurves> load_scenes(const std::string& directory) {
   const nlohmann::json root = parse_summary(directory + "/comparison.json");
   std::vector<NamedCurves> named;
   if (!root.contains("scenes") || !read_json(root["scenes"], named))
-    throw FileTrouble(directory + "/comparison.json: has no scenes");
+    throw IoError(directory + "/comparison.json: has no scenes");
   std::vector<ComparedCurves> scenes;
   for (const NamedCurves& one : named)
     scenes.push_back({one.name, load_macro(directory + "/" + fs::path(one.file).filename().string())});
@@ -68,7 +68,7 @@ bool is_unfinished(const std::string& directory) {
 }
 
 RunData load_run(const std::string& directory) {
-  if (!fs::is_directory(directory)) throw FileTrouble(directory + ": no such run directory");
+  if (!fs::is_directory(directory)) throw IoError(directory + ": no such run directory");
   RunData run;
   run.unfinished = is_unfinished(directory);
   run.directory = directory;
@@ -79,16 +79,16 @@ RunData load_run(const std::string& directory) {
   if (exists("summary.json")) run.summary = parse_summary(file("summary.json")), any = true;
   if (exists("measurements.h5")) run.measurements = load_measurements(file("measurements.h5")), any = true;
   if (exists("law.toml")) run.card = load_card(file("law.toml")), any = true;
-  if (exists("crowd.h5")) run.crowd = load_crowd(file("crowd.h5")), any = true;
+  for (const char* name : {"multi_contact.h5", "crowd.h5"})  // the latter of earlier versions
+    if (!run.multi_contact && exists(name)) run.multi_contact = load_multi_contact(file(name)), any = true;
   if (exists("law_table.toml")) run.law_table = load_law_table(file("law_table.toml")), any = true;
   if (exists("macro.h5")) run.macro = load_macro(file("macro.h5")), any = true;
   if (exists("comparison.json")) run.macro_scenes = load_scenes(directory), any = true;
   any = any || std::any_of(fs::directory_iterator(directory), fs::directory_iterator(),
                            [](const fs::directory_entry& entry) { return is_result_file(entry.path()); });
   if (!any && run.unfinished)
-    throw FileTrouble(directory +
-                      ": this run has not come to its end and has no results yet: --resume goes on with it");
-  if (!any) throw FileTrouble(directory + ": no run directory: neither summary.json nor a file of results is in it");
+    throw IoError(directory + ": this run has not come to its end and has no results yet: --resume goes on with it");
+  if (!any) throw IoError(directory + ": no run directory: neither summary.json nor a file of results is in it");
   return run;
 }
 

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "common/data/crowd_law.h"
-#include "common/data/crowd_measurements.h"
 #include "common/data/law_band.h"
 #include "common/data/law_card.h"
 #include "common/data/macro_result.h"
 #include "common/data/measurements.h"
+#include "common/data/multi_contact_law.h"
+#include "common/data/multi_contact_measurements.h"
 #include "common/io/json_record.h"
 #include "pipelines/compare/measured_stiffness.h"
 
@@ -32,7 +32,7 @@ struct RunData {
   bool unfinished = false;  ///< a run that was stopped, or is at work: it has no summary yet
   std::optional<Measurements> measurements;
   std::optional<LawCard> card;
-  std::optional<CrowdMeasurements> crowd;
+  std::optional<MultiContactMeasurements> multi_contact;
   std::optional<LawTable> law_table;
   std::vector<MacroCurve> macro;
   std::vector<ComparedCurves> macro_scenes;
@@ -71,8 +71,8 @@ struct RunData {
 /// Whether a directory is that of a run that has not come to its end.
 bool is_unfinished(const std::string& directory);
 
-/// Reads what exists among summary.json, measurements.h5, law.toml, crowd.h5, law_table.toml, macro.h5 and
-/// comparison.json (with the curves that it names). Throws FileTrouble when the directory is missing, holds no results
+/// Reads what exists among summary.json, measurements.h5, law.toml, multi_contact.h5, law_table.toml, macro.h5 and
+/// comparison.json (with the curves that it names). Throws IoError when the directory is missing, holds no results
 /// of any kind, or one of these files is damaged.
 RunData load_run(const std::string& directory);
 

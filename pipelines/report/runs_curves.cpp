@@ -38,7 +38,7 @@ struct CurvePlot {
   std::vector<CurveOfRun> curves;
 };
 
-/// Of all runs whose directories are there, by what is drawn together.
+/// Curves of all runs whose directories exist, grouped by the plot that they belong to.
 std::vector<CurvePlot> plots_of(const RunData& run, const SetSummary& set) {
   std::vector<CurvePlot> plots;
   for (std::size_t k = 0; k < set.runs.size(); ++k) {

@@ -50,7 +50,7 @@ std::vector<Quantity> numeric(const SweptKey& key) {
   return out.size() > 1 ? out : std::vector<Quantity>{};
 }
 
-/// Over a decade and more, and above zero.
+/// Whether the values span a decade or more and are all above zero.
 bool asks_for_logarithm(const std::vector<Quantity>& values) {
   constexpr double kDecade = 10.0;
   double low = values.front().value;

@@ -10,7 +10,7 @@
 
 namespace softgrain::report {
 
-/// Of run or choice of values number `index`; thin and without marks where many are drawn together.
+/// Style of the curve of run or choice of values number `index`; thin and without marks where many are drawn together.
 SeriesStyle run_style(std::size_t index, bool one_of_many);
 
 /// All curves of the runs whose directories are there, over seeds with their mean: a figure for each kind of curve.

@@ -26,7 +26,7 @@ struct Sieved {
 };
 
 constexpr std::size_t kMostCurves = 8;
-constexpr std::size_t kPoints = 200;          ///< of a curve
+constexpr std::size_t kPoints = 200;          ///< number of points of a curve
 constexpr std::uintmax_t kLarge = 300000000;  ///< states of more bytes take too long to read for a picture
 
 /// Grains of all packings that were measured.
@@ -42,7 +42,7 @@ const char* name_of(ParticleRole role) {
   return role == ParticleRole::inner ? "grains in soft particles" : "solid grains";
 }
 
-/// Of the last states of a run; series that hold the same radii count once.
+/// Radii of the bodies in the last states of a run; series that hold the same radii count once.
 std::vector<Sieved> bodies_of(const RunData& run) {
   std::uintmax_t bytes = 0;
   for (const std::string& file : snapshot_files(run.directory)) bytes += std::filesystem::file_size(file);
@@ -111,7 +111,7 @@ std::string grading_section(const RunData& run) {
              .high = 100.0}});
   for (std::size_t k = 0; k < curves.size(); ++k)
     if (curves[k].unit == curves.front().unit) plot.add(passing(curves[k], k));
-  return section("grading", "Grading curve",
+  return section("grading", "Grading curve", "Particle size distribution, as asked for and as drawn.",
                  figure_row({figure(
                      plot.svg(),
                      "Share of the volume (of disks the area) in grains smaller than the diameter, as a sieve analysis "

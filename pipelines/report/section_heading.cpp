@@ -112,6 +112,7 @@ std::string heading_section(const RunData& run) {
   }
   std::vector<HeadLine> lines = result_lines(run);
   if (!what.empty()) lines.insert(lines.begin(), {"Run", what});
+  std::stable_partition(lines.begin(), lines.end(), [](const HeadLine& line) { return line.first == kResultLabel; });
   return title_lines(run, summary) + verdict(run, summary) + list_of(lines);
 }
 

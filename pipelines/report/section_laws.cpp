@@ -116,7 +116,7 @@ std::string summary_table(const SummaryLaws& summary) {
 std::string laws_section(const RunData& run) {
   const std::string body =
       run.card && !run.card->pairs.empty() ? card_tables(*run.card) : summary_table(run.summary_as<SummaryLaws>());
-  return section("laws", "Laws: parameters", body);
+  return section("laws", "Laws: parameters", "Parameters of the fitted laws with their 95 % intervals.", body);
 }
 
 }  // namespace softgrain::report

@@ -16,7 +16,7 @@ std::string kind_of_scene(const AnySummary& summary) {
     const auto keys = flat_scene(summary.provenance->scene, "scene");
     const auto at = keys.find("kind");
     return at == keys.end() ? "" : at->second;
-  } catch (const BadInput&) {
+  } catch (const InputError&) {
     return "";
   }
 }
@@ -34,7 +34,7 @@ NextSteps steps_of_set(const RunData& run) {
               run.directory + "/" + set.runs.back().directory + "`."};
 }
 
-/// Of a card fitted to measurements, of an experiment or of this program.
+/// Next steps for a card fitted to measurements, of an experiment or of this program.
 NextSteps steps_of_card(const RunData& run) {
   return {"Values with 95 % intervals: `softgrain law eval " + run.directory +
               "/law.toml --delta 0.1 0.2`; in a scene: `softgrain macrosim "
@@ -85,7 +85,7 @@ std::string next_section(const RunData& run) {
   constexpr std::size_t kLines = 2;
   std::string items;
   for (std::size_t k = 0; k < std::min(steps.size(), kLines); ++k) items += "<li>" + marked_up(steps[k]) + "</li>\n";
-  return section("next", "What to do next", "<ul>\n" + items + "</ul>\n");
+  return section("next", "What to do next", "Commands that go on from this run.", "<ul>\n" + items + "</ul>\n");
 }
 
 }  // namespace softgrain::report

@@ -107,7 +107,8 @@ std::string own_data_section(const RunData& run) {
   body += paragraph(fmt::format(
       "Measured outside, made dimensionless with Rs = {} m and E = {} Pa. 95 % intervals: {}.",
       format_number(run.card->spec.shell_radius), format_number(run.card->spec.youngs_modulus), summary.intervals));
-  return section("own-data", "Measured curves", body);
+  return section("own-data", "Measured curves", "The measured curves as they were read, and the law fitted to them.",
+                 body);
 }
 
 }  // namespace softgrain::report

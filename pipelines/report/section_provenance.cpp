@@ -46,7 +46,7 @@ std::string provenance_section(const RunData& run) {
   std::string body = rows(summary, engine_of(summary.engine)) + files(summary);
   if (summary.provenance && !summary.provenance->scene.empty())
     body += "<h3>Scene</h3>\n<pre>" + escape(summary.provenance->scene) + "</pre>\n";
-  return section("provenance", "Provenance", body);
+  return section("provenance", "Provenance", "Everything that is needed to repeat this run.", body);
 }
 
 }  // namespace softgrain::report

@@ -111,7 +111,10 @@ std::string radii_section(const RunData& run) {
   if (!run.measurements || run.measurements->packings.empty()) return "";
   const Measurements& data = *run.measurements;
   const SizeRange range = size_range(data);
-  if (!(range.low > 0.0 && range.low < range.high)) return section("radii", "Packings", packing_facts(data));
+  if (!(range.low > 0.0 && range.low < range.high))
+    return section("radii", "Packings",
+                   "Number of grains by radius in the measured packings, beside the distribution asked for.",
+                   packing_facts(data));
   Plot plot({.id = "radii",
              .title = "Size distribution of the packed grains",
              .x = {.label = "grain radius over shell radius, r/Rs", .scale = Scale::logarithmic},
@@ -129,7 +132,9 @@ std::string radii_section(const RunData& run) {
   const std::string caption =
       "Lines are normalised over the range of radii that is shown. b is the mean over packings of the "
       "maximum-likelihood exponent.";
-  return section("radii", "Packings", packing_facts(data) + figure_row({figure(plot.svg(), caption)}));
+  return section("radii", "Packings",
+                 "Number of grains by radius in the measured packings, beside the distribution asked for.",
+                 packing_facts(data) + figure_row({figure(plot.svg(), caption)}));
 }
 
 namespace {
@@ -169,7 +174,9 @@ std::string sizes_section(const RunData& run) {
   std::vector<std::string> figures;
   for (const SizesSummary& one : run.summary_as<AnySummary>().sizes)
     if (const std::string drawn = passing_figure(one, figures.size()); !drawn.empty()) figures.push_back(drawn);
-  return figures.empty() ? "" : section("sizes", "Sizes: asked and obtained", figure_row(figures));
+  return figures.empty() ? ""
+                         : section("sizes", "Sizes: asked and obtained",
+                                   "Sizes asked for beside those that were drawn.", figure_row(figures));
 }
 
 }  // namespace softgrain::report

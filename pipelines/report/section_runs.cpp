@@ -132,7 +132,7 @@ std::string by_run_figure(const SetSummary& set, const std::vector<RunValue>& nu
   return figure(plot.svg(), "± the standard error within a run, over its samples.");
 }
 
-/// To the reports of the runs, where they are there.
+/// Links to the reports of the runs, where they exist.
 std::string links(const RunData& run, const SetSummary& set) {
   std::string out;
   for (const RunEntry& one : set.runs) {
@@ -155,10 +155,10 @@ std::string runs_section(const RunData& run) {
   std::vector<std::string> figures = run_curve_figures(run, set);
   const std::vector<std::string> dependent = dependence_figures(set, numbers);
   if (figures.empty() && dependent.empty()) figures.push_back(by_run_figure(set, numbers));
-  return section("runs", "Runs side by side",
-                 differences_table(set) + runs_table(set, numbers) + other_numbers_table(set, numbers) +
-                     norms_table(set) + links(run, set) + figure_row(figures) + figure_row(dependent) +
-                     seeds_table(set));
+  return section(
+      "runs", "Runs side by side", "Curves of several runs in one plot, and the keys and numbers that differ.",
+      differences_table(set) + runs_table(set, numbers) + other_numbers_table(set, numbers) + norms_table(set) +
+          links(run, set) + figure_row(figures) + figure_row(dependent) + seeds_table(set));
 }
 
 std::vector<HeadLine> set_lines(const RunData& run) {

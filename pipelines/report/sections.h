@@ -10,9 +10,9 @@ namespace softgrain::report {
 
 bool is_set(const RunData& run);                           ///< whether it is several runs side by side
 std::string runs_section(const RunData& run);              ///< several runs side by side, where the summary is of a set
-std::vector<HeadLine> set_lines(const RunData& run);       ///< of the head, of a set
-std::vector<HeadLine> law_lines(const RunData& run);       ///< of the head: form, solid fraction, material, hash
-std::vector<HeadLine> material_lines(const RunData& run);  ///< of the head
+std::vector<HeadLine> set_lines(const RunData& run);       ///< head of the report of a set of runs
+std::vector<HeadLine> law_lines(const RunData& run);       ///< head: form, solid fraction, material, hash of the laws
+std::vector<HeadLine> material_lines(const RunData& run);  ///< head: material of the grains
 std::string next_section(const RunData& run);              ///< what to do next, in two lines
 std::string heading_section(const RunData& run);           ///< what was run and what came out
 std::string warnings_section(const RunData& run);          ///< what may make the result wrong

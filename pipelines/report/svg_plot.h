@@ -27,7 +27,7 @@ enum class Marker { none, circle, square, triangle, diamond, hollow };
 
 struct SeriesStyle {
   std::string color = palette::black;
-  double width = 1.8;     ///< of the line [px]; 0: no line
+  double width = 1.8;     ///< width of the line [px]; 0: no line
   std::string dash = {};  ///< SVG dash pattern, empty: solid
   double opacity = 1.0;
   Marker marker = Marker::none;
@@ -36,8 +36,8 @@ struct SeriesStyle {
 
 /// Data of one curve. Points that cannot be drawn (NaN; not positive on a logarithmic axis) leave a gap.
 struct Series {
-  std::string label;  ///< in the legend; empty: not listed
-  std::string hover;  ///< shown when the pointer rests on it; empty: the label
+  std::string label;  ///< label in the legend; empty: not listed
+  std::string hover;  ///< text shown when the pointer rests on the curve; empty: the label
   std::vector<double> x;
   std::vector<double> y;
   std::vector<double> y_error = {};   ///< half length of error bars; empty: none
@@ -49,13 +49,13 @@ struct Series {
 };
 
 struct AxisOptions {
-  std::string label;  ///< with unit, e.g. "normal force Fn [N]"
+  std::string label;  ///< label with unit, e.g. "normal force Fn [N]"
   Scale scale = Scale::linear;
   std::optional<double> low = {};  ///< fixed ends; otherwise from the data
   std::optional<double> high = {};
 };
 
-/// The same quantity in another unit, on the right: right value = left value * factor.
+/// Axis on the right with the quantity in another unit: right value = left value * factor.
 struct RightAxis {
   std::string label;
   double factor = 1.0;
@@ -74,8 +74,8 @@ struct PlotOptions {
   AxisOptions x;
   AxisOptions y;
   std::optional<RightAxis> right = {};
-  double width = 560.0;   ///< of the whole drawing [px of the view box]
-  double height = 370.0;  ///< without the legend, which is added below
+  double width = 560.0;   ///< width of the whole drawing [px of the view box]
+  double height = 370.0;  ///< height without the legend, which is added below [px of the view box]
   std::optional<ShadedRange> shaded = {};
   double left_margin = 0.0;  ///< [px] at least; plots above each other share one
 };

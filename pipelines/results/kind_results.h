@@ -20,7 +20,7 @@ struct RunData;
 
 enum class SnapshotChoice {
   all,
-  last  ///< of every series the last state
+  last  ///< the last state of every series
 };
 
 using VisitSnapshot = std::function<void(const Snapshot&)>;
@@ -31,9 +31,9 @@ struct ResultFile {
   bool says_so = false;    ///< the name may be anybody's: the file itself must say that this program wrote it
   /// Whether an HDF5 file is one, whatever its name; null: no HDF5 file, or none that is looked into.
   bool (*is)(const h5::Group& root) = nullptr;
-  /// What is in it, for `check`. Throws FileTrouble.
+  /// What is in it, for `check`. Throws IoError.
   void (*check)(const std::string& path, Findings& out) = nullptr;
-  /// Its states, for pictures and export; null: it holds none. Throws FileTrouble.
+  /// Its states, for pictures and export; null: it holds none. Throws IoError.
   void (*visit)(const std::string& path, SnapshotChoice choice, const VisitSnapshot& visit) = nullptr;
 };
 
@@ -44,7 +44,7 @@ enum class Place {
   search,
   macro,
   macro_scenes,
-  crowds,
+  multi_contact,
   levels,
   normal,
   tangential,
@@ -71,6 +71,9 @@ struct ReportSection {
 /// Label and text of a line at the head of the report.
 using HeadLine = std::pair<std::string, std::string>;
 
+/// Label of the lines that say the result of a run; they are the first ones.
+inline constexpr const char* kResultLabel = "Result";
+
 /// Two sentences on what to do next, with commands in backquotes; empty where the run is not of the kind.
 using NextSteps = std::vector<std::string>;
 
@@ -79,15 +82,15 @@ struct KindResults {
   std::vector<ReportSection> sections{};
   /// What came out, a few lines; null: nothing is said.
   std::vector<HeadLine> (*lines)(const report::RunData& run) = nullptr;
-  /// By which it is set beside others, those that matter most first; null: by nothing.
+  /// Numbers by which a run is set beside others, those that matter most first; null: none.
   std::vector<RunValue> (*values)(const report::RunData& run) = nullptr;
   std::vector<RunCurve> (*curves)(const report::RunData& run) = nullptr;
-  /// For the end of the report of a run of this kind; `run`: its directory.
+  /// Next steps for the end of the report of a run of this kind; `run`: its directory.
   NextSteps (*next)(const report::RunData& run) = nullptr;
-  const char* kind = "";  ///< as the key `kind` of scenes names it
+  const char* kind = "";  ///< value of the key `kind` in scenes
 };
 
-/// Those of every kind; see kinds/kinds.cpp.
+/// Results of every kind; see kinds/kinds.cpp.
 const std::vector<KindResults>& results_of_kinds();
 
 }  // namespace softgrain

@@ -10,9 +10,9 @@ namespace softgrain {
 
 /// What a file of this name is among the results of any kind; null: none.
 const ResultFile* result_file(const std::string& name);
-/// The same of an HDF5 file by what is in it, whatever its name.
+/// What an HDF5 file is among the results of any kind, by its content, whatever its name; null: none.
 const ResultFile* result_file_of(const h5::Group& root);
-/// By its name and, where that may be anybody's, by what it says of itself.
+/// Whether a file is a result of this program, by its name and, where other programs may use that name, by its content.
 bool is_result_file(const std::filesystem::path& path);
 
 }  // namespace softgrain

@@ -27,10 +27,10 @@ void fields(auto&& visit, Of<RunValue> auto& v) {
 /// One curve of a run. Runs share a plot where its title agrees, and a colour rule where the name does.
 struct RunCurve {
   std::string plot;     ///< title
-  std::string x_label;  ///< with unit
-  std::string y_label;  ///< without
+  std::string x_label;  ///< label of the x axis, with unit
+  std::string y_label;  ///< label of the y axis, without unit
   std::string y_unit;   ///< SI, or empty
-  std::string name;     ///< which curve of the run: an engine, a kind of contact; empty: there is one
+  std::string name;     ///< name of the curve in the run: an engine, a kind of contact; empty: there is one
   std::vector<double> x;
   std::vector<double> y;
 };

@@ -26,8 +26,8 @@ void fields(auto&& visit, Of<SweptKey> auto& s) {
 /// One run of the set.
 struct RunEntry {
   std::string name{};
-  std::string directory{};                      ///< within that of the set, or absolute
-  std::map<std::string, std::string> values{};  ///< of the keys that were swept, or in which the runs differ
+  std::string directory{};                      ///< directory of the run, within that of the set, or absolute
+  std::map<std::string, std::string> values{};  ///< values of the keys that were swept, or in which the runs differ
   std::optional<std::int64_t> seed{};
   RunStatus status = RunStatus::not_run;
   std::string reason{};  ///< why it is not usable
@@ -73,7 +73,7 @@ void fields(auto&& visit, Of<NumberOverRuns> auto& s) {
 struct PointEntry {
   std::string name{};
   std::map<std::string, std::string> values{};
-  std::size_t runs = 0;  ///< asked for
+  std::size_t runs = 0;  ///< number of runs asked for
   std::vector<NumberOverRuns> numbers{};
 };
 
@@ -89,8 +89,8 @@ struct RunNorm {
   std::string run{};
   std::string of{};  ///< "axial stress, law against law"
   double percent = kNaN;
-  double error = kNaN;  ///< standard error over samples
-  std::string reason{};   ///< why there is none
+  double error = kNaN;   ///< standard error over samples
+  std::string reason{};  ///< why there is none
 };
 
 void fields(auto&& visit, Of<RunNorm> auto& s) {
@@ -106,11 +106,11 @@ struct SetSummary {
   std::string kind;
   std::vector<SweptKey> over;
   std::vector<std::int64_t> seeds;
-  std::vector<SweptKey> differences;  ///< of scenes that were compared: a value per run, "-" where it has none
+  std::vector<SweptKey> differences;  ///< differences of the compared scenes: a value per run, "-" where it has none
   std::vector<RunEntry> runs;
   std::vector<PointEntry> points;
-  std::string reference;       ///< of the norms
-  std::vector<RunNorm> norms;  ///< of every run but the reference
+  std::string reference;       ///< run that the norms refer to
+  std::vector<RunNorm> norms;  ///< norms of every run but the reference
 };
 
 void fields(auto&& visit, Of<SetSummary> auto& s) {

@@ -64,7 +64,7 @@ std::vector<ForceSummary> forces_of(const std::map<double, std::vector<double>>&
   return out;
 }
 
-/// Of each kind of contact and Delta.
+/// Forces for each kind of contact and Delta.
 std::map<std::string, std::vector<ForceSummary>> forces_of(const Measurements& data, const std::string& relaxation) {
   std::map<std::string, std::map<double, std::vector<double>>> forces;
   for (const PackingRun& run : data.runs) {
@@ -105,7 +105,7 @@ json relaxations_json(const Measurements& data, const std::string& reference, co
     if (!both[0] || !both[1]) continue;
     try {
       out[to_string(kind)] = to_json(compare_relaxations(data, reference, candidate, kind));
-    } catch (const BadInput& e) {  // what was measured is kept when not a point of it can be compared
+    } catch (const InputError& e) {  // what was measured is kept when not a point of it can be compared
       out[to_string(kind)] = {{"reason", e.what()}};
     }
   }
@@ -184,7 +184,7 @@ ComparisonSummary summary_of(const Comparison& c) {
 
 std::vector<std::string> measurement_remarks(const Measurements& data) {
   std::vector<std::string> out;
-  for (const auto& [ignored, relaxation] : words<Relaxation>) {
+  for (const auto& [ignored, relaxation] : enum_names<Relaxation>) {
     std::int64_t bad = 0;
     std::int64_t all = 0;
     for (const PackingRun& run : data.runs) {
@@ -260,21 +260,21 @@ std::vector<std::string> macro_remarks(const std::vector<MacroCurve>& curves) {
   if (!use_pair_law(curves)) return out;
   out.emplace_back(
       "a solid grain of finite radius meets a soft particle by the law measured against a plane; mu of the grains "
-      "stands in for the friction limit of soft contacts");
+      "is taken as the friction limit of soft contacts");
   out.push_back(pair_law_remark());
   return out;
 }
 
 std::vector<std::string> warnings_of(const AnySummary& summary) {
   std::vector<std::string> out;
-  if (from_word<RunStatus>(summary.status) == RunStatus::not_usable && summary.remarks) out = *summary.remarks;
+  if (parse_enum<RunStatus>(summary.status) == RunStatus::not_usable && summary.remarks) out = *summary.remarks;
   out.insert(out.end(), summary.warnings.begin(), summary.warnings.end());
   std::erase(out, "");
   return out;
 }
 
 std::vector<std::string> notes_of(const AnySummary& summary) {
-  if (from_word<RunStatus>(summary.status) == RunStatus::not_usable || !summary.remarks) return {};
+  if (parse_enum<RunStatus>(summary.status) == RunStatus::not_usable || !summary.remarks) return {};
   std::vector<std::string> out = *summary.remarks;
   std::erase(out, "");
   return out;

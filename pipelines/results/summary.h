@@ -24,22 +24,22 @@ namespace softgrain {
 enum class RunStatus { good, not_usable, not_run, written };
 
 template <>
-inline constexpr auto words<RunStatus> = word_list<RunStatus>({{RunStatus::good, "good"},
-                                                               {RunStatus::not_usable, "not usable"},
-                                                               {RunStatus::not_run, "not run"},
-                                                               {RunStatus::written, "written"}});
+inline constexpr auto enum_names<RunStatus> = enum_name_list<RunStatus>({{RunStatus::good, "good"},
+                                                                         {RunStatus::not_usable, "not usable"},
+                                                                         {RunStatus::not_run, "not run"},
+                                                                         {RunStatus::written, "written"}});
 
 /// Grains of one kind whose sizes a distribution said: what was asked, and what came out in the mean of samples.
 struct SizesSummary {
   std::string of;    ///< "solid grains"
-  std::string form;  ///< of the distribution
+  std::string form;  ///< form of the distribution
   std::int64_t samples = 0;
-  double grains = 0.0;              ///< mean number
-  double largest_difference = 0.0;  ///< of the share of the volume that passes, over all samples and sizes
-  double largest_grain = 0.0;       ///< its share of the volume of all: half of it bounds the difference from below
-  std::string unit;                 ///< of the diameters
+  double grains = 0.0;              ///< mean number of grains
+  double largest_difference = 0.0;  ///< largest difference of the volume share that passes, over all samples and sizes
+  double largest_grain = 0.0;       ///< volume share of the largest grain: half of it bounds the difference from below
+  std::string unit;                 ///< unit of the diameters
   std::vector<double> diameter;
-  std::vector<double> asked;  ///< share of the volume that passes there
+  std::vector<double> asked;  ///< share of the volume that passes there, as asked for
   std::vector<double> obtained;
 };
 
@@ -61,13 +61,13 @@ struct SummaryHead {
   RunStatus status = RunStatus::good;
   std::string title;
   std::vector<std::string> remarks;          ///< notes: what else is to be known; of a run that is not usable, why
-  std::map<std::string, std::string> files;  ///< that were written
+  std::map<std::string, std::string> files;  ///< files that were written
   std::vector<SizesSummary> sizes{};
   /// What may make the result wrong for its purpose, with what to do about it; the most important first.
   std::vector<std::string> warnings{};
 
   /// Not usable, and why.
-  void reject(const std::string& remark) {
+  void mark_unusable(const std::string& remark) {
     status = RunStatus::not_usable;
     remarks.push_back(remark);
   }
@@ -82,7 +82,7 @@ void fields(auto&& visit, Of<SummaryHead> auto& s) {
   visit("sizes", s.sizes, kLeftOut);
 }
 
-/// Which program moved the bodies, when it was another.
+/// The program that moved the bodies, when it was another.
 struct EngineUse {
   MacroEngine name = MacroEngine::softgrain;
   std::int64_t ranks = 0;
@@ -134,20 +134,20 @@ std::vector<std::string> warnings_of(const AnySummary& summary);
 std::vector<std::string> notes_of(const AnySummary& summary);
 
 /// Whether a status in words says that the result is to be used.
-inline bool is_good(const std::string& status) { return from_word<RunStatus>(status) == RunStatus::good; }
+inline bool is_good(const std::string& status) { return parse_enum<RunStatus>(status) == RunStatus::good; }
 
-/// Of the packings that were measured: means, standard deviations beside them.
+/// Means over the packings that were measured, with standard deviations.
 struct PackingsSummary {
   std::size_t count = 0;
   double solid_fraction = 0.0;
   double solid_fraction_deviation = 0.0;
-  double exponent = 0.0;  ///< of the radii, by maximum likelihood
+  double exponent = 0.0;  ///< power-law exponent of the radii, by maximum likelihood
   double exponent_deviation = 0.0;
   double contacts_per_grain = 0.0;
   double grains = 0.0;
   double grains_deviation = 0.0;
-  std::optional<std::size_t> broke_off;  ///< whose measurement did not come to its end
-  std::optional<double> seconds;         ///< that making them took
+  std::optional<std::size_t> broke_off;  ///< number of packings whose measurement did not come to its end
+  std::optional<double> seconds;         ///< time that making them took [s]
 };
 
 void fields(auto&& visit, Of<PackingsSummary> auto& s) {
@@ -205,7 +205,7 @@ void fields(auto&& visit, Of<ForceSummary> auto& s) {
 struct MeasuredSummary {
   PackingsSummary packings;
   MeasurementSummary measurement;
-  std::map<std::string, std::vector<ForceSummary>> forces;  ///< of each kind of contact
+  std::map<std::string, std::vector<ForceSummary>> forces;  ///< forces of each kind of contact
   std::optional<MeasurementSummary> reference_measurement;
   nlohmann::json relaxations;  ///< {reference, candidate, kind of contact: {normal, kt_initial, ...}}: means and ratios
 };
@@ -246,7 +246,7 @@ inline std::vector<std::string> not_determined(const StageMeans& s) {
   return out;
 }
 
-/// Of a stage, in the mean of samples with its error; moduli and stresses in Pa.
+/// Fields of a stage: means over samples with their errors; moduli and stresses in Pa.
 void fields(auto&& visit, Of<StageMeans> auto& s) {
   visit("name", s.record.name);
   visit("kind", s.record.kind);
@@ -269,14 +269,14 @@ void fields(auto&& visit, Of<StageMeans> auto& s) {
   visit("q_over_p_end", s.ratio_end, kLeftOut);
 }
 
-/// Of one engine: the largest number of bodies and grains, costs summed over its samples.
+/// Summary of one engine: the largest number of bodies and grains, costs summed over its samples.
 struct EngineSummary {
   std::int64_t samples = 0;
   std::int64_t bodies = 0;
   std::int64_t grains_inside = 0;
-  double soft_volume_share = 0.0;  ///< mean
+  double soft_volume_share = 0.0;  ///< mean share of soft particles in the volume
   Cost cost;
-  std::optional<Cost> preparation;  ///< of the states that samples start from, which engines share
+  std::optional<Cost> preparation;  ///< cost of the states that samples start from, which engines share
   bool usable = false;
   std::optional<LawIdentity> law;
   std::vector<StageMeans> stages;
@@ -317,7 +317,7 @@ struct ComparisonSummary {
   double stress_error = kNaN;
   double stress_error_standard_error = kNaN;
   double lateral_stress_error = kNaN;
-  std::optional<double> strain_error;  ///< of tests in stages: of the strains of axes that go by stress
+  std::optional<double> strain_error;  ///< tests in stages: difference of the strains of axes that go by stress
   std::optional<double> deviator_error{};
   std::optional<double> unloading_modulus_ratio{};  ///< law over twin
   double end_stress_ratio = kNaN;
@@ -349,7 +349,7 @@ ComparisonSummary summary_of(const Comparison& comparison);
 
 /// What macro runs took and how far the law is from the twin.
 struct MacroSummary {
-  std::optional<EngineSummary> macro;  ///< by law
+  std::optional<EngineSummary> macro;  ///< runs by law
   std::optional<EngineSummary> resolved;
   std::optional<EngineSummary> free;  ///< the twin without shells
   std::optional<ComparisonSummary> comparison;

@@ -15,7 +15,8 @@ class Findings {
   std::string lines;  ///< each with two spaces before it
 
   void add(const std::string& key, const nlohmann::json& value, const std::string& line);
-  /// The same, but a line that is there already is not said again: what holds for several scenes.
+  /// Adds a fact and its line like add(), but does not repeat a line that is there already: for what holds for several
+  /// scenes.
   void add_once(const std::string& key, const nlohmann::json& value, const std::string& line);
   /// Nothing is wrong, but it may not be what was meant. Said once.
   void warn(const std::string& text);
@@ -24,7 +25,7 @@ class Findings {
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
   /// Adds to the time that the run will take [s of one core] what a part of it ("measuring", "twins") takes.
   void spend(const std::string& part, double core_seconds);
-  /// Of all parts so far [s of one core].
+  /// Time of all parts so far [s of one core].
   [[nodiscard]] double spent() const;
   /// Says the time of the run and its parts, once all are there; with a warning when it is more than a day.
   void close_times();

@@ -12,8 +12,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "common/core/enum_names.h"
 #include "common/core/vec.h"
-#include "common/core/words.h"
 #include "common/packing/grading.h"
 
 /// every_member(value): references to all members of TYPE, which are named in their order. The list is bound to the
@@ -52,7 +52,7 @@ class KeyText {
   }
   template <class T>
   requires std::is_enum_v<T> KeyText& add(T value) {
-    if constexpr (Worded<T>)
+    if constexpr (NamedEnum<T>)
       return append(to_string(value));
     else
       return add(static_cast<std::underlying_type_t<T>>(value));

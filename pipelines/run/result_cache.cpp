@@ -21,13 +21,13 @@ bool ResultCache::find(const std::string& key, const std::function<void(const h5
   if (path.empty() || !std::filesystem::exists(path)) return false;
   try {
     const std::lock_guard lock(h5::library_mutex());
-    if (check_seal(path) != Seal::sound) throw FileTrouble(path + ": damaged, or written by an earlier version");
+    if (check_seal(path) != Seal::whole) throw IoError(path + ": damaged, or written by an earlier version");
     const h5::Group root = h5::open_file(path);
     require_format(root, format_.c_str(), path);
-    if (root.text("key") != key) throw FileTrouble(path + ": belongs to another result");
+    if (root.text("key") != key) throw IoError(path + ": belongs to another result");
     read(root);
     return true;
-  } catch (const FileTrouble& e) {
+  } catch (const IoError& e) {
     say_(std::string(e.what()) + "; " + again_);
     return false;
   }
@@ -47,7 +47,7 @@ void ResultCache::keep(const std::string& key, const std::function<void(const h5
   }
   std::error_code error;
   std::filesystem::rename(own, file(key), error);
-  if (error) throw FileTrouble(file(key) + ": cannot be written: " + error.message());
+  if (error) throw IoError(file(key) + ": cannot be written: " + error.message());
 }
 
 }  // namespace softgrain

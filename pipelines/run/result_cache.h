@@ -23,7 +23,7 @@ class ResultCache {
   /// Calls `read` with what is kept of this key, the whole text of what determines the result. A file that is damaged
   /// or belongs to another key is ignored, with a remark. Returns whether it was read.
   bool find(const std::string& key, const std::function<void(const h5::Group&)>& read) const;
-  /// Atomic, also among several processes. Throws FileTrouble.
+  /// Atomic, also among several processes. Throws IoError.
   void keep(const std::string& key, const std::function<void(const h5::Group&)>& write) const;
 
   /// `prefix`, "-" and 16 hexadecimal digits (FNV-1a, 64 bits) of a key.

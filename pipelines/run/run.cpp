@@ -20,11 +20,11 @@ Run::Run(RunContext held, const Scene& scene, std::uint64_t scene_seed, const st
       provenance(context.provenance(scene, seed)),
       store(context, scene, seed, text) {}
 
-ExitStatus Run::finish(nlohmann::json summary, const std::string& people) const {
+ExitStatus Run::finish(nlohmann::json summary, const std::string& console) const {
   if (!summary.contains("seconds")) summary["seconds"] = seconds();
   const bool good = is_good(summary.value("status", ""));
   context.finish(std::move(summary), provenance,
-                 people + fmt::format("{:.0f} s; report: {}", seconds(), path("report.html")));
+                 console + fmt::format("{:.0f} s; report: {}", seconds(), path("report.html")));
   write_report(context.directory());
   store.clear();
   return good ? ExitStatus::good : ExitStatus::not_usable;

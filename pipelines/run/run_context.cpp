@@ -48,7 +48,7 @@ void log_to(spdlog::sinks::sink& sink, const std::string& line) {
   sink.flush();
 }
 
-constexpr const char* kRunFile = ".run";  ///< of RunContext::begin()
+constexpr const char* kRunFile = ".run";  ///< name of the file that RunContext::begin() writes
 
 nlohmann::json read_object(const std::string& file) {
   std::error_code ignored;
@@ -59,7 +59,7 @@ nlohmann::json read_object(const std::string& file) {
 
 /// Whether a summary is that of a run that came to its end, usable or not.
 bool has_ended(const nlohmann::json& summary) {
-  const auto status = from_word<RunStatus>(summary.value("status", ""));
+  const auto status = parse_enum<RunStatus>(summary.value("status", ""));
   return status == RunStatus::good || status == RunStatus::not_usable;
 }
 
@@ -86,11 +86,11 @@ constexpr std::size_t kMostWarnings = 5;
 
 /// The result; whether it is not usable, and why; the first kMostWarnings warnings; where the rest is. In lines of at
 /// most kLineWidth.
-std::string console_summary(std::string result, const nlohmann::json& summary) {
+std::string console_text(std::string result, const nlohmann::json& summary) {
   if (!result.empty() && result.back() != '\n') result += '\n';
   const auto all = record_of<AnySummary>(summary);
   std::vector<std::string> warnings = warnings_of(all);
-  const bool bad = from_word<RunStatus>(all.status) == RunStatus::not_usable;
+  const bool bad = parse_enum<RunStatus>(all.status) == RunStatus::not_usable;
   std::string text;
   for (std::size_t at = 0; at < result.size();) {
     const std::size_t end = result.find('\n', at);
@@ -151,7 +151,7 @@ RunContext::RunContext(const CommonOptions& options, const std::string& command,
     log_to(*logger_->sinks().front(), fmt::format("softgrain {} ({}), {} threads: {}", build.version, build.commit,
                                                   threads_, options_.command_line));
   } catch (const spdlog::spdlog_ex& e) {
-    throw FileTrouble(path("log.txt") + ": " + e.what());
+    throw IoError(path("log.txt") + ": " + e.what());
   }
   log_ = std::make_shared<LogScope>([file = logger_->sinks().front()](const std::string& line) {
     try {
@@ -176,11 +176,11 @@ void RunContext::begin(const Scene& scene, std::uint64_t seed, const std::string
     const nlohmann::json before = earlier_run(path(kRunFile), path("summary.json"));
     for (const auto& [key, what] : {std::pair{"scene", "text"}, {"seed", "seed"}, {"beside", "law"}})
       if (before.contains(key) && before[key] != now[key])
-        throw OtherRun(
+        throw FingerprintMismatch(
             fmt::format("{}: belongs to another scene (its {} is another); run without --resume to start anew, or "
                         "choose another --out",
                         directory_, what));
-    if (options_.member && has_ended(read_object(path("summary.json")))) throw HasEnded();
+    if (options_.member && has_ended(read_object(path("summary.json")))) throw AlreadyFinished();
   }
   write_text_atomic(path(kRunFile), now.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   log_text(settings_text(scene, seed));
@@ -201,7 +201,7 @@ void RunContext::say(const std::string& line) const {
   logger_->info("{}", text);
 }
 
-void RunContext::finish(nlohmann::json summary, const std::string& people) const {
+void RunContext::finish(nlohmann::json summary, const std::string& console) const {
   const Provenance build = build_provenance();
   const auto add = [&](const char* key, const std::string& value) {
     if (!summary.contains(key)) summary[key] = value;
@@ -212,20 +212,20 @@ void RunContext::finish(nlohmann::json summary, const std::string& people) const
   add("commit", build.commit);
   const std::string text = summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   write_text_atomic(path("summary.json"), text);
-  const std::string end = console_summary(people, summary);
+  const std::string end = console_text(console, summary);
   log_text(end + remarks_text(summary));
   if (shows_) write_standard_output(options_.json ? text : end);
 }
 
-void RunContext::finish(nlohmann::json summary, const Provenance& provenance, const std::string& people) const {
+void RunContext::finish(nlohmann::json summary, const Provenance& provenance, const std::string& console) const {
   summary["provenance"] = json_of(provenance);
-  finish(std::move(summary), people);
+  finish(std::move(summary), console);
 }
 
 void RunContext::guard(const std::function<void()>& work) const {
   try {
     work();
-  } catch (const NotUsable& e) {
+  } catch (const UnusableResult& e) {
     finish({{"status", to_string(RunStatus::not_usable)}, {"remarks", {e.what()}}},
            "not usable: " + std::string(e.what()));
     throw;

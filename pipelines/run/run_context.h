@@ -45,20 +45,20 @@ struct CommonOptions {
   std::string packing_cache;                       ///< --packing-cache DIR; empty: nothing is kept between runs
   std::string twin_cache;                          ///< --twin-cache DIR; empty: nothing is kept between runs
   bool different = false;                          ///< --different (compare)
-  std::vector<std::string> over;                   ///< --over key=a,b,c (sweep)
+  std::vector<std::string> over;                   ///< swept keys, --over key=a,b,c (sweep)
   std::string seeds;                               ///< --seeds 1..8 (run, microsim, macrosim, sweep); empty: one run
-  /// One of several runs: its summary goes to its file alone, and where it has ended --resume says HasEnded.
+  /// One of several runs: its summary goes to its file alone, and where it has ended --resume says AlreadyFinished.
   bool member = false;
-  std::string to;            ///< --to vtp, lammps-dump or csv (export)
-  std::string command_line;  ///< as given, for provenance
+  std::string to;            ///< file format, --to vtp, lammps-dump or csv (export)
+  std::string command_line;  ///< command line as given, for provenance
 };
 
 /// Thrown where a run that is one of several is found to have ended: its results are those that it would make again.
-struct HasEnded {};
+struct AlreadyFinished {};
 
 /// A directory of another run than the one that --resume asks to go on with.
-struct OtherRun : BadInput {
-  using BadInput::BadInput;
+struct FingerprintMismatch : InputError {
+  using InputError::InputError;
 };
 
 /// results/NAME, or results/NAME_run where results/NAME is a folder with a page that is kept (README.md): a run does
@@ -72,13 +72,13 @@ class RunContext {
   /// `command` names the sub-command, `default_name` the directory under results/ when --out is absent
   /// (default_directory). Unless the run goes on with an earlier one, the results of that are removed
   /// (remove_earlier_run); `read` are files that the run reads beside the inputs of the command line. Throws
-  /// FileTrouble: cannot be written, another run is at work there; BadInput: what is there is not to be removed.
+  /// IoError: cannot be written, another run is at work there; InputError: what is there is not to be removed.
   RunContext(const CommonOptions& options, const std::string& command, const std::string& default_name,
              const std::vector<std::string>& read = {});
 
   /// Says what the run is of, once, before anything is written: scene, seed and what else determines it (`beside`, the
   /// text of a law file, say). A run that goes on must be the same one, whether it was interrupted or had ended. Throws
-  /// OtherRun; HasEnded (CommonOptions::member).
+  /// FingerprintMismatch; AlreadyFinished (CommonOptions::member).
   void begin(const Scene& scene, std::uint64_t seed, const std::string& beside) const;
 
   /// A part of this run in a directory of its own below, with its own log and summary, which goes to the file alone.
@@ -93,9 +93,9 @@ class RunContext {
   [[nodiscard]] double checkpoint_seconds() const { return options_.checkpoint_seconds; }
   /// Directory where measurements are kept for other runs; empty: none.
   [[nodiscard]] const std::string& law_cache() const { return options_.law_cache; }
-  /// The same of prepared packings.
+  /// Directory where prepared packings are kept for other runs; empty: none.
   [[nodiscard]] const std::string& packing_cache() const { return options_.packing_cache; }
-  /// The same of resolved twins.
+  /// Directory where resolved twins are kept for other runs; empty: none.
   [[nodiscard]] const std::string& twin_cache() const { return options_.twin_cache; }
   /// Seed from --seed, else from the scene (`scene_seed`).
   [[nodiscard]] std::uint64_t seed(std::uint64_t scene_seed) const {
@@ -110,12 +110,12 @@ class RunContext {
   /// Writes DIR/summary.json (atomic; "status", "command", "version", "commit" added when absent), prints it on
   /// standard output with --json, else prints `people` (a few lines: what was found, how sure, where the files are) on
   /// standard output.
-  void finish(nlohmann::json summary, const std::string& people) const;
-  /// With "provenance".
-  void finish(nlohmann::json summary, const Provenance& provenance, const std::string& people) const;
+  void finish(nlohmann::json summary, const std::string& console) const;
+  /// Writes and prints the summary as above, with "provenance" in it.
+  void finish(nlohmann::json summary, const Provenance& provenance, const std::string& console) const;
 
-  /// Runs `work`; when it ends with NotUsable (a lost grain, a preparation that does not jam...) a summary that says so
-  /// is written before the error goes on, so that the directory never looks like a run that is still going.
+  /// Runs `work`; when it ends with UnusableResult (a lost grain, a preparation that does not jam...) a summary that
+  /// says so is written before the error goes on, so that the directory never looks like a run that is still going.
   void guard(const std::function<void()>& work) const;
 
  private:
@@ -124,8 +124,8 @@ class RunContext {
   std::string directory_;
   std::shared_ptr<DirectoryLock> lock_;
   int threads_ = 1;
-  bool part_ = false;  ///< of another run
-  bool shows_ = true;  ///< the summary on standard output; not of a part, nor of one of several runs
+  bool part_ = false;  ///< whether it is a part of another run
+  bool shows_ = true;  ///< whether the summary goes to standard output; not for a part, nor for one of several runs
   std::shared_ptr<spdlog::logger> logger_;
   std::shared_ptr<LogScope> log_;  ///< DIR/log.txt, for all that is said while this run is at work
 };

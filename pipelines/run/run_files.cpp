@@ -20,17 +20,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Those that every kind of run leaves.
+/// Names of the files that every kind of run leaves.
 const std::regex& common_names() {
   static const std::regex names(
       "summary\\.json|report\\.html|table\\.(md|csv)|checkpoint\\.h5(\\.previous)?|work|\\.run");
   return names;
 }
 
-/// Of the names, those that say how a run went, and those that a command writes anew in any case.
+/// Whether a file says how a run went, or is one that the command writes anew in any case.
 bool is_rewritten(const std::string& name, const std::string& command) {
   static const std::regex always("summary\\.json|report\\.html|work|\\.run|checkpoint\\.h5(\\.previous)?");
-  static const std::regex fits("law\\.(toml|h5)|law_table\\.(toml|h5)|crowd\\.h5");
+  static const std::regex fits("law\\.(toml|h5)|law_table\\.(toml|h5)|(multi_contact|crowd)\\.h5");
   static const std::regex macro("macro(_initial)?\\.h5|states_macro\\.h5|lammps-[0-9]+");
   return std::regex_match(name, always) || (command == "calibrate" && std::regex_match(name, fits)) ||
          (command == "macrosim" && std::regex_match(name, macro));
@@ -73,7 +73,7 @@ void refuse_to_lose_points(const std::vector<fs::path>& found) {
   for (const fs::path& old : found)
     if (old.filename().string().starts_with("lammps-") && !was_read(old))
       if (const auto points = lammps::count_points(old); points > 0)
-        throw BadInput(
+        throw InputError(
             fmt::format("{} holds {} recorded points that were not read: --resume goes on with them; to begin "
                         "anew, remove it or choose another --out",
                         old.string(), points));
@@ -131,12 +131,12 @@ void remove_earlier_run(const std::string& directory, const std::string& command
   std::sort(lost.begin(), lost.end());
   const std::string elsewhere = "; choose another --out, or move or remove them";
   if (!found.empty() && !was_run_directory(directory))
-    throw BadInput(directory +
-                   ": holds files that no run of this program left there, and that a report would show as " +
-                   "results of this run (" + listed(found) + ")" + elsewhere);
+    throw InputError(directory +
+                     ": holds files that no run of this program left there, and that a report would show as " +
+                     "results of this run (" + listed(found) + ")" + elsewhere);
   if (!lost.empty() && (reads_from_here || command == "compare"))
-    throw BadInput(directory + ": holds results of an earlier run that do not belong to this one (" + listed(lost) +
-                   ")" + elsewhere);
+    throw InputError(directory + ": holds results of an earlier run that do not belong to this one (" + listed(lost) +
+                     ")" + elsewhere);
   refuse_to_lose_points(found);
   add_descriptions(found, inputs);
   // Figures go with the page that shows them, exported states with those that they were made from.
@@ -145,7 +145,7 @@ void remove_earlier_run(const std::string& directory, const std::string& command
   if (!found.empty() && !keeps_states(directory, found)) remove_exports_of(directory);
   for (const fs::path& file : found) {
     fs::remove_all(file, error);
-    if (error) throw FileTrouble(file.string() + ": of an earlier run, cannot be removed: " + error.message());
+    if (error) throw IoError(file.string() + ": of an earlier run, cannot be removed: " + error.message());
   }
 }
 

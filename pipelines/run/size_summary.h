@@ -16,11 +16,11 @@ struct DrawnSizes {
   std::string of;  ///< "solid grains"
   Grading asked;
   std::vector<std::vector<double>> samples;  ///< radii
-  std::string unit = "m";                    ///< of the diameters in the summary
-  double scale = 1.0;                        ///< of them, over twice the radii here
+  std::string unit = "m";                    ///< unit of the diameters in the summary
+  double scale = 1.0;                        ///< diameters in the summary over twice the radii here
 };
 
-/// As the summary says them.
+/// Sizes as the summary says them.
 std::vector<SizesSummary> summaries_of(const std::vector<DrawnSizes>& all);
 /// What `check` says of them.
 void add_sizes(Findings& out, const std::vector<DrawnSizes>& all);

@@ -19,7 +19,7 @@ void TaskStore::save(const std::string& task, const std::function<void(const h5:
   const std::lock_guard lock(h5::library_mutex());
   std::error_code error;
   std::filesystem::create_directories(directory_, error);
-  if (error) throw FileTrouble(directory_ + ": cannot be created: " + error.message());
+  if (error) throw IoError(directory_ + ": cannot be created: " + error.message());
   write_checkpoint(file(task), fingerprint_, content);
 }
 

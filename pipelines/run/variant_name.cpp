@@ -11,7 +11,7 @@ std::string read_variant_name(const SceneTable& variant) {
     return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
   });
   if (!plain || name.front() == '.')
-    variant.mistake("name", "must be made of letters, digits, '-', '_' and '.', which does not lead");
+    variant.add_error("name", "must be made of letters, digits, '-', '_' and '.', which does not lead");
   return name;
 }
 

@@ -9,7 +9,7 @@
 namespace softgrain {
 
 /// Status (good where it has no summary), time and numbers of the run in `directory`, into its entry. Throws
-/// FileTrouble where it holds no results or damaged ones.
+/// IoError where it holds no results or damaged ones.
 void read_numbers(const std::string& directory, RunEntry& entry);
 
 }  // namespace softgrain

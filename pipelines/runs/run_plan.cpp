@@ -17,7 +17,7 @@ constexpr std::size_t kMostRuns = 10000;
 
 using Texts = std::vector<std::string>;
 
-/// At commas outside brackets and quotes.
+/// Splits a text at commas outside brackets and quotes.
 Texts split_values(const std::string& text) {
   Texts parts(1);
   int depth = 0;
@@ -198,7 +198,7 @@ RunPlan make_plan(const Texts& over, const std::string& seeds, const Texts& set)
   if (!problems.empty()) {
     std::string text;
     for (const std::string& one : problems) text += (text.empty() ? "" : "\n") + one;
-    throw BadInput(text);
+    throw InputError(text);
   }
   plan.runs = product_of(plan);
   name_runs(plan);

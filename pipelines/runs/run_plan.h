@@ -11,7 +11,7 @@
 namespace softgrain {
 
 struct PlannedRun {
-  std::string name;                 ///< of its directory: "bodies=40_seed=2"
+  std::string name;                 ///< name of its directory: "bodies=40_seed=2"
   std::vector<std::string> values;  ///< one per key
   std::optional<std::uint64_t> seed;
 };
@@ -27,7 +27,7 @@ struct RunPlan {
 
 /// `over`: texts "key=a,b,c" of --over, each a list as --set takes its values, commas within brackets and quotes left
 /// alone, or whole numbers "1..8"; `seeds`: "1..8", "1,3,7"; `set`: texts of --set, whose keys are not swept as well.
-/// Throws BadInput with everything that is wrong, one a line: no key or value, a key or value twice, more than 10000
+/// Throws InputError with everything that is wrong, one a line: no key or value, a key or value twice, more than 10000
 /// runs.
 RunPlan make_plan(const std::vector<std::string>& over, const std::string& seeds, const std::vector<std::string>& set);
 

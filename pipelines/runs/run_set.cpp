@@ -49,7 +49,7 @@ CommonOptions options_of(const CommonOptions& all, const RunPlan& plan, const Pl
 }
 
 /// Mistakes of many scenes: each once, with the runs that have it where others do not.
-class AllMistakes {
+class AllErrors {
  public:
   void add(const std::string& message, const std::string& run) {
     std::istringstream lines(message);
@@ -68,7 +68,7 @@ class AllMistakes {
       text += fmt::format(" (in the run {}{})", *runs.begin(),
                           runs.size() > 1 ? fmt::format(" and {} more", runs.size() - 1) : "");
     }
-    throw BadInput(text);
+    throw InputError(text);
   }
 
  private:
@@ -76,18 +76,18 @@ class AllMistakes {
   std::map<std::string, std::set<std::string>> runs_;
 };
 
-void refuse_what_does_not_go(const SceneKind& kind, const CommonOptions& options) {
-  if (options.write_only) throw BadInput("--write-only: goes with one run; leave it out, or --over and --seeds");
+void validate_options(const SceneKind& kind, const CommonOptions& options) {
+  if (options.write_only) throw InputError("--write-only: goes with one run; leave it out, or --over and --seeds");
   if (!kind.takes_law && (!options.law.empty() || options.bands > 0))
-    throw BadInput("--law and --bands go with scenes of kind \"macro\"");
+    throw InputError("--law and --bands go with scenes of kind \"macro\"");
   if (!kind.takes_engine && (!options.engine.empty() || options.ranks > 0))
-    throw BadInput("--engine and --ranks go with scenes of kinds \"macro\" and \"material\"");
+    throw InputError("--engine and --ranks go with scenes of kinds \"macro\" and \"material\"");
 }
 
 /// What the kind refuses before it begins.
 void refuse_scene(const ReadyRun& run) {
   const SceneKind& kind = kind_of(run.scene);
-  refuse_what_does_not_go(kind, run.options);
+  validate_options(kind, run.options);
   if (kind.refuse != nullptr)
     kind.refuse(run.scene, run.options);
   else
@@ -96,18 +96,18 @@ void refuse_scene(const ReadyRun& run) {
 
 /// All scenes, sound; nothing is made before that.
 std::vector<ReadyRun> ready_runs(const CommonOptions& options, const RunPlan& plan) {
-  AllMistakes mistakes;
+  AllErrors errors;
   std::vector<ReadyRun> ready;
   for (const PlannedRun& planned : plan.runs) {
     CommonOptions own = options_of(options, plan, planned);
     try {
       ready.push_back({&planned, Scene::load(options.inputs.front(), own.overrides), own});
       refuse_scene(ready.back());
-    } catch (const BadInput& e) {
-      mistakes.add(e.what(), planned.name);
+    } catch (const InputError& e) {
+      errors.add(e.what(), planned.name);
     }
   }
-  mistakes.throw_if_any(plan.runs.size());
+  errors.throw_if_any(plan.runs.size());
   return ready;
 }
 
@@ -176,15 +176,15 @@ void make_run(ReadyRun run, const RunContext& context, RunEntry& entry) {
   run.options.out = context.path(run.planned->name);
   try {
     (void)kind_of(run.scene).run(run.scene, run.options);
-  } catch (const HasEnded&) {
+  } catch (const AlreadyFinished&) {
     context.say(entry.name + ": has ended before");
     std::error_code ignored;
     if (!fs::exists(run.options.out + "/report.html", ignored)) write_report(run.options.out);
-  } catch (const NotUsable& e) {
+  } catch (const UnusableResult& e) {
     entry.reason = e.what();
-  } catch (const OtherRun&) {
+  } catch (const FingerprintMismatch&) {
     throw;
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     entry.reason = e.what();
   }
   if (!entry.reason.empty()) {
@@ -227,7 +227,7 @@ SetSummary summarise(const Scene& scene, const RunPlan& plan, std::vector<RunEnt
   note_swept_keys(plan, summary);
   for (const RunEntry& run : summary.runs)
     if (run.status != RunStatus::good)
-      summary.head.reject(
+      summary.head.mark_unusable(
           fmt::format("run {} is {}{}", run.name, to_string(run.status), run.reason.empty() ? "" : ": " + run.reason));
   return summary;
 }

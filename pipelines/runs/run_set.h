@@ -13,7 +13,7 @@ namespace softgrain {
 /// one that was interrupted goes on where its kind can; runs that the plan has in addition are made. At the end writes
 /// summary.json, table.csv and the report of the set. Status not_usable when a run failed or is not usable.
 ///
-/// Throws BadInput with all that is wrong with any of the scenes before anything is run; FileTrouble and Interrupted
+/// Throws InputError with all that is wrong with any of the scenes before anything is run; IoError and Interrupted
 /// where a run ends so: those before it are kept.
 ExitStatus run_set(const CommonOptions& options, const RunPlan& plan, const std::string& command,
                    const std::string& suffix);

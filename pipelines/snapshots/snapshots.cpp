@@ -21,7 +21,7 @@ using Visit = VisitSnapshot;
 
 bool is_states_file(const std::string& name) { return name.starts_with("states") && name.ends_with(".h5"); }
 
-/// Of a kind that keeps states in a form of its own; null: no such file.
+/// A result file of a kind that keeps states in a form of its own; null: no such file.
 const ResultFile* kind_file(const std::string& name) {
   const ResultFile* file = result_file(name);
   return file == nullptr || file->visit == nullptr ? nullptr : file;
@@ -55,13 +55,13 @@ void visit_file(const std::string& path, const std::string& prefix, SnapshotChoi
   try {
     if (is_states_file(name)) return visit_states(path, choice, renamed);
     if (const ResultFile* file = kind_file(name)) return file->visit(path, choice, renamed);
-  } catch (const FileTrouble& e) {
+  } catch (const IoError& e) {
     const std::string text = e.what();
     if (!reading) throw;
-    throw FileTrouble(text.find(path) != std::string::npos ? text : path + ": damaged: " + text);
+    throw IoError(text.find(path) != std::string::npos ? text : path + ": damaged: " + text);
   }
-  throw BadInput(path +
-                 ": holds no states: give a run directory, or its run.h5, states_*.h5, powder.h5 or grain_box.h5");
+  throw InputError(path +
+                   ": holds no states: give a run directory, or its run.h5, states_*.h5, powder.h5 or grain_box.h5");
 }
 
 std::vector<std::string> files_of(const fs::path& directory) {
@@ -107,7 +107,7 @@ std::vector<std::string> variants_of(const fs::path& directory) {
 bool holds_states(const std::string& file_name) { return is_states_file(file_name) || kind_file(file_name) != nullptr; }
 
 std::vector<std::string> snapshot_files(const std::string& run) {
-  if (!fs::exists(run)) throw FileTrouble(run + ": no such run directory or file");
+  if (!fs::exists(run)) throw IoError(run + ": no such run directory or file");
   if (!fs::is_directory(run)) return {run};
   std::vector<std::string> files = files_of(run);
   for (const std::string& v : variants_of(run)) files.push_back(v);

@@ -12,7 +12,7 @@ namespace softgrain {
 
 /// What is where: states_*.h5 (soft particles, macro runs and their twins), and the files in which kinds keep states in
 /// a form of their own (also one level below, of variants). A directory: all of them, a file: that one.
-/// Empty for a directory without any. Throws FileTrouble (missing, damaged), BadInput for a file
+/// Empty for a directory without any. Throws IoError (missing, damaged), InputError for a file
 /// of another kind.
 std::vector<Snapshot> read_snapshots(const std::string& run, SnapshotChoice choice = SnapshotChoice::all);
 

@@ -32,16 +32,16 @@ void time_law(benchmark::State& state, const AnyLaw& law) {
   state.counters["per_contact"] = seconds_per(touching);
   state.counters["touching"] = touching;
   state.counters["listed"] = s.contacts.size();
-  state.counters["sum_bytes"] = static_cast<double>(s.contacts.particle_sum.size() * sizeof(CrowdSum<3>));
+  state.counters["sum_bytes"] = static_cast<double>(s.contacts.particle_sum.size() * sizeof(MultiContactSum<3>));
   state.counters["memory_bytes"] = static_cast<double>(s.contacts.memory.size() * sizeof(double));
 }
 
 /// A threshold so low that every overlap of the packing carries force: all laws look at the same contacts.
 constexpr double kThreshold = 1e-6;
 
-template <Crowd kCrowd, bool kUnloading, bool kRolling>
-AnyLaw crowd_law(bool solid_partner) {
-  SoftCrowd<kCrowd, kUnloading, kRolling> law;
+template <LawForm kLawForm, bool kUnloading, bool kRolling>
+AnyLaw multi_contact_law(bool solid_partner) {
+  SoftMultiContact<kLawForm, kUnloading, kRolling> law;
   law.form.pressure = {0.6, 2.2, kThreshold};
   law.form.coupling = {0.6, 0.5, 0.1};
   law.partner.log_weight = MonotoneCurve({-1.4, 0.0, 1.4}, {-0.5, -0.4, -0.3});
@@ -50,7 +50,7 @@ AnyLaw crowd_law(bool solid_partner) {
   law.modulus = 5e5;
   law.friction = 0.3;
   law.kt_ratio = 0.3;
-  law.retreat = 1.5;
+  law.unloading = 1.5;
   law.rolling = 0.005;
   law.rolling_friction = 0.05;
   law.j_is_soft = !solid_partner;
@@ -70,20 +70,20 @@ void SoftLawPublished(benchmark::State& state) {
   time_law(state, law);
 }
 
-template <Crowd kCrowd, bool kUnloading, bool kRolling = false>
-void SoftLawCrowd(benchmark::State& state, bool solid_partner) {
-  time_law(state, crowd_law<kCrowd, kUnloading, kRolling>(solid_partner));
+template <LawForm kLawForm, bool kUnloading, bool kRolling = false>
+void SoftLawMultiContact(benchmark::State& state, bool solid_partner) {
+  time_law(state, multi_contact_law<kLawForm, kUnloading, kRolling>(solid_partner));
 }
 
-constexpr auto kPair = SoftLawCrowd<Crowd::pair, false>;
-constexpr auto kPairBack = SoftLawCrowd<Crowd::pair, true>;
-constexpr auto kBag = SoftLawCrowd<Crowd::bag, false>;
-constexpr auto kBagRolling = SoftLawCrowd<Crowd::bag, false, true>;
-constexpr auto kBagBack = SoftLawCrowd<Crowd::bag, true>;
-constexpr auto kDirectional = SoftLawCrowd<Crowd::directional, false>;
-constexpr auto kDirectionalRolling = SoftLawCrowd<Crowd::directional, false, true>;
-constexpr auto kDirectionalAll = SoftLawCrowd<Crowd::directional, true, true>;
-constexpr auto kDirectionalBack = SoftLawCrowd<Crowd::directional, true>;
+constexpr auto kPair = SoftLawMultiContact<LawForm::pair, false>;
+constexpr auto kPairBack = SoftLawMultiContact<LawForm::pair, true>;
+constexpr auto kBag = SoftLawMultiContact<LawForm::isotropic, false>;
+constexpr auto kBagRolling = SoftLawMultiContact<LawForm::isotropic, false, true>;
+constexpr auto kBagBack = SoftLawMultiContact<LawForm::isotropic, true>;
+constexpr auto kDirectional = SoftLawMultiContact<LawForm::directional, false>;
+constexpr auto kDirectionalRolling = SoftLawMultiContact<LawForm::directional, false, true>;
+constexpr auto kDirectionalAll = SoftLawMultiContact<LawForm::directional, true, true>;
+constexpr auto kDirectionalBack = SoftLawMultiContact<LawForm::directional, true>;
 
 // NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): how Google Benchmark registers
 #define SOFT_BENCHMARK(function, name, solid_partner) \
@@ -94,7 +94,7 @@ BENCHMARK(SoftLawPublished)->Unit(benchmark::kMicrosecond)->Name("SoftLaw/publis
 SOFT_BENCHMARK(kPair, pair, false);
 SOFT_BENCHMARK(kPair, pair_solid, true);
 SOFT_BENCHMARK(kPairBack, pair_unloading, false);
-SOFT_BENCHMARK(kBag, bag, false);
+SOFT_BENCHMARK(kIsotropic, isotropic, false);
 SOFT_BENCHMARK(kBag, bag_solid, true);
 SOFT_BENCHMARK(kBagRolling, bag_rolling, false);
 SOFT_BENCHMARK(kBagBack, bag_unloading, false);

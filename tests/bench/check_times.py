@@ -9,6 +9,7 @@ DIR/measured.json, so that runs can be spread over hours and `--check-only` comp
 """
 
 import argparse
+import csv
 import json
 import os
 import subprocess
@@ -23,8 +24,8 @@ SCENES = {
     "quickstart": ("run", {}),
     "published": ("run", {"packing.count": 2, "macro.samples": 1, "macro.bodies": 100}),
     "calibration": ("run", {"packing.count": 8}),
-    "law_table": ("run", {"crowd.packings_min": 7, "crowd.packings_max": 7, "variant": "[]", "plan": "[]"}),
-    "four_decades": ("run", {"crowd.packings_min": 4, "crowd.packings_max": 4, "hierarchy.levels": 2,
+    "law_table": ("run", {"multi_contact.packings_min": 7, "multi_contact.packings_max": 7, "variant": "[]", "plan": "[]"}),
+    "four_decades": ("run", {"multi_contact.packings_min": 4, "multi_contact.packings_max": 4, "hierarchy.levels": 2,
                                   "fixed_point.iterations": 2, "check.packings": 1}),
     "packing_study": ("microsim", {"packing.count": 8}),
     "relaxation_check": ("microsim", {"packing.count": 4}),
@@ -80,13 +81,12 @@ def measured(program, command, scene, changes, directory):
             "seconds": time.monotonic() - start, "status": done.returncode}
 
 
-def table_of(rows):
-    text = "| scene | smaller than shipped | expected [s] | measured [s] | expected / measured |\n|---|---|---|---|---|\n"
-    for name, changes, says, takes in rows:
-        ratio = f"{says / takes:.2f}" if says and takes else "-"
-        smaller = ", ".join(f"`{key}={value}`" for key, value in changes.items()) or "-"
-        text += f"| `{name}` | {smaller} | {says or 0:.3g} | {takes or 0:.3g} | {ratio} |\n"
-    return text
+HEAD = ["scene", "smaller than shipped", "expected [s]", "measured [s]", "expected over measured"]
+
+
+def cells(name, changes, says, takes):
+    return [name, ", ".join(f"{key}={value}" for key, value in changes.items()), f"{says or 0:.3g}", f"{takes or 0:.3g}",
+            f"{says / takes:.2f}" if says and takes else ""]
 
 
 def main():
@@ -97,7 +97,7 @@ def main():
     parser.add_argument("--whole", action="store_true")
     parser.add_argument("--check-only", action="store_true")
     parser.add_argument("--anew", action="store_true", help="forgets what was measured before")
-    parser.add_argument("--table")
+    parser.add_argument("--table", help="CSV file to write, as results/check_times/check_times.csv")
     parser.add_argument("--bound", type=float, help="largest factor between the two; above it the exit status is 1")
     options = parser.parse_args()
     program = str(Path(options.program).resolve())
@@ -117,9 +117,10 @@ def main():
         says, parts = expected(program, scene, changes)
         takes = known.get(key, {}).get("core_seconds")
         rows.append((name, changes, says, takes))
-        print(table_of(rows[-1:]).splitlines()[-1], json.dumps(parts), flush=True)
+        print(" | ".join(cells(*rows[-1])), json.dumps(parts), flush=True)
     if options.table:
-        Path(options.table).write_text(table_of(rows))
+        with open(options.table, "w", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows([HEAD] + [cells(*row) for row in rows])
     far = [name for name, _, says, takes in rows if options.bound and takes
            and not 1.0 / options.bound <= (says or 0.0) / takes <= options.bound]
     if far:

@@ -28,8 +28,8 @@ SETTINGS = [
     "measure.soft_soft.angles_deg=[-0.05,0.05]", "reference.relaxation=least-work",
     "reference.soft_solid.deltas=[0.4]", "reference.count=1", "measure.least_work.settle_time=8",
     "calibrate.min_packings=2", "calibrate.replicates=20", "macro.bodies=8", "macro.samples=1", "macro.steps=4",
-    "macro.strain=0.3", "macro.bands=8", "crowd.packings_min=4", "crowd.packings_max=4", "crowd.increment=0.05", "crowd.settle_time=5", "crowd.tolerance=0.1",
-    "calibrate.crowd.replicates=10",
+    "macro.strain=0.3", "macro.bands=8", "multi_contact.packings_min=4", "multi_contact.packings_max=4", "multi_contact.increment=0.05", "multi_contact.settle_time=5", "multi_contact.tolerance=0.1",
+    "calibrate.multi_contact.replicates=10",
     'configuration=[{arrangement="one",partner="plane",overlap=0.45},{arrangement="cube",partner="plane",overlap=0.3},'
     '{arrangement="one",partner="solid",ratio=1.0,overlap=0.45},{arrangement="one",partner="soft",ratio=1.0,overlap=0.55}]']
 

@@ -7,19 +7,19 @@
 #include <fstream>
 #include <limits>
 
-#include "calibrate/crowd_side_fits.h"
+#include "calibrate/multi_contact_side_fits.h"
 #include "calibrate/threshold_fit.h"
 #include "common/core/error.h"
-#include "common/data/crowd_replicates.h"
 #include "common/data/law_card.h"
 #include "common/data/law_card_format.h"
+#include "common/data/multi_contact_replicates.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/compare/macro_scores.h"
 #include "pipelines/export/export.h"
 #include "pipelines/kinds/cohesive_powder/powder_data.h"
 #include "pipelines/kinds/cohesive_powder/results.h"
 #include "pipelines/kinds/grain_box/results.h"
-#include "pipelines/kinds/law_table/crowd_summary.h"
+#include "pipelines/kinds/law_table/multi_contact_summary.h"
 #include "pipelines/kinds/law_table/results.h"
 #include "pipelines/kinds/macro/results.h"
 #include "pipelines/kinds/soft_particle/results.h"
@@ -56,7 +56,7 @@ void tiny_law_table(const std::string& path) { write_table(synthetic::card(), pa
 
 const std::vector<GoodFile>& good_files() {
   static const std::vector<GoodFile> files{good_file("measurements.h5", test::tiny_measurements),
-                                           good_file("crowd.h5", test::tiny_crowd),
+                                           good_file("multi_contact.h5", test::tiny_multi_contact),
                                            good_file("macro.h5", test::tiny_macro),
                                            good_file("grain_box.h5", test::tiny_grain_boxes),
                                            good_file("powder.h5", test::tiny_powder),
@@ -92,20 +92,20 @@ report::RunData run_of(const std::string& path) {
 }
 
 /// Drawn beside a table, summed up, its slides and retreats taken; a whole fit takes too long here.
-void use_crowd(const std::string& path) {
-  const CrowdMeasurements data = load_crowd(path);
+void use_multi_contact(const std::string& path) {
+  const MultiContactMeasurements data = load_multi_contact(path);
   report::RunData run = run_of(path);
   LawTableEntry entry = synthetic::law_entry();
   entry.solid_fraction = 0.0;
   for (const PackingInfo& p : data.packings)
     entry.solid_fraction += p.solid_fraction / static_cast<double>(data.packings.size());
   run.law_table = LawTable{1, {entry}};
-  run.crowd = data;
+  run.multi_contact = data;
   (void)report::law_table_section(run);
-  (void)crowd_json(data, 0.04).dump();
-  (void)crowd_remarks(data, 0.04);
-  (void)crowd_text(data);
-  (void)side_values(average_states(data), crowd_model(entry.laws.front()));
+  (void)multi_contact_json(data, 0.04).dump();
+  (void)multi_contact_remarks(data, 0.04);
+  (void)multi_contact_text(data);
+  (void)side_values(average_states(data), multi_contact_model(entry.laws.front()));
 }
 
 void use_measurements(const std::string& path, bool fit) {
@@ -142,7 +142,7 @@ void use_states(const std::string& path) {
 void read(const std::string& path, bool fit) {
   attempt([&] {
     const h5::Group root = h5::open_file(path);
-    if (root.has("configurations")) attempt([&] { use_crowd(path); });
+    if (root.has("configurations")) attempt([&] { use_multi_contact(path); });
     if (root.has("runs") && !root.has("configurations")) attempt([&] { use_measurements(path, fit); });
     if (root.has("packs"))
       attempt([&] {

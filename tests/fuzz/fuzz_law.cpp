@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "common/core/error.h"
-#include "common/data/crowd_law.h"
 #include "common/data/law_card.h"
+#include "common/data/multi_contact_law.h"
 #include "tests/fuzz/input_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

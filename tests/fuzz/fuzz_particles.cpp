@@ -20,7 +20,7 @@ void read(const std::vector<std::uint8_t>& bytes) {
   const fuzz::InputFile file(bytes.data(), bytes.size());
   try {
     (void)read_xyzr(file.path(), [](std::int64_t n) {
-      if (n > kMost) throw BadInput("too many");  // as a scene refuses what does not fit into the memory
+      if (n > kMost) throw InputError("too many");  // as a scene refuses what does not fit into the memory
     });
   } catch (const Error&) {
   }

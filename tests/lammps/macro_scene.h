@@ -1,4 +1,4 @@
-// A small macro scene under the directional crowd law, for our engine and as files for LAMMPS.
+// A small macro scene under the directional multi-contact law, for our engine and as files for LAMMPS.
 #pragma once
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ struct MacroScene {
 
 template <bool kUnloading>
 SoftLaws directional_laws(const MacroSpec& spec) {
-  SoftCrowd<Crowd::directional, kUnloading> law;
+  SoftMultiContact<LawForm::directional, kUnloading> law;
   law.form.pressure = {0.8, 3.0, 0.02};
   law.form.coupling = {0.8, 0.15, 0.1};
   law.partner.log_weight = MonotoneCurve({std::log(0.25), 0.0, std::log(4.0)}, {-0.9, -0.5, -0.1});
@@ -31,7 +31,7 @@ SoftLaws directional_laws(const MacroSpec& spec) {
   law.modulus = spec.youngs_modulus;
   law.friction = 0.3;
   law.kt_ratio = 0.4;
-  law.retreat = 1.7;
+  law.unloading = 1.7;
   SoftLaws out;
   out.soft_solid = out.soft_wall = law;
   out.solid_soft = mirrored(law);

@@ -47,7 +47,7 @@ Family hertz_family(const std::string& name, double friction, double restitution
   return {name, law, law, law};
 }
 
-Family pair_family(double damping, Beyond beyond) {
+Family pair_family(double damping, Extrapolation beyond) {
   SoftContact law;
   law.delta = 0.01;
   law.normal = {0.8, 3.0, -0.8 * std::pow(0.01, 3.0)};
@@ -62,19 +62,19 @@ Family pair_family(double damping, Beyond beyond) {
           both};
 }
 
-template <Crowd kCrowd, bool kUnloading, bool kRolling = false>
-Family crowd_family(const std::string& name) {
-  SoftCrowd<kCrowd, kUnloading, kRolling> law;
-  law.form.pressure = {0.8, 3.0, 0.02, {0.01, Beyond::clamp}};
+template <LawForm kLawForm, bool kUnloading, bool kRolling = false>
+Family multi_contact_family(const std::string& name) {
+  SoftMultiContact<kLawForm, kUnloading, kRolling> law;
+  law.form.pressure = {0.8, 3.0, 0.02, {0.01, Extrapolation::clamp}};
   law.form.coupling = {0.8, 0.15, 0.1};
   law.partner = table(false);
   law.modulus = 5e5;
   law.friction = 0.3;
   law.kt_ratio = 0.4;
-  law.retreat = 1.7;
+  law.unloading = 1.7;
   law.rolling = 0.01;
   law.rolling_friction = 0.05;
-  SoftCrowd<kCrowd, kUnloading, kRolling> both = law;
+  SoftMultiContact<kLawForm, kUnloading, kRolling> both = law;
   both.partner = table(true);
   both.j_is_soft = true;
   return {name, HertzMindlin<Tangential::none, false>{HertzCoefficients::of(kMaterial, kMaterial, 0.0, 1.0)}, law,
@@ -87,12 +87,12 @@ std::vector<Family> families() {
           hertz_family<Tangential::rescaled, false>("rescaled", 0.2, 1.0),
           hertz_family<Tangential::none, true>("smooth", 0.0, 0.7),
           {"spring", spring, spring, spring},
-          pair_family(0.1, Beyond::extrapolate),
-          pair_family(0.0, Beyond::clamp),
-          crowd_family<Crowd::pair, true>("crowd pair"),
-          crowd_family<Crowd::bag, false>("bag"),
-          crowd_family<Crowd::directional, true>("directional, unloading"),
-          crowd_family<Crowd::directional, false, true>("directional, rolling")};
+          pair_family(0.1, Extrapolation::extrapolate),
+          pair_family(0.0, Extrapolation::clamp),
+          multi_contact_family<LawForm::pair, true>("crowd pair"),
+          multi_contact_family<LawForm::isotropic, false>("isotropic"),
+          multi_contact_family<LawForm::directional, true>("directional, unloading"),
+          multi_contact_family<LawForm::directional, false, true>("directional, rolling")};
 }
 
 /// Clusters of two to five bodies of one family far from each other, those of the first layer on a plane that moves.

@@ -104,9 +104,9 @@ TEST(Styles, ALawCardIsReadAsTheProgramReadsIt) {
           lammps::law_of_card(path, to_string(kind), {5e5, 0.3, 0.1, secant, ""}, MPI_COMM_WORLD));
       EXPECT_EQ(laws_text({{"law", ours}}), laws_text({{"law", theirs}}));
     }
-  EXPECT_THROW((void)lammps::law_of_card(path, "soft", {5e5, 0.3, 0.0, false, ""}, MPI_COMM_WORLD), BadInput);
-  EXPECT_THROW((void)lammps::law_of_card("no such file", "soft-soft", {}, MPI_COMM_WORLD), FileTrouble);
-  EXPECT_THROW((void)lammps::law_of_file(path, "x", MPI_COMM_WORLD), BadInput);
+  EXPECT_THROW((void)lammps::law_of_card(path, "soft", {5e5, 0.3, 0.0, false, ""}, MPI_COMM_WORLD), InputError);
+  EXPECT_THROW((void)lammps::law_of_card("no such file", "soft-soft", {}, MPI_COMM_WORLD), IoError);
+  EXPECT_THROW((void)lammps::law_of_file(path, "x", MPI_COMM_WORLD), InputError);
 }
 
 }  // namespace

@@ -305,7 +305,7 @@ TEST_P(CellMatter, TheGuardHoldsCellsThatLoseTheirPoresAndCountsThem) {
   for (std::size_t i = 0; i < volume.size(); ++i) EXPECT_GT(relative_pores(start.content[i], volume[i]), 0.02) << i;
   // One step to less room than the solid needs is refused and leaves the packing as it was.
   const double energy = p.now().energy;
-  EXPECT_THROW(p.strain({{0.8, 0.8, 0.8}}), NotUsable);
+  EXPECT_THROW(p.strain({{0.8, 0.8, 0.8}}), UnusableResult);
   EXPECT_EQ(p.now().energy, energy);
 }
 
@@ -313,15 +313,15 @@ TEST(CellPackings, RefuseContentsThatDoNotFit) {
   const Cell<3> cube = box_cell<3>({{2.0, 2.0, 2.0}}, {true, true, true});
   const std::vector<Sphere<3>> two{{Vec3{{0.1, 0.2, 0.3}}, 0.8}, {Vec3{{1.1, 1.2, 1.3}}, 0.8}};
   const CellLaw law{PoreForm{0.03, 2.0}, {}, {}};
-  EXPECT_THROW(CellPacking(law, two, {{2.9, 1.1}}, cube), BadInput);
-  EXPECT_THROW(CellPacking(law, two, {{2.9, 1.1}, {2.9, 0.0}}, cube), BadInput);
-  EXPECT_THROW(CellPacking(law, two, {{2.9, 1.1}, {4.5, 1.0}}, cube), BadInput);
-  EXPECT_THROW(CellPacking({PoreForm{0.03, 1.0}, {}, {}}, two, {{2.9, 1.1}, {2.9, 1.1}}, cube), BadInput);
-  EXPECT_THROW(CellPacking({PoreForm{0.03, 2.0}, {1.0}, {}}, two, {{2.9, 1.1}, {2.9, 1.1}}, cube), BadInput);
-  EXPECT_THROW(CellPacking({PoreForm{0.03, 2.0}, {}, {-0.1, 1.0}}, two, {{2.9, 1.1}, {2.9, 1.1}}, cube), BadInput);
+  EXPECT_THROW(CellPacking(law, two, {{2.9, 1.1}}, cube), InputError);
+  EXPECT_THROW(CellPacking(law, two, {{2.9, 1.1}, {2.9, 0.0}}, cube), InputError);
+  EXPECT_THROW(CellPacking(law, two, {{2.9, 1.1}, {4.5, 1.0}}, cube), InputError);
+  EXPECT_THROW(CellPacking({PoreForm{0.03, 1.0}, {}, {}}, two, {{2.9, 1.1}, {2.9, 1.1}}, cube), InputError);
+  EXPECT_THROW(CellPacking({PoreForm{0.03, 2.0}, {1.0}, {}}, two, {{2.9, 1.1}, {2.9, 1.1}}, cube), InputError);
+  EXPECT_THROW(CellPacking({PoreForm{0.03, 2.0}, {}, {-0.1, 1.0}}, two, {{2.9, 1.1}, {2.9, 1.1}}, cube), InputError);
   CellPacking good(law, two, {{2.9, 1.1}, {2.9, 1.1}}, cube);
-  EXPECT_THROW(good.strain({{1.0, 0.0, 1.0}}), BadInput);
-  EXPECT_THROW(good.strain({{1.0, NAN, 1.0}}), BadInput);
+  EXPECT_THROW(good.strain({{1.0, 0.0, 1.0}}), InputError);
+  EXPECT_THROW(good.strain({{1.0, NAN, 1.0}}), InputError);
 }
 INSTANTIATE_TEST_SUITE_P(BothForms, CellMatter, testing::Bool());
 

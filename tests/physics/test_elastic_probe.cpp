@@ -216,7 +216,7 @@ TEST(ElasticProbe, RefusesWhatIsNoBox) {
   GrainPack pack = simple_cubic(1, 1e-5);
   refresh_contacts(pack);
   pack.walls.pop_back();
-  EXPECT_THROW(elastic_probe(pack, {}), BadInput);
+  EXPECT_THROW(elastic_probe(pack, {}), InputError);
 }
 
 }  // namespace

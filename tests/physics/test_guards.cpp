@@ -125,7 +125,7 @@ TEST(Guards, StepsThatManyContactsMakeUnstableAreRefusedOrNotTaken) {
   const auto refusal = [](const std::string& step) -> std::string {
     try {
       (void)read_particles_scene(Scene::parse(compressed_lattice(step), "scene.toml"));
-    } catch (const BadInput& e) {
+    } catch (const InputError& e) {
       return e.what();
     }
     return "";
@@ -237,7 +237,7 @@ TEST(Guards, BadTablesAreRefused) {
   const auto message = [](const std::string& guards) -> std::string {
     try {
       (void)read_particles_scene(Scene::parse(impact("1.0", "end = 1e-3\nstep = 2e-6", guards), "scene.toml"));
-    } catch (const BadInput& e) {
+    } catch (const InputError& e) {
       return e.what();
     }
     return "accepted";

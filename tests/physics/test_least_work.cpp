@@ -153,12 +153,12 @@ TEST(LeastWork, AnIncrementThatDoesNotConvergeLeavesThePackAlone) {
 
 TEST(LeastWork, RefusesWallsThatPassEachOtherAndGrainsOutside) {
   GrainPack pack = frictional_pack();
-  EXPECT_THROW(advance(pack, uniaxial(pack, 1.01), {}), NotUsable);
+  EXPECT_THROW(advance(pack, uniaxial(pack, 1.01), {}), UnusableResult);
   GrainPack one;
   add_grain(one, {{0.5e-3, 0.5e-3, -0.1e-3}}, 1e-4);
   add_box(one, {{1e-3, 1e-3, 1e-3}}, 0.0);
-  EXPECT_THROW(advance(one, std::vector<Vec3>(6), {}), NotUsable);
-  EXPECT_THROW(advance(pack, std::vector<Vec3>(5), {}), BadInput);
+  EXPECT_THROW(advance(one, std::vector<Vec3>(6), {}), UnusableResult);
+  EXPECT_THROW(advance(pack, std::vector<Vec3>(5), {}), InputError);
 }
 
 TEST(LeastWork, GrainsWithoutContactsStayWhenWallsStay) {

@@ -215,10 +215,10 @@ TEST(LeastWorkSymmetry, AGrainThatIsNotCentredMeetsAPlaneWithoutFriction) {
 TEST(LeastWorkSymmetry, RefusesFrictionAndSkewPlanes) {
   GrainPack pack = make_lattice(Lattice::face_centred, 1, touching(Lattice::face_centred));
   pack.walls[0].friction = 0.3;
-  EXPECT_THROW(advance(pack, std::vector<Vec3>(6), {}), BadInput);
+  EXPECT_THROW(advance(pack, std::vector<Vec3>(6), {}), InputError);
   pack.walls[0].friction = 0.0;
   pack.walls[0].normal = {{0.8, 0.6, 0.0}};
-  EXPECT_THROW(advance(pack, std::vector<Vec3>(6), {}), BadInput);
+  EXPECT_THROW(advance(pack, std::vector<Vec3>(6), {}), InputError);
 }
 
 }  // namespace

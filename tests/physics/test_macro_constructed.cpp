@@ -83,7 +83,7 @@ TEST(MacroConstructed, AShareThatDoesNotFitIsRefusedWithWhatFits) {
   try {
     (void)make_packing(spec, 3, 0);
     FAIL() << "half of the volume in voids that cannot hold it";
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("hold at most"), std::string::npos) << e.what();
   }
 }

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "common/contact/crowd_from_table.h"
+#include "common/contact/multi_contact_from_table.h"
 #include "common/dynamics/contact_virial.h"
 #include "common/dynamics/contact_watch.h"
 #include "common/dynamics/force_pass.h"
@@ -15,7 +15,7 @@
 #include "macrosim/hard_bodies.h"
 #include "macrosim/preparation.h"
 #include "macrosim/pressed_box.h"
-#include "tests/support/crowd.h"
+#include "tests/support/multi_contact.h"
 
 namespace softgrain {
 namespace {
@@ -73,9 +73,9 @@ TEST_F(PeriodicTwin, VirialOfForcesIsThatOfContacts) {
 TEST_F(PeriodicTwin, VirialOfForcesIsThatOfContactsWhereSoftParticlesResistRolling) {
   const LawTable table = load_law_table(SOFTGRAIN_SOURCE_DIR "/results/law_table/law_table.toml");
   ASSERT_TRUE(main_entry(table).rolls());
-  CrowdChoices choices;
+  MultiContactChoices choices;
   choices.modulus = spec_.youngs_modulus;
-  const CrowdLaws laws = make_crowd_laws(main_entry(table), choices);
+  const MultiContactLaws laws = make_multi_contact_laws(main_entry(table), choices);
   MacroSystem macro =
       make_law_system(spec_, packing_, {laws.soft_solid, laws.solid_soft, laws.soft_plane, laws.soft_soft}, 1.0);
   strain_box(macro.system, macro.box, {{0.10, 0.12, 0.14}});
@@ -223,7 +223,7 @@ TEST(PeriodicCell, VoidsAreFilledAcrossFaces) {
 /// Too few bodies for a cell that must be longer than two of the largest: said before any work.
 TEST(PeriodicCell, TooFewBodiesAreRefused) {
   MacroSpec spec = periodic_spec(6);
-  EXPECT_THROW((void)make_macro_packing(spec, 1, 0), BadInput);
+  EXPECT_THROW((void)make_macro_packing(spec, 1, 0), InputError);
 }
 
 }  // namespace

@@ -249,7 +249,7 @@ TEST(MacroPreparation, WhatCannotBePreparedSaysHowFarItCame) {
     try {
       (void)make_macro_packing(spec, 1, 0);
       ADD_FAILURE() << "prepared in 20 passes: " << to_string(p);
-    } catch (const NotUsable& e) {
+    } catch (const UnusableResult& e) {
       const std::string text = e.what();
       for (const char* word : {"did not reach a pressure of 1e-05 E", "capped after 20 passes", "walls at", "fill"})
         EXPECT_NE(text.find(word), std::string::npos) << word << " not in " << text;

@@ -156,7 +156,7 @@ TEST_P(EveryScene, AlikeMeansTheSameStrain) {
   Scene scene(GetParam());
   MacroStage& stage = scene.add(StageKind::isotropic);
   by_stress(stage, {{900.0, 900.0, 900.0}});
-  stage.alike = true;
+  stage.isotropic = true;
   const MacroCurve c = scene.run();
   ASSERT_TRUE(c.usable) << c.note;
   for (std::size_t k = 0; k < c.strain.size(); ++k) {
@@ -331,7 +331,7 @@ TEST(MacroStages, IncrementsThatDoNotComeToRestAreSaid) {
   EXPECT_NE(capped.note.find("capped at strain 0.100000, increment 2 of the 3 before it (residual 0.5"),
             std::string::npos)
       << capped.note;
-  EXPECT_THROW((void)run({good, good, {RelaxationEnd::diverged, 10, HUGE_VAL}}), NotUsable);
+  EXPECT_THROW((void)run({good, good, {RelaxationEnd::diverged, 10, HUGE_VAL}}), UnusableResult);
 }
 
 /// The short forms are stages too: the same bits.

@@ -2,7 +2,7 @@
 // known. Nor do laws of soft particles with several neighbours, whatever way they are led.
 #include <gtest/gtest.h>
 
-#include "common/contact/crowd_from_table.h"
+#include "common/contact/multi_contact_from_table.h"
 #include "common/core/random.h"
 #include "common/dynamics/force_pass.h"
 #include "tests/support/impact.h"
@@ -70,7 +70,7 @@ TEST(Passivity, WhatThePublishedSpringMakesIsBounded) {
 }
 
 /// One soft particle over a plane, beside a second plane, a solid sphere and a soft one; all but the first stay.
-System3 crowded(const CrowdLaws& laws) {
+System3 crowded(const MultiContactLaws& laws) {
   System3 s;
   s.materials = {{"soft", 2500.0, 5e5, 0.3, false}, {"solid", 2500.0, 5e5, 0.3, false}};
   s.laws = LawSet(2);
@@ -100,7 +100,7 @@ struct CycleWork {
 };
 
 /// Along a closed way that begins and ends out of touch: out of the corner, into it, all about, and back.
-CycleWork lead_around(const CrowdLaws& laws, std::uint64_t seed) {
+CycleWork lead_around(const MultiContactLaws& laws, std::uint64_t seed) {
   System3 s = crowded(laws);
   RandomStream random(seed, RandomPurpose::test, 0);
   std::array<std::array<double, 4>, 6> amplitude{};
@@ -143,14 +143,14 @@ CycleWork lead_around(const CrowdLaws& laws, std::uint64_t seed) {
 
 TEST(Passivity, NoCycleOfPressingSlidingRollingAndLettingGoGainsEnergy) {
   const LawTable table = load_law_table(SOFTGRAIN_SOURCE_DIR "/results/law_table/law_table.toml");
-  for (const Crowd form : {Crowd::pair, Crowd::bag, Crowd::directional})
+  for (const LawForm form : {LawForm::pair, LawForm::isotropic, LawForm::directional})
     for (const bool rolling : {false, true})
       for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-        CrowdChoices choices;
+        MultiContactChoices choices;
         choices.form = form;
         choices.modulus = 5e5;
         choices.rolling = rolling;
-        const CycleWork work = lead_around(make_crowd_laws(main_entry(table), choices), seed);
+        const CycleWork work = lead_around(make_multi_contact_laws(main_entry(table), choices), seed);
         EXPECT_GT(work.net, 1e-3 * work.way) << to_string(form) << (rolling ? ", rolling, " : ", ") << seed;
       }
 }
@@ -159,11 +159,11 @@ TEST(Passivity, NoCycleOfPressingSlidingRollingAndLettingGoGainsEnergy) {
 /// moment gains.
 TEST(Passivity, WhatIsPressedOnAfterASlideGivesNothingForNothing) {
   const LawTable table = load_law_table(SOFTGRAIN_SOURCE_DIR "/results/law_table/law_table.toml");
-  CrowdChoices choices;
+  MultiContactChoices choices;
   choices.modulus = 5e5;
   choices.friction = 5.0;  // nothing slides: all that goes in comes back, or less
   choices.wall_friction = 5.0;
-  const CrowdLaws laws = make_crowd_laws(main_entry(table), choices);
+  const MultiContactLaws laws = make_multi_contact_laws(main_entry(table), choices);
   System3 s = crowded(laws);
   Vec3 at{{-0.4, 0.0, 0.1}};
   Vec3 force{};

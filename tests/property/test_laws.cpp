@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/contact/crowd_from_table.h"
+#include "common/contact/multi_contact_from_table.h"
 #include "common/core/error.h"
 #include "common/core/monotone_curve.h"
 #include "tests/property/random_cloud.h"
-#include "tests/support/synthetic_crowd.h"
+#include "tests/support/synthetic_multi_contact.h"
 
 namespace {
 
@@ -84,10 +84,10 @@ LawTable any_table() {
 
 /// Numbers of an entry that forces depend on.
 std::vector<double> numbers_of(const LawTableEntry& e) {
-  std::vector<double> out{e.volume_max, e.overlap_max, e.retreat.value, e.slide_plane.kt_ratio.value,
+  std::vector<double> out{e.volume_max, e.overlap_max, e.unloading.value, e.slide_plane.kt_ratio.value,
                           e.slide_soft.friction.value};
-  for (const CrowdLaw& law : e.laws) {
-    for (const CrowdParameterName& p : kCrowdParameters) out.push_back((law.*p.estimate).value);
+  for (const MultiContactLaw& law : e.laws) {
+    for (const MultiContactParameterName& p : kMultiContactParameters) out.push_back((law.*p.estimate).value);
     for (const PartnerRow& row : law.partners) out.insert(out.end(), {row.weight.value, row.exponent.value});
   }
   return out;
@@ -116,7 +116,7 @@ RC_GTEST_PROP(LawTableProperty, BeyondItsEndsTheNearestEntryHoldsOrNone, ()) {
   const LawTable table = any_table();
   const double beyond = table.entries.back().solid_fraction + 0.0201 + 0.2 * share();
   std::string remark;
-  RC_ASSERT_THROWS_AS((void)entry_at(table, beyond, RangePolicy::reject, remark), BadInput);
+  RC_ASSERT_THROWS_AS((void)entry_at(table, beyond, RangePolicy::reject, remark), InputError);
   const auto clamped = numbers_of(entry_at(table, beyond, RangePolicy::clamp, remark));
   const auto last = numbers_of(table.entries.back());
   for (std::size_t n = 0; n < last.size(); ++n) RC_ASSERT(std::abs(clamped[n] - last[n]) < kRounding);
@@ -147,18 +147,18 @@ RC_GTEST_PROP(LawProperty, AThresholdLawStartsAtZeroAndGrows, ()) {
 
 /// The equivalent volume is homogeneous of degree one in what contacts take, so one contact alone feels no coupling.
 RC_GTEST_PROP(LawProperty, OneContactAloneKnowsNoCoupling, ()) {
-  CrowdLaw coupled = synthetic::crowd_law(Crowd::directional, 0.05 * share());
+  MultiContactLaw coupled = synthetic::multi_contact_law(LawForm::directional, 0.05 * share());
   coupled.m0.value = 2.0 * share();
   coupled.m1.value = 2.0 * share() - 1.0;
   coupled.m2.value = 0.5 * share();
-  CrowdLaw plain = coupled;
-  plain.form = Crowd::bag;
+  MultiContactLaw plain = coupled;
+  plain.form = LawForm::isotropic;
   plain.m0.value = 1.0;
   plain.m1.value = plain.m2.value = 0.0;
-  const std::vector<CrowdPartner> one{{PartnerKind::plane, 0.0, {{0.0, 0.6, 0.8}}}};
+  const std::vector<MultiContactPartner> one{{PartnerKind::plane, 0.0, {{0.0, 0.6, 0.8}}}};
   const std::vector<double> overlap{0.05 + 0.4 * share()};
-  const double with = crowd_forces(crowd_model(coupled), one, overlap).front();
-  const double without = crowd_forces(crowd_model(plain), one, overlap).front();
+  const double with = multi_contact_forces(multi_contact_model(coupled), one, overlap).front();
+  const double without = multi_contact_forces(multi_contact_model(plain), one, overlap).front();
   RC_ASSERT(with >= 0.0);
   RC_ASSERT(std::abs(with - without) <= 1e-9 * (1e-6 + without));
 }

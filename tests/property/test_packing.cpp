@@ -33,7 +33,7 @@ SoftParticleSpec any_spec() {
 std::optional<ShellPacking> made(const SoftParticleSpec& spec, std::uint64_t seed, std::uint64_t index) {
   try {
     return generate_shell_packing(spec, seed, index);
-  } catch (const BadInput&) {
+  } catch (const InputError&) {
     return std::nullopt;
   }
 }

@@ -91,14 +91,14 @@ class CardTest(unittest.TestCase):
         self.assertAlmostEqual(dimensionless, pair.a * (0.2**pair.b - pair.delta**pair.b), delta=1e-15)
         self.assertAlmostEqual(self.law.force(0.2, radius=0.1, modulus=3e5) / (dimensionless * 3e5 * 0.01), 1.0, delta=1e-14)
         for bad in ({"radius": 0.0}, {"modulus": -1.0}, {"radius": np.nan}):
-            with self.assertRaisesRegex(softgrain.BadInput, "must be above 0"):
+            with self.assertRaisesRegex(softgrain.InputError, "must be above 0"):
                 self.law.force(0.2, **bad)
 
     def test_beyond_the_range(self):
         end = self.law.pair("soft-solid").delta_max
         self.assertEqual(self.law.force(0.9, beyond="clamp"), self.law.force(end, beyond="clamp"))
         self.assertGreater(self.law.force(0.9, beyond="extrapolate"), self.law.force(end))
-        with self.assertRaises(softgrain.BadInput) as caught:
+        with self.assertRaises(softgrain.InputError) as caught:
             self.law.force([0.1, 0.9], beyond="error")
         self.assertEqual((caught.exception.key, caught.exception.mistakes[0].value), ("delta", "0.9"))
         self.assertIn("at most 0.3", caught.exception.allowed)
@@ -107,10 +107,10 @@ class CardTest(unittest.TestCase):
     def test_mistakes_name_key_and_nearest(self):
         for key, nearest, ask in (("kind", "soft-solid", lambda: self.law.force(0.2, "soft-sold")),
                                   ("beyond", "clamp", lambda: self.law.force(0.2, beyond="clmp"))):
-            with self.assertRaises(softgrain.BadInput) as caught:
+            with self.assertRaises(softgrain.InputError) as caught:
                 ask()
             self.assertEqual((caught.exception.key, caught.exception.nearest), (key, nearest))
-        with self.assertRaises(ValueError):  # BadInput is one
+        with self.assertRaises(ValueError):  # InputError is one
             self.law.tangential_stiffness(0.2, slope="steepest")
 
     def test_other_threads_run_meanwhile(self):
@@ -174,7 +174,7 @@ class TableTest(unittest.TestCase):
     law = softgrain.Law.load(TABLE)
 
     def test_values_are_those_of_the_program(self):
-        for form in ("pair", "bag", "directional"):
+        for form in ("pair", "isotropic", "directional"):
             for partner, ratio in (("plane", 1.0), ("solid", 0.5), ("soft", 0.8)):
                 for arrangement in ("one", "cube", "icosahedron"):
                     with self.subTest(form=form, partner=partner, arrangement=arrangement):
@@ -226,7 +226,7 @@ class TableTest(unittest.TestCase):
                     lambda: self.law.force(0.1, "solid", ratio=0.0), lambda: self.law.force(0.1, arrangement="cub"),
                     lambda: self.law.force(0.3, arrangement="cube", beyond="error"),
                     lambda: self.law.forces([[0.1, 0.1]], [[1, 0, 0]]), lambda: self.law.forces([0.1], [[0, 0, 0]])):
-            with self.assertRaises(softgrain.BadInput):
+            with self.assertRaises(softgrain.InputError):
                 ask()
         self.assertEqual(self.law.about(solid_fraction=0.9, range="clamp")["solid_fraction"], max(
             e["solid_fraction"] for e in self.law.card["entry"]))
@@ -265,11 +265,11 @@ class ArraysTest(unittest.TestCase):
         table = softgrain.Law.load(TABLE)
         for wrong in (np.array([True, False]), True, ["0.1"], "0.1", [[0.1], [0.1, 0.2]], np.array([0.1j])):
             for ask in (*self.asks(), lambda d: table.forces(d, [[1, 0, 0]])):
-                with self.assertRaisesRegex(softgrain.BadInput, "array of numbers"):
+                with self.assertRaisesRegex(softgrain.InputError, "array of numbers"):
                     ask(wrong)
-        with self.assertRaisesRegex(softgrain.BadInput, "flags choose elements"):
+        with self.assertRaisesRegex(softgrain.InputError, "flags choose elements"):
             table.force(np.array([True]))
-        with self.assertRaisesRegex(softgrain.BadInput, "one column per neighbour"):
+        with self.assertRaisesRegex(softgrain.InputError, "one column per neighbour"):
             table.forces([], [[1, 0, 0]])
 
 
@@ -283,19 +283,19 @@ class LoadTest(InEmptyFolder):
         self.assertEqual(softgrain.Law.load("law_table.toml").force(0.2), softgrain.Law.load(TABLE).force(0.2))
 
     def test_wrong_files(self):
-        with self.assertRaises(softgrain.FileTrouble):
+        with self.assertRaises(softgrain.IoError):
             softgrain.Law.load("nothing.toml")
         text = CARD.read_text().replace("delta_max = 0.3", "delta_mx = 0.3", 1)
         with open("law.toml", "w", encoding="utf-8") as file:
             file.write(text)
-        with self.assertRaises(softgrain.BadInput) as caught:
+        with self.assertRaises(softgrain.InputError) as caught:
             softgrain.Law.load("law.toml")
         error = caught.exception
         self.assertEqual((error.file, error.key, error.nearest), ("law.toml", "delta_max", "delta_mx"))
         self.assertEqual(text.splitlines()[error.line - 1], "[pair.validity]")
-        with self.assertRaisesRegex(softgrain.BadInput, "cell law"):
+        with self.assertRaisesRegex(softgrain.InputError, "cell law"):
             softgrain.Law.load(next((ROOT / "results/material_law").glob("cell_law*.toml")))
-        with self.assertRaisesRegex(softgrain.BadInput, "without"):
+        with self.assertRaisesRegex(softgrain.InputError, "without"):
             os.mkdir("empty")
             softgrain.Law.load("empty")
 

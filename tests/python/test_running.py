@@ -44,7 +44,7 @@ class RunTest(InEmptyFolder):
 
     def test_masked_values_are_refused(self):
         for masked in (np.ma.array([0.1, 0.2], mask=[False, True]), np.ma.masked):
-            with self.assertRaisesRegex(softgrain.BadInput, "time.end .*masked"):
+            with self.assertRaisesRegex(softgrain.InputError, "time.end .*masked"):
                 softgrain.check(two_beads(time={"end": masked}))
 
     def test_arrays_have_names_and_units(self):
@@ -82,7 +82,7 @@ class RunTest(InEmptyFolder):
         del scene["particle"]
         try:
             run = softgrain.run(scene, progress=False)
-        except softgrain.BadInput as e:
+        except softgrain.InputError as e:
             self.assertNotIn("no such file", str(e))
             raise
         self.assertEqual(len(run.array("bodies/radius")), 2)
@@ -119,7 +119,7 @@ class RunTest(InEmptyFolder):
         self.assertEqual(os.listdir("."), ["stopped"])
         self.assertFalse(os.path.exists("stopped/summary.json"))
         other = {**LONG, "time": {"end": 1e-2}}
-        with self.assertRaisesRegex(softgrain.BadInput, "another scene"):
+        with self.assertRaisesRegex(softgrain.InputError, "another scene"):
             softgrain.run(other, set=SMALL_STEPS, out="stopped", resume=True, progress=False)
         before = processor_time_of_children()
         run = softgrain.run(LONG, set=SMALL_STEPS, out="stopped", resume=True, progress=False)
@@ -130,13 +130,13 @@ class RunTest(InEmptyFolder):
     def test_not_usable(self):
         """The quickstart with too few grains: its laws are underdetermined, status 3; what it wrote is there."""
         options = [word for setting in SMALL_PIPELINE for word in ("--set", setting)]
-        with self.assertRaises(softgrain.NotUsable) as caught:
+        with self.assertRaises(softgrain.UnusableResult) as caught:
             softgrain.run(ROOT / "pipelines/quickstart.toml", out="few", options=options, progress=False)
         run = caught.exception.run
         self.assertEqual(run.status, "not usable")
         card = softgrain.Law.load(run.directory / "law.toml")
         self.assertIn("underdetermined", [card.pair(kind).status for kind in ("soft-solid", "soft-soft")])
-        self.assertIn("bag", repr(run.law()))
+        self.assertIn("isotropic", repr(run.law()))
         curve = run.macro()[0]
         self.assertEqual((curve.units["stress_axial"], curve.units["strain"]), ("Pa", "1"))
         self.assertEqual(len(curve["strain"]), len(curve["stress_axial"]))
@@ -157,7 +157,7 @@ class RefusedTest(InEmptyFolder):
 
     def test_all_mistakes_of_a_dict_at_once(self):
         for ask in (softgrain.check, softgrain.run):
-            with self.assertRaises(softgrain.BadInput) as caught:
+            with self.assertRaises(softgrain.InputError) as caught:
                 ask(self.bad(), set={"material.glass.nu": 0.7})
             found = {m.path or m.setting: m for m in caught.exception.mistakes}
             self.assertEqual(set(found), {"particle[0].raduis", "particle[1].radius", "time.end", "materal", "material.glass.nu"})
@@ -172,7 +172,7 @@ class RefusedTest(InEmptyFolder):
 
     def test_a_file_names_its_line(self):
         Path("scene.toml").write_text(SOFT.read_text().replace('E = "0.5 MPa"', 'E = "0.5 kg"'), encoding="utf-8")
-        with self.assertRaises(softgrain.BadInput) as caught:
+        with self.assertRaises(softgrain.InputError) as caught:
             softgrain.run("scene.toml", progress=False)
         error = caught.exception
         self.assertEqual((error.file, error.key), ("scene.toml", "E"))
@@ -180,23 +180,23 @@ class RefusedTest(InEmptyFolder):
         self.assertIn("MPa", error.allowed)
 
     def test_what_toml_cannot_say(self):
-        with self.assertRaises(softgrain.BadInput) as caught:
+        with self.assertRaises(softgrain.InputError) as caught:
             softgrain.run(two_beads(time={"end": object()}))
         self.assertEqual(caught.exception.mistakes[0].path, "time.end")
 
     def test_kinds(self):
-        with self.assertRaises(softgrain.BadInput) as caught:
+        with self.assertRaises(softgrain.InputError) as caught:
             softgrain.run({"kind": "particels"})
         self.assertIn('"particles"', caught.exception.allowed)  # of all commands
 
     def test_missing_files(self):
-        with self.assertRaises(softgrain.FileTrouble) as caught:
+        with self.assertRaises(softgrain.IoError) as caught:
             softgrain.run("nothing.toml", progress=False)
         self.assertEqual(str(pickle.loads(pickle.dumps(caught.exception))), "nothing.toml: no such file")
         before = os.environ.get("SOFTGRAIN_PROGRAM")
         os.environ["SOFTGRAIN_PROGRAM"] = "/nowhere/softgrain"
         try:
-            with self.assertRaisesRegex(softgrain.FileTrouble, "/nowhere/softgrain"):
+            with self.assertRaisesRegex(softgrain.IoError, "/nowhere/softgrain"):
                 softgrain.run(two_beads())
         finally:
             if before is None:

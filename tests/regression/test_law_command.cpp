@@ -77,9 +77,10 @@ TEST(LawCommand, EveryActionSpeaksJson) {
   const nlohmann::json values = json_of("law eval --json " + card + "--delta 0.2 --kind soft-solid --radius '16 mm'");
   EXPECT_NEAR(values["laws"][0]["values"][0]["force"].get<double>(), 128.0 * 0.0049371, 1e-4);
   EXPECT_EQ(values["units"]["force"], "N");
-  const nlohmann::json crowd = json_of("law eval --json " + table + "--arrangement cube --delta 0.15");
-  EXPECT_EQ(crowd["laws"][0]["values"][0]["forces"].size(), 6u);
-  EXPECT_EQ(crowd["laws"][0]["intervals"], "95 %, bootstrap over packings");  // from the refits in the committed .h5
+  const nlohmann::json multi_contact = json_of("law eval --json " + table + "--arrangement cube --delta 0.15");
+  EXPECT_EQ(multi_contact["laws"][0]["values"][0]["forces"].size(), 6u);
+  EXPECT_EQ(multi_contact["laws"][0]["intervals"],
+            "95 %, bootstrap over packings");  // from the refits in the committed .h5
   const nlohmann::json refused = json_of("law eval --json " + card + "--beyond error --to 0.5 --kind soft-solid", 3);
   EXPECT_EQ(refused["status"], "not usable");
   EXPECT_TRUE(refused["laws"][0]["values"].back()["force"].is_null());

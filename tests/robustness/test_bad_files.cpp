@@ -159,7 +159,7 @@ class BadResults : public BadFiles {
 
 TEST_F(BadResults, TheGoodOnesAreGood) {
   for (const Writer write :
-       {tiny_measurements, tiny_crowd, tiny_macro, tiny_grain_boxes, tiny_states, tiny_particles_run}) {
+       {tiny_measurements, tiny_multi_contact, tiny_macro, tiny_grain_boxes, tiny_states, tiny_particles_run}) {
     write(directory_.file("good.h5"));
     EXPECT_EQ(run_the_program("check '" + directory_.file("good.h5") + "'").status, 0);
   }
@@ -190,9 +190,9 @@ TEST_F(BadResults, Measurements) {
   bad([](Hdf5Edit& f) { f.set_attribute("runs", "relaxations", 5LL); }, {"relaxation_1: missing attribute"});
 }
 
-TEST_F(BadResults, Crowds) {
+TEST_F(BadResults, MultiContacts) {
   const auto bad = [&](const Edit& edit, const std::vector<std::string>& words) {
-    expect_refused(tiny_crowd, edit, words);
+    expect_refused(tiny_multi_contact, edit, words);
   };
   bad([](Hdf5Edit& f) { f.set("configurations/partners/kind", 0, 5); }, {"kind of a neighbour out of range"});
   bad([](Hdf5Edit& f) { f.set("configurations/partner_count", 0, 2); }, {"counts do not fit the data"});
@@ -255,7 +255,7 @@ TEST_F(BadResults, MacroCurvesAndGrainBoxes) {
 }
 
 /// Exports and the report read the states that runs keep.
-TEST_F(BadResults, KeptStates) {
+TEST_F(BadResults, SnapshotRecorder) {
   const auto bad = [&](const Edit& edit, const std::vector<std::string>& words) {
     const std::string path = directory_.file("states_tiny.h5");
     tiny_states(path);
@@ -346,7 +346,7 @@ TEST_F(BadResults, PowdersOfAReport) {
 TEST_F(BadResults, CutAnywhere) {
   const std::string path = directory_.file("case.h5");
   RandomStream random(11, RandomPurpose::test, 0);
-  for (const Writer write : {tiny_measurements, tiny_crowd, tiny_macro, tiny_grain_boxes}) {
+  for (const Writer write : {tiny_measurements, tiny_multi_contact, tiny_macro, tiny_grain_boxes}) {
     write(path);
     const auto whole = fs::file_size(path);
     for (int k = 0; k < 4; ++k) {
@@ -379,7 +379,7 @@ Hdf5Contents data_of(const std::string& path) {
 TEST_F(BadResults, WrongBytes) {
   const std::string path = directory_.file("case.h5");
   RandomStream random(12, RandomPurpose::test, 0);
-  for (const Writer write : {tiny_measurements, tiny_crowd, tiny_macro, tiny_grain_boxes}) {
+  for (const Writer write : {tiny_measurements, tiny_multi_contact, tiny_macro, tiny_grain_boxes}) {
     write(path);
     const std::string good = read_text(path);
     const Hdf5Contents contents = data_of(path);

@@ -92,8 +92,8 @@ TEST_F(CellsMacro, FollowTheEquationOfStateOfTheirMeanDensity) {
     EXPECT_GT(c.stress_axial[n], c.stress_lateral[n]);
   }
   const nlohmann::json summary = nlohmann::json::parse(read_text(file("out") + "/summary.json"));
-  EXPECT_NE(read_text(file("out") + "/report.html").find("matter without shells"), std::string::npos);
-  EXPECT_NE(summary["law"]["picture"].get<std::string>().find("matter without shells"), std::string::npos);
+  EXPECT_NE(read_text(file("out") + "/report.html").find("material without shells"), std::string::npos);
+  EXPECT_NE(summary["law"]["picture"].get<std::string>().find("material without shells"), std::string::npos);
   EXPECT_EQ(summary["status"], "good");
 }
 
@@ -209,7 +209,7 @@ TEST_F(CellsMacro, SayWhatDoesNotFit) {
   expect(run("bad"), 2, {"material-models"});
   scene("construction = \"voids\"\n");
   expect(run("bad"), 2, {"cells fill all voids"});
-  scene("", "share = 0.4\n", "law = \"cells.toml\"\nform = \"bag\"\n");
+  scene("", "share = 0.4\n", "law = \"cells.toml\"\nform = \"isotropic\"\n");
   expect(run("bad"), 2, {"is a card of the cell law"});
   scene("mu = 0.5\n");
   expect(run("bad"), 2, {"measured with nu = 0.3, mu = 0.3 and serves no grains of nu = 0.3, mu = 0.5"});
@@ -217,14 +217,15 @@ TEST_F(CellsMacro, SayWhatDoesNotFit) {
 
 TEST_F(CellsMacro, TheirCardIsShownAndChecked) {
   const std::string card = "'" + file("cells.toml") + "'";
-  expect(run_the_program("law show " + card), 0, {"matter without shells", "mu_f", "0.588 .. 0.612"});
+  expect(run_the_program("law show " + card), 0, {"material without shells", "mu_f", "0.588 .. 0.612"});
   const ProgramOutcome shown = run_the_program("law show --json " + card);
   const nlohmann::json j = nlohmann::json::parse(shown.output);
   EXPECT_EQ(j["kind"], "cell law");
   EXPECT_EQ(j["parameters"]["K"]["value"], 0.0447);
   expect(run_the_program("law eval " + card), 2, {"is a card of the cell law"});
   expect(run_the_program("check " + card), 0, {"card of the cell law, porosity form"});
-  expect(run_the_program("check '" + file("scene.toml") + "'"), 0, {"for matter without shells", "solid fraction of"});
+  expect(run_the_program("check '" + file("scene.toml") + "'"), 0,
+         {"for material without shells", "solid fraction of"});
   std::string text = read_text(file("cells.toml"));
   text.replace(text.find("K = "), 4, "K = 3 #");
   write_text_atomic(file("broken.toml"), text);

@@ -75,7 +75,7 @@ TEST_F(Check, AMacroSceneOpensItsLaw) {
 
 TEST_F(Check, TheLawOfTheCommandLineReplacesThatOfTheScene) {
   const json table = scene_facts(macro("absent.toml", "strain = 0.1\n"), "--law '" + kTable + "'");
-  EXPECT_EQ(table["law"]["form"], "bag");
+  EXPECT_EQ(table["law"]["form"], "isotropic");
   EXPECT_FALSE(warned(table, "take a law table"));
   EXPECT_GT(table["law_volume"]["measured"].get<double>(), 0.1);
   write_text_atomic(directory_.file("scene.toml"), macro("absent.toml", ""));
@@ -138,9 +138,9 @@ TEST_F(Check, AComparisonSaysEveryLawOnce) {
     for (auto at = said.find(words); at != std::string::npos; at = said.find(words, at + 1)) ++n;
     return n;
   };
-  for (const char* law : {"law soft-solid: good", "law soft-soft: good", "law: bag", "law: directional"})
+  for (const char* law : {"law soft-solid: good", "law soft-soft: good", "law: isotropic", "law: directional"})
     EXPECT_EQ(times(law), 1) << law;
-  for (const char* asked : {"overlaps at the end", "  bag: lost volume", "  directional: lost volume"})
+  for (const char* asked : {"overlaps at the end", "  isotropic: lost volume", "  directional: lost volume"})
     EXPECT_EQ(times(asked), 7) << asked;
   const json scenes = facts(scene)["scenes"];
   ASSERT_EQ(scenes.size(), 7U);

@@ -95,7 +95,7 @@ TEST_F(CheckpointDamage, BothDamagedIsTrouble) {
   flip(path_, 500, 3);
   flip(path_ + ".previous", 600, 3);
   std::string note;
-  EXPECT_THROW((void)open_checkpoint(path_, "scene", note), FileTrouble);
+  EXPECT_THROW((void)open_checkpoint(path_, "scene", note), IoError);
 }
 
 /// An older file, whole but without the checksum that later ones have, is refused for its schema.
@@ -107,12 +107,12 @@ TEST_F(CheckpointDamage, AnotherSchemaIsRefusedAsSuch) {
     file.commit();
   }
   std::string note;
-  EXPECT_THROW((void)open_checkpoint(path_, "scene", note), BadInput);
+  EXPECT_THROW((void)open_checkpoint(path_, "scene", note), InputError);
 }
 
 TEST_F(CheckpointDamage, AnotherSceneIsRefusedAsSuch) {
   std::string note;
-  EXPECT_THROW((void)open_checkpoint(path_, "another scene", note), BadInput);
+  EXPECT_THROW((void)open_checkpoint(path_, "another scene", note), InputError);
 }
 
 /// Through the program: the one before is taken with a word, and the run ends in the same bits.

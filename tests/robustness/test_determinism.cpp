@@ -46,12 +46,12 @@ std::vector<SmallForm> small_forms() {
                                               "measure.soft_soft.angles_deg=[0.05]"};
   const std::vector<std::string> table_law{
       "macro.bands=8",
-      "crowd.packings_min=4",
-      "crowd.packings_max=4",
-      "crowd.increment=0.05",
-      "crowd.settle_time=5",
-      "crowd.tolerance=0.1",
-      "calibrate.crowd.replicates=10",
+      "multi_contact.packings_min=4",
+      "multi_contact.packings_max=4",
+      "multi_contact.increment=0.05",
+      "multi_contact.settle_time=5",
+      "multi_contact.tolerance=0.1",
+      "calibrate.multi_contact.replicates=10",
       R"(configuration=[{arrangement="one",partner="plane",overlap=0.45},{arrangement="cube",partner="plane",overlap=0.3},{arrangement="one",partner="solid",ratio=1.0,overlap=0.45},{arrangement="one",partner="soft",ratio=1.0,overlap=0.55}])"};
   const std::vector<std::string> quick_rest{"measure.least_work.settle_time=5", "measure.least_work.path_settle_time=5",
                                             "measure.least_work.settle_time_rotated=2"};
@@ -75,9 +75,10 @@ std::vector<SmallForm> small_forms() {
   const std::string two = R"({arrangement="opposite",partner="plane",overlap=0.2})";
   const std::string soft = R"({arrangement="one",partner="soft",overlap=0.4})";
   const std::string solid = R"({arrangement="one",partner="solid",overlap=0.4})";
-  const std::vector<std::string> crowd{"packing.polydispersity=3", "packing.trials=100",   "packing.beta=8",
-                                       "crowd.packings_min=4",     "crowd.packings_max=4", "crowd.points=4",
-                                       "crowd.increment=0.05"};
+  const std::vector<std::string> multi_contact{
+      "packing.polydispersity=3",     "packing.trials=100",           "packing.beta=8",
+      "multi_contact.packings_min=4", "multi_contact.packings_max=4", "multi_contact.points=4",
+      "multi_contact.increment=0.05"};
   const auto box = [](const std::string& variants) {
     return std::vector<std::string>{"box.grains=60",
                                     "loading.increment=1e-3",
@@ -90,10 +91,10 @@ std::vector<SmallForm> small_forms() {
   return {
       {"calibration.toml", "run", with(deep, {quick_rest}), 3},
       {"four_decades.toml", "run",
-       with(crowd,
-            {{"configuration=[" + plane + "," + solid + "," + soft + "]", "hierarchy.levels=2", "hierarchy.form=bag",
-              "hierarchy.inner_radius=0.3", "hierarchy.replicates=4", "fixed_point.iterations=2",
-              "fixed_point.tolerance=0.9", "check.packings=1", "check.overlaps=[0.2,0.3]"}}),
+       with(multi_contact, {{"configuration=[" + plane + "," + solid + "," + soft + "]", "hierarchy.levels=2",
+                             "hierarchy.form=isotropic", "hierarchy.inner_radius=0.3", "hierarchy.replicates=4",
+                             "fixed_point.iterations=2", "fixed_point.tolerance=0.9", "check.packings=1",
+                             "check.overlaps=[0.2,0.3]"}}),
        3, false},
       {"glass_beads.toml", "microsim", box(R"(variant=[{name="4MPa"},{name="rough",wall_mu=0.3}])"), 0},
       {"glass_beads_comparison.toml", "microsim",
@@ -112,8 +113,9 @@ std::vector<SmallForm> small_forms() {
         "search.trials=[100,2000]", "search.budget=13", "search.design=11", "search.replicates=20"},
        0},
       {"law_table.toml", "run",
-       with(crowd, {{"configuration=[" + plane + "," + two + "," + soft + "]", "calibrate.replicates=2", "variant=[]",
-                     "crowd.orientations=2", R"(plan=[{configuration="opposite-plane",depth=0.6,packings=5}])"}}),
+       with(multi_contact,
+            {{"configuration=[" + plane + "," + two + "," + soft + "]", "calibrate.replicates=2", "variant=[]",
+              "multi_contact.orientations=2", R"(plan=[{configuration="opposite-plane",depth=0.6,packings=5}])"}}),
        3, false},
       {"macro_vs_resolved.toml", "run",
        with(

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include "common/data/crowd_law.h"
+#include "common/data/multi_contact_law.h"
+#include "common/io/scene.h"
 #include "common/io/text_file.h"
+#include "pipelines/kinds/hierarchy/scene.h"
 #include "tests/support/markup_check.h"
 #include "tests/support/process.h"
 #include "tests/support/program.h"
@@ -77,9 +79,9 @@ TEST_F(Hierarchy, LevelsOnTopOfLevels) {
   for (const char* file : {"law_table_level_0.toml", "law_table_level_1.toml", "law_table.toml"}) {
     const LawTable table = load_law_table(out("out") + "/" + file);
     ASSERT_EQ(table.entries.size(), 1U);
-    EXPECT_NE(table.entries[0].find(Crowd::bag), nullptr);
+    EXPECT_NE(table.entries[0].find(LawForm::isotropic), nullptr);
   }
-  EXPECT_TRUE(fs::exists(out("out") + "/crowd_level_1.h5"));
+  EXPECT_TRUE(fs::exists(out("out") + "/multi_contact_level_1.h5"));
   EXPECT_EQ(unbalanced_tags(read_text(out("out") + "/report.html")), "");
   EXPECT_FALSE(fs::exists(out("out") + "/work"));
 }
@@ -107,11 +109,16 @@ TEST_F(Hierarchy, WrongScenesAreRefused) {
   expect_refused("levels = 2", "levels = 1", {"levels = 1", "2"});
   expect_refused("inner_radius = 0.3", "inner_radius = 0.7", {"inner_radius = 0.7", "0.5"});
   expect_refused("inner_radius = 0.3", "next_volume = 0.0", {"next_volume = 0"});
-  expect_refused("form = \"bag\"", "form = \"bog\"", {"form", "bag"});
+  expect_refused("form = \"isotropic\"", "form = \"bog\"", {"form", "isotropic"});
   expect_refused("iterations = 2", "iterations = 1", {"iterations = 1"});
   expect_refused("overlaps = [0.2, 0.3]", "overlaps = [0.3, 0.2]", {"overlaps", "must ascend"});
   expect_refused("replicates = 4", "repliactes = 4", {"'repliactes'", "'replicates'"});
   expect_refused("packings = 2", "packings = 20", {"packings = 20"});
+  std::string all = kTinyHierarchy;
+  const std::string key = "packings = 2\n";
+  all.erase(all.find(key), key.size());
+  EXPECT_EQ(read_hierarchy_setup(Scene::parse(all, "h.toml")).check_packings, 4)
+      << "[check] without the key takes as many packings as every configuration has";
   expect_refused("packings_max = 4", "packings_max = 3", {"packings_max"});
 }
 

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <map>
 
-#include "common/data/crowd_measurements.h"
+#include "common/data/multi_contact_measurements.h"
 #include "common/io/text_file.h"
-#include "tests/support/crowd.h"
+#include "tests/support/multi_contact.h"
 #include "tests/support/process.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
@@ -23,13 +23,13 @@ class LawTable : public ::testing::Test {
   LawTable() { write_text_atomic(scene(), std::string(kTinyLawTable) + kTinyLawFit); }
 
   [[nodiscard]] std::string scene() const { return directory_.file("scene.toml"); }
-  CrowdMeasurements run(const std::string& name, const std::string& more, int status = 0) {
+  MultiContactMeasurements run(const std::string& name, const std::string& more, int status = 0) {
     const std::string out = directory_.file(name);
     outcome_ = run_the_program("run '" + scene() + "' --out '" + out + "' " + more);
     EXPECT_EQ(outcome_.status, status) << outcome_.output;
-    return load_crowd(out + "/crowd.h5");
+    return load_multi_contact(out + "/multi_contact.h5");
   }
-  static void expect_same(const CrowdMeasurements& a, const CrowdMeasurements& b) {
+  static void expect_same(const MultiContactMeasurements& a, const MultiContactMeasurements& b) {
     ASSERT_EQ(a.runs.size(), b.runs.size());
     for (std::size_t k = 0; k < a.runs.size(); ++k) {
       EXPECT_EQ(a.runs[k].configuration, b.runs[k].configuration);
@@ -51,27 +51,27 @@ class LawTable : public ::testing::Test {
 };
 
 TEST_F(LawTable, ThreadsDoNotMatter) {
-  const CrowdMeasurements one = run("one", "--threads 1");
-  const CrowdMeasurements three = run("three", "--threads 3");
+  const MultiContactMeasurements one = run("one", "--threads 1");
+  const MultiContactMeasurements three = run("three", "--threads 3");
   ASSERT_GE(one.runs.size(), 6U);
   EXPECT_EQ(one.configurations.size(), 3U);
   EXPECT_GT(one.runs[0].points.back().normal[0], 1e-3);
   expect_same(one, three);
   const auto summary = nlohmann::json::parse(read_text(directory_.file("one") + "/summary.json"));
   EXPECT_EQ(summary["status"], "good");
-  EXPECT_EQ(summary["crowd"]["configurations"].size(), 3U);
-  EXPECT_EQ(summary["crowd"]["runs"], one.runs.size());
-  EXPECT_GT(summary["crowd"]["configurations"][0]["force"].get<double>(), 1e-3);
+  EXPECT_EQ(summary["multi_contact"]["configurations"].size(), 3U);
+  EXPECT_EQ(summary["multi_contact"]["runs"], one.runs.size());
+  EXPECT_GT(summary["multi_contact"]["configurations"][0]["force"].get<double>(), 1e-3);
   EXPECT_FALSE(fs::exists(directory_.file("one") + "/work"));
 }
 
 TEST_F(LawTable, WhatTheCacheKnowsIsNotMeasuredAgain) {
   const std::string cache = " --law-cache '" + directory_.file("cache") + "'";
-  const CrowdMeasurements plain = run("plain", "");
-  const CrowdMeasurements first = run("first", cache);
+  const MultiContactMeasurements plain = run("plain", "");
+  const MultiContactMeasurements first = run("first", cache);
   const auto files = times("cache");
   EXPECT_GT(files.size(), first.runs.size());  // and the pilots
-  const CrowdMeasurements second = run("second", cache);
+  const MultiContactMeasurements second = run("second", cache);
   expect_same(plain, first);
   expect_same(first, second);
   for (std::size_t k = 0; k < first.runs.size(); ++k)
@@ -81,10 +81,10 @@ TEST_F(LawTable, WhatTheCacheKnowsIsNotMeasuredAgain) {
 
 TEST_F(LawTable, ADamagedCacheFileIsMeasuredAgain) {
   const std::string cache = " --law-cache '" + directory_.file("cache") + "'";
-  const CrowdMeasurements first = run("first", cache);
+  const MultiContactMeasurements first = run("first", cache);
   const std::string victim = directory_.file("cache") + "/" + times("cache").begin()->first;
   fs::resize_file(victim, 100);
-  const CrowdMeasurements second = run("second", cache);
+  const MultiContactMeasurements second = run("second", cache);
   EXPECT_NE(outcome_.output.find("measured again"), std::string::npos) << outcome_.output;
   EXPECT_GT(fs::file_size(victim), 1000U);
   expect_same(first, second);
@@ -100,8 +100,8 @@ TEST_F(LawTable, AStoppedRunGoesOnWithTheSameBits) {
   };
   ASSERT_TRUE(interrupted_in_the_middle(begin, begun, out));
   EXPECT_TRUE(begun());
-  EXPECT_FALSE(fs::exists(out + "/crowd.h5"));
-  const CrowdMeasurements resumed = run("stopped", "--resume --threads 1");
+  EXPECT_FALSE(fs::exists(out + "/multi_contact.h5"));
+  const MultiContactMeasurements resumed = run("stopped", "--resume --threads 1");
   expect_same(run("whole", "--threads 1"), resumed);
   EXPECT_FALSE(fs::exists(work));
 }
@@ -112,13 +112,13 @@ TEST_F(LawTable, CheckSaysWhatFollows) {
   EXPECT_NE(outcome.output.find("3 configurations on 2 to 3 packings: 6 to 9 runs"), std::string::npos)
       << outcome.output;
   (void)run("one", "");
-  const ProgramOutcome data = run_the_program("check '" + directory_.file("one") + "/crowd.h5'");
-  EXPECT_NE(data.output.find("crowd measurements: 3 configurations"), std::string::npos) << data.output;
+  const ProgramOutcome data = run_the_program("check '" + directory_.file("one") + "/multi_contact.h5'");
+  EXPECT_NE(data.output.find("multi-contact measurements: 3 configurations"), std::string::npos) << data.output;
 }
 
 TEST_F(LawTable, WrongScenesAndCachesAreRefused) {
   const std::string out = " --out '" + directory_.file("out") + "'";
-  EXPECT_EQ(run_the_program("run '" + scene() + "' --set crowd.target=2" + out).status, 2);
+  EXPECT_EQ(run_the_program("run '" + scene() + "' --set multi_contact.target=2" + out).status, 2);
   EXPECT_EQ(run_the_program("run '" + scene() + "' --law-cache /proc/softgrain" + out).status, 4);
   EXPECT_EQ(run_the_program("microsim '" + scene() + "'" + out).status, 2);
 }

@@ -5,14 +5,14 @@
 #include <filesystem>
 #include <map>
 
-#include "common/contact/crowd_from_table.h"
-#include "common/contact/crowd_table_file.h"
-#include "common/data/crowd_replicates.h"
+#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/multi_contact_table_file.h"
 #include "common/data/macro_result.h"
+#include "common/data/multi_contact_replicates.h"
 #include "common/io/text_file.h"
 #include "tests/support/markup_check.h"
 #include "tests/support/program.h"
-#include "tests/support/synthetic_crowd.h"
+#include "tests/support/synthetic_multi_contact.h"
 #include "tests/support/synthetic_run.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/tiny_comparison.h"
@@ -70,15 +70,15 @@ TEST_F(LawTableUse, MacroScenesTakeTablesAndCards) {
   expect(macro("best", ""), 0, {});
   EXPECT_EQ(summary("best")["law"]["form"], "directional");
   expect(macro("directional", "form = \"directional\"\n"), 0, {});
-  expect(macro("bag", "form = \"bag\"\n"), 0, {});
+  expect(macro("isotropic", "form = \"isotropic\"\n"), 0, {});
   expect(macro("pair", "form = \"pair\"\n"), 0, {});
   EXPECT_EQ(summary("pair")["law"]["form"], "pair");
   EXPECT_EQ(end_stress("best"), end_stress("directional"));
-  EXPECT_NE(end_stress("bag"), end_stress("directional"));
-  EXPECT_LT(end_stress("pair"), end_stress("bag")) << "a pair law knows nothing of the other contacts";
-  const auto curves = load_macro(file("bag") + "/macro.h5");
+  EXPECT_NE(end_stress("isotropic"), end_stress("directional"));
+  EXPECT_LT(end_stress("pair"), end_stress("isotropic")) << "a pair law knows nothing of the other contacts";
+  const auto curves = load_macro(file("isotropic") + "/macro.h5");
   EXPECT_EQ(curves.at(0).engine, "law");
-  EXPECT_EQ(unbalanced_tags(read_text(file("bag") + "/report.html")), "");
+  EXPECT_EQ(unbalanced_tags(read_text(file("isotropic") + "/report.html")), "");
   expect(macro("card", "", "--law '" + file("law.toml") + "'"), 0, {});
   EXPECT_EQ(summary("card")["law"]["form"], "pair");
   expect(macro("card2", "form = \"pair\"\n", "--law '" + file("law.toml") + "'"), 0, {});
@@ -101,15 +101,15 @@ TEST_F(LawTableUse, TheUnloadingBranchActsOnContactsThatRetreat) {
     return load_macro(file(name) + "/macro.h5").at(0);
   };
   LawTableEntry entry = law_entry(0.70);
-  const auto with_retreat = [&](const std::string& name, double retreat) {
-    entry.retreat.value = retreat;
+  const auto with_unloading = [&](const std::string& name, double unloading) {
+    entry.unloading.value = unloading;
     save_law_table({1, {entry}}, file("law_table.toml"));
     return shear(name, "unloading = true\n");
   };
   const MacroCurve loading = shear("loading", "");
-  const MacroCurve same = with_retreat("same", 1.0);
-  const MacroCurve steep = with_retreat("steep", 1.25);
-  const MacroCurve steeper = with_retreat("steeper", 1.5);
+  const MacroCurve same = with_unloading("same", 1.0);
+  const MacroCurve steep = with_unloading("steep", 1.25);
+  const MacroCurve steeper = with_unloading("steeper", 1.5);
   for (const MacroCurve* c : {&same, &steep, &steeper}) {
     ASSERT_EQ(c->stress_x.size(), loading.stress_x.size());
     EXPECT_NEAR(c->stress_x.at(2), loading.stress_x.at(2), 0.15 * loading.stress_x.at(2)) << "the preload only loads";
@@ -122,8 +122,8 @@ TEST_F(LawTableUse, TheUnloadingBranchActsOnContactsThatRetreat) {
 
 TEST_F(LawTableUse, WhatTheTableDidNotMeasureIsRefusedOrSaid) {
   LawTableEntry entry = law_entry(0.70);
-  entry.retreat = synthetic::unknown(1.0);
-  entry.retreat_measured = false;
+  entry.unloading = synthetic::unknown(1.0);
+  entry.unloading_measured = false;
   save_law_table({1, {entry}}, file("law_table.toml"));
   expect(macro("out", "unloading = true\n"), 2, {"unloading", "was not measured at solid fraction 0.7000"});
   expect(macro("loading", ""), 0, {});
@@ -131,7 +131,7 @@ TEST_F(LawTableUse, WhatTheTableDidNotMeasureIsRefusedOrSaid) {
   entry.slide_soft = {synthetic::unknown(0.3), synthetic::unknown(0.3), false};
   save_law_table({1, {entry}}, file("law_table.toml"));
   expect(macro("sliding", ""), 0, {});
-  EXPECT_NE(summary("sliding")["remarks"].dump().find("not measured among soft particles (0.30, 0.30 stand in)"),
+  EXPECT_NE(summary("sliding")["remarks"].dump().find("not measured among soft particles (0.30, 0.30 taken instead)"),
             std::string::npos);
   expect(run_the_program("check '" + file("law_table.toml") + "'"), 0,
          {"unloading was not measured", "not measured among soft particles"});
@@ -238,7 +238,7 @@ TEST_F(LawTableUse, WrongMacroScenesAreRefused) {
   expect(macro("out", "mu = -0.1\n"), 2, {"mu = -0.1"});
   expect(macro("out", "", "--set macro.mu=0.5"), 2, {"mu = 0.3", "mu = 0.5", "measure a table"});
   const std::string card = "--law '" + file("law.toml") + "'";
-  expect(macro("out", "form = \"bag\"\n", card), 2, {"form", "goes with a law table", "law.toml is a law card"});
+  expect(macro("out", "form = \"isotropic\"\n", card), 2, {"form", "goes with a law table", "law.toml is a law card"});
   expect(macro("out", "mu = 0.1\n", card), 2, {"mu", "goes with a law table"});
   expect(macro("out", "unloading = true\n", card), 2, {"unloading", "goes with a law table"});
   expect(macro("out", "", "--law '" + file("scene.toml") + "'"), 2,
@@ -268,8 +268,8 @@ TEST_F(LawTableUse, ComparisonsRefuseTablesOfOtherGrains) {
   expect(compare(table + "range = \"clamp\"\n", "--set material.nu=0.2"), 2, {"nu = 0.3", "nu = 0.2"});
   expect(compare(table + "range = \"clamp\"\n", "--set material.mu=0.5"), 2, {"mu = 0.3", "mu = 0.5"});
   expect(compare(table, ""), 2, {"solid fraction", "outside the law table"});
-  expect(compare(table + "forms = [\"sack\"]\n", ""), 2, {"sack", "pair, bag, directional"});
-  expect(compare("card = \"law.toml\"\nforms = [\"bag\"]\n", ""), 2, {"bag", "needs a law table"});
+  expect(compare(table + "forms = [\"sack\"]\n", ""), 2, {"sack", "pair, isotropic, directional"});
+  expect(compare("card = \"law.toml\"\nforms = [\"isotropic\"]\n", ""), 2, {"isotropic", "needs a law table"});
   expect(compare("", ""), 2, {"law table, a law card, or both"});
 }
 
@@ -280,7 +280,7 @@ TEST_F(LawTableUse, CheckSaysWhatIsInATable) {
   second.laws[1].error_held_out = std::nan("");
   save_law_table({1, {law_entry(0.70), second}}, file("law_table.toml"));
   expect(run_the_program("check '" + file("law_table.toml") + "'"), 0,
-         {"law table: 2 entries, solid fraction 0.700 to 0.750", "directional (set by the scene): good", "12 packings",
+         {"law table: 2 entries, solid fraction 0.700 to 0.750", "directional (chosen): good", "12 packings",
           "underdetermined (planes: 3 of 6)", "overlap of 0.280 Rs", "3.3 % on what was held out", "nothing held out",
           "soft neighbours of ratio 1 to 2"});
   const ProgramOutcome outcome = run_the_program("check --json '" + file("law_table.toml") + "'");
@@ -292,57 +292,58 @@ TEST_F(LawTableUse, CheckSaysWhatIsInATable) {
   expect(run_the_program("check '" + file("scene.toml") + "' --set form=sack"), 2, {"form", "sack"});
 }
 
-CrowdModel known() { return crowd_model(synthetic::crowd_law(Crowd::directional)); }
+MultiContactModel known() { return multi_contact_model(synthetic::multi_contact_law(LawForm::directional)); }
 
-std::vector<CrowdConfiguration> arrangements() {
-  using synthetic::crowd_configuration;
-  return {crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.3),
-          crowd_configuration(Arrangement::opposite, PartnerKind::plane, 0.0, 0.25),
-          crowd_configuration(Arrangement::orthogonal, PartnerKind::plane, 0.0, 0.25),
-          crowd_configuration(Arrangement::tetrahedron, PartnerKind::plane, 0.0, 0.2),
-          crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.18),
-          crowd_configuration(Arrangement::one, PartnerKind::solid, 1.0, 0.35),
-          crowd_configuration(Arrangement::one, PartnerKind::soft, 1.0, 0.4)};
+std::vector<MultiContactConfiguration> arrangements() {
+  using synthetic::multi_contact_configuration;
+  return {multi_contact_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.3),
+          multi_contact_configuration(Arrangement::opposite, PartnerKind::plane, 0.0, 0.25),
+          multi_contact_configuration(Arrangement::orthogonal, PartnerKind::plane, 0.0, 0.25),
+          multi_contact_configuration(Arrangement::tetrahedron, PartnerKind::plane, 0.0, 0.2),
+          multi_contact_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.18),
+          multi_contact_configuration(Arrangement::one, PartnerKind::solid, 1.0, 0.35),
+          multi_contact_configuration(Arrangement::one, PartnerKind::soft, 1.0, 0.4)};
 }
 
 TEST_F(LawTableUse, CalibrateFitsOneEntryPerFile) {
-  synthetic::CrowdOptionsKnown o;
+  synthetic::MultiContactOptionsKnown o;
   o.noise = 0.02;
   o.packings = 6;
-  CrowdMeasurements data = synthetic::crowd_measurements(known(), arrangements(), o);
-  save_crowd(data, file("dense.h5"));
+  MultiContactMeasurements data = synthetic::multi_contact_measurements(known(), arrangements(), o);
+  save_multi_contact(data, file("dense.h5"));
   for (PackingInfo& p : data.packings) p.solid_fraction -= 0.05;
-  save_crowd(data, file("loose.h5"));
+  save_multi_contact(data, file("loose.h5"));
   const std::string out = " --quiet --set replicates=0 --out '" + file("out") + "'";
   const std::string both = "calibrate '" + file("dense.h5") + "' '" + file("loose.h5") + "'";
   expect(run_the_program(both + out), 0, {"laws at solid fraction 0.65", "laws at solid fraction 0.70", "(best)"});
   const softgrain::LawTable table = load_law_table(file("out") + "/law_table.toml");
   ASSERT_EQ(table.entries.size(), 2U);
   EXPECT_NEAR(table.entries[0].solid_fraction, 0.6525, 1e-12);
-  EXPECT_NEAR(table.entries[1].find(Crowd::directional)->a.value, 0.7, 0.05);
-  EXPECT_EQ(table.entries[0].find(Crowd::bag)->a.value, table.entries[1].find(Crowd::bag)->a.value);
+  EXPECT_NEAR(table.entries[1].find(LawForm::directional)->a.value, 0.7, 0.05);
+  EXPECT_EQ(table.entries[0].find(LawForm::isotropic)->a.value, table.entries[1].find(LawForm::isotropic)->a.value);
   EXPECT_TRUE(fs::exists(file("out") + "/law_table.h5"));
   EXPECT_EQ(summary("out")["entries"].size(), 2U);
   EXPECT_EQ(summary("out")["status"], "good");
-  EXPECT_EQ(table.entries[0].best, Crowd::directional);
+  EXPECT_EQ(table.entries[0].best, LawForm::directional);
   EXPECT_EQ(unbalanced_tags(read_text(file("out") + "/report.html")), "");
   expect(macro("macro", "", "--law '" + file("out") + "/law_table.toml'"), 0, {});
 }
 
 TEST_F(LawTableUse, WrongInputsOfCalibrateAreRefused) {
-  synthetic::CrowdOptionsKnown o;
+  synthetic::MultiContactOptionsKnown o;
   o.noise = 0.02;
   o.packings = 3;
-  const CrowdMeasurements data = synthetic::crowd_measurements(known(), arrangements(), o);
-  save_crowd(data, file("crowd.h5"));
+  const MultiContactMeasurements data = synthetic::multi_contact_measurements(known(), arrangements(), o);
+  save_multi_contact(data, file("multi_contact.h5"));
   save(synthetic::measurements(4), file("measurements.h5"));
-  const std::string crowd = "calibrate '" + file("crowd.h5") + "' ";
+  const std::string multi_contact = "calibrate '" + file("multi_contact.h5") + "' ";
   const std::string out = " --quiet --set replicates=0 --out '" + file("out") + "'";
-  expect(run_the_program(crowd + out), 2, {"3 packings are too few"});
-  expect(run_the_program(crowd + "'" + file("crowd.h5") + "' --set min_packings=2" + out), 2, {"same solid fraction"});
-  expect(run_the_program(crowd + "'" + file("measurements.h5") + "'" + out), 2, {"a run each"});
-  expect(run_the_program(crowd + "--set replicats=1" + out), 2, {"replicats", "replicates"});
-  expect(run_the_program(crowd + "--set discrepancy=0" + out), 2, {"discrepancy"});
+  expect(run_the_program(multi_contact + out), 2, {"3 packings are too few"});
+  expect(run_the_program(multi_contact + "'" + file("multi_contact.h5") + "' --set min_packings=2" + out), 2,
+         {"same solid fraction"});
+  expect(run_the_program(multi_contact + "'" + file("measurements.h5") + "'" + out), 2, {"a run each"});
+  expect(run_the_program(multi_contact + "--set replicats=1" + out), 2, {"replicats", "replicates"});
+  expect(run_the_program(multi_contact + "--set discrepancy=0" + out), 2, {"discrepancy"});
 }
 
 TEST_F(LawTableUse, LawTableScenesThatCannotEndInALawAreRefused) {
@@ -389,22 +390,24 @@ TEST_F(LawTableUse, APipelineShowsTheLawOfATableBesideItsOwn) {
   EXPECT_TRUE(summary("both").contains("pair"));
   EXPECT_FALSE(summary("alone").contains("pair"));
   for (const MacroCurve& c : both)
-    EXPECT_EQ(c.law.form, c.engine == "pair" ? Crowd::pair : law_entry(0.70).best) << c.engine;
+    EXPECT_EQ(c.law.form, c.engine == "pair" ? LawForm::pair : law_entry(0.70).best) << c.engine;
 }
 
 /// The same with a table that the run measures itself: it is the one that a scene of kind law-table makes of the same
 /// tables, and what the pair law does is what it does without it.
 TEST_F(LawTableUse, APipelineMeasuresASmallTableOfItsOwn) {
-  const std::string crowd =
-      "[crowd]\nrelaxation = \"damped\"\nincrement = 0.05\npackings_min = 4\npackings_max = 4\npoints = 4\n"
+  const std::string multi_contact =
+      "[multi_contact]\nrelaxation = \"damped\"\nincrement = 0.05\npackings_min = 4\npackings_max = 4\npoints = 4\n"
       "[[configuration]]\narrangement = \"one\"\npartner = \"plane\"\noverlap = 0.45\n"
       "[[configuration]]\narrangement = \"cube\"\npartner = \"plane\"\noverlap = 0.3\n"
       "[[configuration]]\narrangement = \"one\"\npartner = \"solid\"\noverlap = 0.45\n"
       "[[configuration]]\narrangement = \"one\"\npartner = \"soft\"\noverlap = 0.55\n";
   const std::string text = std::string(kTinyPipeline) + "samples = 2\nresolved = false\n";
   write_text_atomic(file("alone.toml"), text);
-  write_text_atomic(file("both.toml"), text + crowd + "[calibrate.crowd]\nbest = \"bag\"\nreplicates = 10\n");
-  std::string table = text.substr(0, text.find("[measure]")) + crowd + "[calibrate]\nbest = \"bag\"\nreplicates = 10\n";
+  write_text_atomic(file("both.toml"),
+                    text + multi_contact + "[calibrate.multi_contact]\nbest = \"isotropic\"\nreplicates = 10\n");
+  std::string table =
+      text.substr(0, text.find("[measure]")) + multi_contact + "[calibrate]\nbest = \"isotropic\"\nreplicates = 10\n";
   table.replace(table.find("\"pipeline\""), 10, "\"law-table\"");
   table.erase(table.find("count = 4\n"), 10);
   write_text_atomic(file("table.toml"), table);
@@ -414,7 +417,8 @@ TEST_F(LawTableUse, APipelineMeasuresASmallTableOfItsOwn) {
   const softgrain::LawTable own = load_law_table(file("both") + "/law_table.toml");
   const softgrain::LawTable apart = load_law_table(file("table") + "/law_table.toml");
   ASSERT_EQ(own.entries.size(), 1U);
-  EXPECT_EQ(crowd_numbers(*own.entries[0].find(Crowd::bag)), crowd_numbers(*apart.entries[0].find(Crowd::bag)));
+  EXPECT_EQ(multi_contact_numbers(*own.entries[0].find(LawForm::isotropic)),
+            multi_contact_numbers(*apart.entries[0].find(LawForm::isotropic)));
   std::map<std::string, std::vector<std::vector<double>>> axial;
   for (const MacroCurve& c : load_macro(file("both") + "/macro.h5")) axial[c.engine].push_back(c.stress_axial);
   std::vector<std::vector<double>> alone;
@@ -423,24 +427,24 @@ TEST_F(LawTableUse, APipelineMeasuresASmallTableOfItsOwn) {
   ASSERT_EQ(axial["law"].size(), 2U);
   EXPECT_NE(axial["law"], alone);
   EXPECT_TRUE(summary("both").contains("entries"));
-  EXPECT_EQ(summary("both").at("crowd").at("configurations").size(), 4U);
+  EXPECT_EQ(summary("both").at("multi_contact").at("configurations").size(), 4U);
   EXPECT_EQ(summary("both").at("pair").at("macro").at("law").at("form"), "pair");
 }
 
 /// Pressed in too little, nothing crosses its threshold: that is said, and the pair law goes on alone.
-TEST_F(LawTableUse, APipelineWithoutALawOfCrowdsGoesOnWithItsPairLaw) {
+TEST_F(LawTableUse, APipelineWithoutALawOfMultiContactsGoesOnWithItsPairLaw) {
   std::string text = std::string(kTinyPipeline) +
-                     "resolved = false\n[crowd]\nrelaxation = \"damped\"\npackings_min = 4\n"
+                     "resolved = false\n[multi_contact]\nrelaxation = \"damped\"\npackings_min = 4\n"
                      "packings_max = 4\npoints = 2\n[[configuration]]\narrangement = \"one\"\npartner = \"plane\"\n"
                      "overlap = 0.02\n";
   write_text_atomic(file("shallow.toml"), text);
   expect(run_the_program("run '" + file("shallow.toml") + "' --quiet --out '" + file("shallow") + "'"), 3,
-         {"no law of crowds", "press deeper"});
+         {"no multi-contact law", "press deeper"});
   EXPECT_FALSE(std::filesystem::exists(file("shallow") + "/law_table.toml"));
   EXPECT_FALSE(summary("shallow").contains("pair"));
   const auto curves = load_macro(file("shallow") + "/macro.h5");
   ASSERT_EQ(curves.size(), 1U);
-  EXPECT_EQ(curves[0].law.form, Crowd::pair);
+  EXPECT_EQ(curves[0].law.form, LawForm::pair);
   EXPECT_GT(curves[0].stress_axial.back(), 0.0);
 }
 

@@ -3,13 +3,13 @@
 
 #include <filesystem>
 
-#include "common/contact/crowd_table_file.h"
+#include "common/contact/multi_contact_table_file.h"
 #include "common/data/macro_result.h"
 #include "common/io/text_file.h"
 #include "tests/support/markup_check.h"
 #include "tests/support/process.h"
 #include "tests/support/program.h"
-#include "tests/support/synthetic_crowd.h"
+#include "tests/support/synthetic_multi_contact.h"
 #include "tests/support/synthetic_run.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/tiny_comparison.h"
@@ -82,14 +82,14 @@ TEST_F(MacroComparison, ASceneMayHaveALawOfItsOwn) {
   save_law_table(table, directory_.file("levels.toml"), build_provenance());
   write_text_atomic(scene(), std::string(kTinyComparison) +
                                  "resolved = []\nname = \"levels\"\n[scene.law]\ntable = \"levels.toml\"\nforms = "
-                                 "[\"bag\"]\n");
+                                 "[\"isotropic\"]\n");
   const ProgramOutcome outcome = run("out");
   ASSERT_TRUE(outcome.status == 0 || outcome.status == 3) << outcome.output;
   const auto summary = nlohmann::json::parse(read_text(out() + "/summary.json"));
   const auto& common = summary["scenes"][0];
   const auto& own = summary["scenes"][1];
   EXPECT_EQ(common["engines"][0]["engine"], "pair");
-  EXPECT_EQ(own["engines"][0]["engine"], "bag");
+  EXPECT_EQ(own["engines"][0]["engine"], "isotropic");
   const auto& facts = own["samples"][0];
   EXPECT_EQ(facts["inner_grains"], 1000 * facts["soft"].get<int>());
   const double bodies = facts["body_fraction"];

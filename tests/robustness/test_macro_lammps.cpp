@@ -69,11 +69,11 @@ class MacroLammps : public ::testing::Test {
   }
 
   /// A program in the place of softgrain-lammps.
-  [[nodiscard]] std::string stand_in(const std::string& commands) const {
-    std::ofstream(file("stand-in")) << "#!/bin/sh\n" << commands << "\n";
-    fs::permissions(file("stand-in"), fs::perms::owner_all);
-    ::setenv("SOFTGRAIN_LAMMPS", file("stand-in").c_str(), 1);
-    return file("stand-in");
+  [[nodiscard]] std::string fake_lammps(const std::string& commands) const {
+    std::ofstream(file("substitute")) << "#!/bin/sh\n" << commands << "\n";
+    fs::permissions(file("substitute"), fs::perms::owner_all);
+    ::setenv("SOFTGRAIN_LAMMPS", file("substitute").c_str(), 1);
+    return file("substitute");
   }
   ~MacroLammps() override { ::unsetenv("SOFTGRAIN_LAMMPS"); }
 
@@ -85,7 +85,7 @@ TEST_F(MacroLammps, OptionsThatMeanNothingAreRefusedBeforeAnyWork) {
   expect(macro("run", "--ranks 2"), 2, {"--ranks goes with --engine lammps"});
   expect(macro("run", "--engine softgrain --write-only"), 2, {"--write-only goes with --engine lammps"});
   expect(macro("run", "--engine lammps --write-only --ranks 2"), 2, {"--ranks"});
-  (void)stand_in("exit 1");
+  (void)fake_lammps("exit 1");
   expect(macro("run", "--engine lammps --ranks 1000"), 2, {"--ranks 1000", "bodies", "allowed: 1 to"});
   ::unsetenv("SOFTGRAIN_LAMMPS");
   expect(macro("run", "--engine lammps --ranks 0"), 2, {"--ranks 0: must be a whole number"});
@@ -124,27 +124,27 @@ TEST_F(MacroLammps, WriteOnlyNeedsNoLammpsAndWritesTheSameTwice) {
 
 /// Its complaint, where the rest of it is, and how to go on; nothing that looks like a result.
 TEST_F(MacroLammps, AChildThatFailsIsTrouble) {
-  (void)stand_in("echo 'ERROR: something broke (file.cpp:1)'\nexit 7");
+  (void)fake_lammps("echo 'ERROR: something broke (file.cpp:1)'\nexit 7");
   expect(macro("run", "--engine lammps"), 4, {"ended with status 7", "something broke", "lammps.log", "--resume"});
-  (void)stand_in("echo last words\nkill -9 $$");
+  (void)fake_lammps("echo last words\nkill -9 $$");
   expect(macro("run", "--engine lammps"), 4, {"signal 9", "last words"});
-  (void)stand_in("exit 0");
+  (void)fake_lammps("exit 0");
   expect(macro("run", "--engine lammps"), 4, {"0 of 4 points"});
-  (void)stand_in("echo 'ERROR: Lost atoms: original 30 current 29 (thermo.cpp:438)'\nexit 1");
+  (void)fake_lammps("echo 'ERROR: Lost atoms: original 30 current 29 (thermo.cpp:438)'\nexit 1");
   expect(macro("run", "--engine lammps"), 3, {"behind a wall"});
   EXPECT_FALSE(fs::exists(file("run") + "/macro.h5"));
 }
 
 TEST_F(MacroLammps, ADivergedRelaxationIsNotUsable) {
-  (void)stand_in("echo '0 0' >diverged.txt");
+  (void)fake_lammps("echo '0 0' >diverged.txt");
   expect(macro("run", "--engine lammps"), 3, {"relaxation diverged at strain 0.0"});
   EXPECT_EQ(summary("run")["status"], "not usable");
   EXPECT_FALSE(fs::exists(file("run") + "/macro.h5"));
 }
 
 TEST_F(MacroLammps, AChildThatCannotBeStartedIsTrouble) {
-  (void)stand_in("");
-  std::ofstream(file("stand-in")) << "#!/nowhere/interpreter\n";
+  (void)fake_lammps("");
+  std::ofstream(file("substitute")) << "#!/nowhere/interpreter\n";
   expect(macro("run", "--engine lammps"), 4, {"cannot be started"});
 }
 
@@ -168,7 +168,7 @@ class WithLammps : public MacroLammps {
       EXPECT_EQ(one.coordination[k], two.coordination[k]) << k;
       EXPECT_EQ(one.coordination_bodies[k], two.coordination_bodies[k]) << k;
       // Contacts below their threshold count when a list holds them, and lists differ.
-      EXPECT_NEAR(one.law_asked[k], two.law_asked[k], 5.0) << k;
+      EXPECT_NEAR(one.law_evaluations[k], two.law_evaluations[k], 5.0) << k;
       EXPECT_NEAR(one.law_largest[k], two.law_largest[k], relative) << k;
     }
     ASSERT_EQ(one.body_forces.size(), two.body_forces.size());
@@ -389,7 +389,7 @@ TEST_F(WithLammps, WhatWasRunElsewhereIsReadWithResume) {
   ASSERT_EQ(std::system(line.c_str()), 0);
   const std::string rows = read_text(file("run/lammps-0/points.txt"));
   expect(macro("run", "--engine lammps"), 2, {"4 recorded points", "--resume"});
-  (void)stand_in("exit 1");  // nothing is run again
+  (void)fake_lammps("exit 1");  // nothing is run again
   expect(macro("run", "--engine lammps --resume"), 0, {});
   EXPECT_EQ(read_text(file("run/lammps-0/points.txt")), rows);
   EXPECT_EQ(curve("run").strain.size(), 4U);
@@ -420,7 +420,7 @@ TEST_F(WithLammps, ACompactionMissesNoPair) {
       text.replace(at, one.size(), other);
     };
     if (run == "absolute") {
-      replace(" lists yes", "");
+      replace(" log_lists yes", "");
       replace("every 1000000 check no", "every 1 check yes");
     }
     replace("next round", "quit 0\nnext round");

@@ -109,8 +109,8 @@ TEST(MaterialModelsRun, MakesPackingsOnceForAllLoadingsAndRunsMappedStandInsWith
       scene_of("[grains]\ncount = 300\nratio = 4\n[[loading]]\nname = \"one\"\nstrain = 0.005\nsteps = 2\n"
                "[[loading]]\nname = \"two\"\ntest = \"isotropic\"\nstrain = 0.005\nsteps = 2\n",
                fmt::format("[[model]]\nname = \"own\"\nkind = \"cells\"\nplaces = \"own\"\ncard = \"{0}\"\n"
-                           "[[model]]\nname = \"raw\"\nkind = \"stand-in\"\n"
-                           "[[model]]\nname = \"mapped\"\nkind = \"stand-in\"\nmapped = true\ncard = \"{0}\"\n"
+                           "[[model]]\nname = \"raw\"\nkind = \"substitute\"\n"
+                           "[[model]]\nname = \"mapped\"\nkind = \"substitute\"\nmapped = true\ncard = \"{0}\"\n"
                            "[[model]]\nname = \"shells\"\nkind = \"shells\"\nform = \"pair\"\ntable = \"{1}\"\n",
                            std::string(SOFTGRAIN_SOURCE_DIR) + "/results/material_law/cell_law.toml", table)));
   const auto run = [&](const std::string& name) {

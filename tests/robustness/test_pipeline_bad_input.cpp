@@ -130,15 +130,18 @@ TEST_F(PipelineBadInput, Measurements) {
          {"scene.toml:25: relaxation = \"damped\"", "must differ"});
 }
 
-TEST_F(PipelineBadInput, CrowdsAreMeasuredForAMacroSceneAndInOnePlaceOnly) {
+TEST_F(PipelineBadInput, MultiContactsAreMeasuredForAMacroSceneAndInOnePlaceOnly) {
   const std::string one = "[[configuration]]\narrangement = \"one\"\npartner = \"plane\"\noverlap = 0.4\n";
   const std::string table = SOFTGRAIN_SOURCE_DIR "/results/law_table/law_table.toml";
   expect("[macro]", one + "[law]\ntable = \"" + table + "\"\n[macro]",
-         {"scene.toml:31", "law: ", "measures a law of crowds already"});
+         {"scene.toml:31", "law: ", "measures a multi-contact law already"});
   expect("[macro]\nbodies = 8\nsteps = 4\nstrain = 0.3\n", one, {"configuration: ", "goes with [macro]", "law-table"});
-  expect("[macro]", "[crowd]\npoints = 4\n[macro]", {"scene.toml:27", "crowd: ", "goes with [[configuration]]"});
-  expect("[macro]", one + "[crowd]\npackings_min = 2\npackings_max = 3\n[macro]", {"packings_max", "min_packings"});
-  expect("[macro]", one + "[calibrate.crowd]\nbest = \"pair\"\n[macro]", {"scene.toml:32: best", "directional"});
+  expect("[macro]", "[multi_contact]\npoints = 4\n[macro]",
+         {"scene.toml:27", "multi_contact: ", "goes with [[configuration]]"});
+  expect("[macro]", one + "[multi_contact]\npackings_min = 2\npackings_max = 3\n[macro]",
+         {"packings_max", "min_packings"});
+  expect("[macro]", one + "[calibrate.multi_contact]\nbest = \"pair\"\n[macro]",
+         {"scene.toml:32: best", "directional"});
   expect("[macro]", "[[configuration]]\narrangement = \"cube\"\npartner = \"plane\"\noverlap = 0.3\n[macro]",
          {"configuration", "one plane alone"});
 }

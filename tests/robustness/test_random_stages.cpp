@@ -38,7 +38,7 @@ struct AskedStage {
   std::array<AskedAxis, 3> axis{};
   int steps = 2;
   bool logarithmic = false;
-  bool alike = false;  ///< by the mean of the stresses
+  bool isotropic_strain = false;  ///< by the mean of the stresses
 };
 
 /// A list as the scene has it, and what it asks for.
@@ -101,10 +101,10 @@ class Lists {
   }
   void isotropic() {
     AskedStage& s = begin("isotropic");
-    s.alike = pick(2) == 0;
+    s.isotropic_strain = pick(2) == 0;
     const double value =
-        s.alike ? give("stress", pressure_ * between(1.6, 2.5)) : give("strain", between(0.001, 0.005));
-    for (AskedAxis& axis : s.axis) axis = {s.alike, value, false, -1};
+        s.isotropic_strain ? give("stress", pressure_ * between(1.6, 2.5)) : give("strain", between(0.001, 0.005));
+    for (AskedAxis& axis : s.axis) axis = {s.isotropic_strain, value, false, -1};
   }
   void shear() {
     AskedStage& s = begin("shear");
@@ -214,10 +214,10 @@ void expect_as_asked(const MacroCurve& c, const StageList& list, double toleranc
       const double mean = (off[0] + off[1] + off[2]) / 3.0;
       for (int k = 0; k < 3; ++k) {
         if (!s.axis[static_cast<std::size_t>(k)].by_stress) continue;
-        EXPECT_LE(std::abs(s.alike ? mean : off[k]), 1.01 * tolerance / 3.0 * scale) << "stress along "
-                                                                                     << "xyz"[k];
+        EXPECT_LE(std::abs(s.isotropic_strain ? mean : off[k]), 1.01 * tolerance / 3.0 * scale) << "stress along "
+                                                                                                << "xyz"[k];
       }
-      if (!s.alike) continue;
+      if (!s.isotropic_strain) continue;
       for (int k = 0; k < 2; ++k)
         EXPECT_NEAR((1.0 - strain_at(c, at)[k]) / (1.0 - strain_at(c, first)[k]),
                     (1.0 - strain_at(c, at)[2]) / (1.0 - strain_at(c, first)[2]), 1e-9);

@@ -31,7 +31,7 @@ TEST_P(ReportEnds, EveryKindNamesItsMaterialAndSaysWhatToDoNext) {
   EXPECT_EQ(steps.find('`'), std::string::npos) << "commands are marked as such";
   EXPECT_TRUE(has("<dt>Material</dt>") || has("<dt>Grains</dt>") || has("Rs = ")) << "of what it is made";
   if (runs.kind().name == "macro" || runs.kind().name == "macro-comparison") {
-    EXPECT_TRUE(has("<dt>Law taken</dt>"));
+    EXPECT_TRUE(has("<dt>Law used</dt>"));
     EXPECT_TRUE(has("numbers ")) << "the hash";
   }
   const std::set<std::string> bodies{"macro", "particles", "disks", "powder", "grain-box", "soft-particle"};

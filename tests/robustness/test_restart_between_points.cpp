@@ -4,7 +4,7 @@
 #include "macrosim/compression.h"
 #include "microsim/measure.h"
 #include "microsim/shell_packing.h"
-#include "tests/support/crowd.h"
+#include "tests/support/multi_contact.h"
 
 namespace {
 
@@ -16,23 +16,23 @@ void expect_same(const Cost& a, const Cost& b) {
   EXPECT_EQ(a.contact_evaluations, b.contact_evaluations);
 }
 
-TEST(RestartBetweenPoints, ACrowdGoesOnFromEveryIncrement) {
+TEST(RestartBetweenPoints, AMultiContactGoesOnFromEveryIncrement) {
   const SoftParticleSpec spec = coarse_spec();
-  CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, {{{1.0, 0.0, 0.0}}, {{-1.0, 0.0, 0.0}}}, 0.2);
-  c.stages.push_back({CrowdMove::unload, {0.1, 0.2}, 0.0});
-  const CrowdPlan plan{{0.6, 1.0}, {0.5}};  // the last leg ends without a record
-  CrowdOptions options;
+  MultiContactConfiguration c = multi_contact_of(PartnerKind::plane, 0.0, {{{1.0, 0.0, 0.0}}, {{-1.0, 0.0, 0.0}}}, 0.2);
+  c.stages.push_back({MultiContactMove::unload, {0.1, 0.2}, 0.0});
+  const MultiContactPlan plan{{0.6, 1.0}, {0.5}};  // the last leg ends without a record
+  MultiContactOptions options;
   options.increment = 0.02;
-  const CrowdExperiment start = make_crowd(spec, c, content_of(spec, 0), {});
-  std::vector<std::pair<CrowdPlace, CrowdExperiment>> saved;
-  RunControl<CrowdUnderWay> control{.seconds = 0.0};
-  control.save = [&](const CrowdUnderWay& now) { saved.emplace_back(now.place, now.experiment); };
-  CrowdExperiment whole = start;
-  const CrowdRun run = run_crowd(whole, plan, options, control);
+  const MultiContactExperiment start = make_multi_contact(spec, c, content_of(spec, 0), {});
+  std::vector<std::pair<MultiContactPlace, MultiContactExperiment>> saved;
+  RunControl<MultiContactUnderWay> control{.seconds = 0.0};
+  control.save = [&](const MultiContactUnderWay& now) { saved.emplace_back(now.place, now.experiment); };
+  MultiContactExperiment whole = start;
+  const MultiContactRun run = run_multi_contact(whole, plan, options, control);
   ASSERT_EQ(run.points.size(), 3U);
   ASSERT_EQ(saved.size(), 16U);  // ten increments in, six out
   for (auto& [place, e] : saved) {
-    const CrowdRun resumed = run_crowd(e, plan, options, {}, place);
+    const MultiContactRun resumed = run_multi_contact(e, plan, options, {}, place);
     expect_equal(run.points, resumed.points);
     expect_same(run.cost, resumed.cost);
     EXPECT_EQ(e.overlap, whole.overlap);

@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <set>
 
-#include "common/contact/crowd_table_file.h"
+#include "common/contact/multi_contact_table_file.h"
 #include "common/data/macro_result.h"
 #include "common/io/text_file.h"
 #include "tests/support/program.h"
-#include "tests/support/synthetic_crowd.h"
+#include "tests/support/synthetic_multi_contact.h"
 #include "tests/support/synthetic_run.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/tiny_macro.h"

@@ -54,7 +54,7 @@ TEST(RunDirectoryLock, IsReleasedWhenItsHolderEnds) {
   const TemporaryDirectory directory;
   { const DirectoryLock lock(directory.path()); }
   const DirectoryLock again(directory.path());
-  EXPECT_THROW(DirectoryLock(directory.path()), FileTrouble);
+  EXPECT_THROW(DirectoryLock(directory.path()), IoError);
 }
 
 /// The first run is at work when the second one comes; then it is killed, and the third one goes on.

@@ -200,11 +200,11 @@ TEST(Snapshots, ChangeNothing) {
 TEST(Snapshots, OfNoRunAreTrouble) {
   const TemporaryDirectory directory;
   EXPECT_TRUE(read_snapshots(directory.path()).empty());
-  EXPECT_THROW((void)read_snapshots(directory.file("nothing")), FileTrouble);
+  EXPECT_THROW((void)read_snapshots(directory.file("nothing")), IoError);
   write_text_atomic(directory.file("run.h5"), "no HDF5");
-  EXPECT_THROW((void)read_snapshots(directory.path()), FileTrouble);
+  EXPECT_THROW((void)read_snapshots(directory.path()), IoError);
   write_text_atomic(directory.file("law.toml"), "");
-  EXPECT_THROW((void)read_snapshots(directory.file("law.toml")), BadInput);
+  EXPECT_THROW((void)read_snapshots(directory.file("law.toml")), InputError);
 }
 
 }  // namespace

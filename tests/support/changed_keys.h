@@ -184,7 +184,7 @@ inline bool stands_for_all(const std::string& path, const Keys& keys) {
 }
 
 /// What `read` asks the scene for. Keys that are only looked for get a value once, so that their form shows; `read`
-/// may throw BadInput.
+/// may throw InputError.
 inline Keys asked_keys(const KeyedText& text, const std::function<void(const Scene&)>& read) {
   const auto ask = [&](const KeyedText& t, Keys& into) {
     KeyRecord record;

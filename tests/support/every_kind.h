@@ -313,8 +313,8 @@ preparation = "fast"
 steps = 3
 strain = 0.05
 [[model]]
-name = "stand-in"
-kind = "stand-in"
+name = "substitute"
+kind = "substitute"
 split = 0.8
 smallest = 0.6
 [[model]]

@@ -190,18 +190,18 @@ inline std::string drawn_particles() {
   return R"(kind = "particles"
 gravity = [0.0, 0.0, -9.81]
 seed = 2
-[material.bag]
+[material.soft]
 density = 1500.0
 [material.stone]
 density = 2500.0
 E = "1 MPa"
 nu = 0.2
 [[contact]]
-pair = ["bag", "stone"]
+pair = ["soft", "stone"]
 law = "law-card"
 file = "law.toml"
 kind = "soft-solid"
-which_soft = "bag"
+which_soft = "soft"
 E = 5e5
 mu = 0.3
 damping = 0.1
@@ -212,7 +212,7 @@ law = "hertz-tsuji"
 restitution = 0.5
 mu = 0.3
 [[particle]]
-material = "bag"
+material = "soft"
 radius = 0.02
 position = [0.03, 0.03, 0.03]
 [[particle]]
@@ -281,9 +281,9 @@ deltas = [0.1, 0.2]
 )";
 }
 
-inline std::string pipeline_crowd() {
+inline std::string pipeline_multi_contact() {
   const std::string text = kTinyPipeline;
-  return text + "resolved = false\n" + R"([crowd]
+  return text + "resolved = false\n" + R"([multi_contact]
 relaxation = "damped"
 packings_min = 4
 [[configuration]]
@@ -333,7 +333,7 @@ inline std::vector<KindScene> keyed_scenes() {
   add("grain-box-triaxial", grain_box_triaxial());
   add("grain-box-polyaxial", grain_box_polyaxial());
   add("soft-particle-sizes", soft_particle_sizes());
-  add("pipeline-crowd", pipeline_crowd());
+  add("pipeline-crowd", pipeline_multi_contact());
   add("law-table-variants", law_table_variants());
   return scenes;
 }

@@ -24,7 +24,7 @@ inline lammps::PointRow point_row(double number, double strain) {
   set(Point::force_sum, 40.0);
   set(Point::fabric, 0.25);
   set(Point::branch_zz, 15.0);
-  set(Point::law_asked, 3.0);
+  set(Point::law_evaluations, 3.0);
   set(Point::law_largest, 0.5);
   set(Point::residual, 0.003);
   set(Point::passes, 100.0);

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/contact/crowd_from_table.h"
+#include "common/contact/multi_contact_from_table.h"
 #include "common/data/macro_result.h"
 #include "common/data/snapshot_io.h"
 #include "common/neighbours/verlet_list.h"
@@ -13,8 +13,8 @@
 #include "microsim/particles/particles_run.h"
 #include "microsim/powder/powder_assembly.h"
 #include "microsim/powder/powder_state_io.h"
-#include "tests/support/synthetic_crowd.h"
 #include "tests/support/synthetic_law.h"
+#include "tests/support/synthetic_multi_contact.h"
 #include "tests/support/synthetic_run.h"
 
 namespace softgrain::test {
@@ -28,18 +28,18 @@ inline void tiny_measurements(const std::string& path) {
   save(synthetic(o), path);
 }
 
-inline void tiny_crowd(const std::string& path) {
-  const CrowdModel model = crowd_model(synthetic::crowd_law(Crowd::pair));
-  synthetic::CrowdOptionsKnown o;
+inline void tiny_multi_contact(const std::string& path) {
+  const MultiContactModel model = multi_contact_model(synthetic::multi_contact_law(LawForm::pair));
+  synthetic::MultiContactOptionsKnown o;
   o.packings = 2;
   o.points = 3;
-  save_crowd(
-      synthetic::crowd_measurements(
-          model,
-          {synthetic::crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.3),
-           synthetic::crowd_configuration(Arrangement::opposite, PartnerKind::plane, 0.0, 0.2, CrowdMove::slide)},
-          o),
-      path);
+  save_multi_contact(synthetic::multi_contact_measurements(
+                         model,
+                         {synthetic::multi_contact_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.3),
+                          synthetic::multi_contact_configuration(Arrangement::opposite, PartnerKind::plane, 0.0, 0.2,
+                                                                 MultiContactMove::slide)},
+                         o),
+                     path);
 }
 
 inline void tiny_macro(const std::string& path) {

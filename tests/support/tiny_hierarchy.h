@@ -13,7 +13,7 @@ polydispersity = 3.0
 rmax_over_shell = 0.5
 beta = 8.0
 placement = "voids"
-[crowd]
+[multi_contact]
 increment = 0.025
 packings_min = 4
 packings_max = 4
@@ -35,7 +35,7 @@ ratio = 1.0
 overlap = 0.6
 [hierarchy]
 levels = 2
-form = "bag"
+form = "isotropic"
 fill = "masses"
 inner_radius = 0.3
 replicates = 4

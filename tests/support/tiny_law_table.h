@@ -11,7 +11,7 @@ trials = 1000
 polydispersity = 4.0
 beta = 8.0
 placement = "voids"
-[crowd]
+[multi_contact]
 increment = 0.02
 packings_min = 2
 packings_max = 3

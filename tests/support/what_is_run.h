@@ -127,7 +127,7 @@ inline void tell(Fingerprint& f, const LawSources& law) {
   f.plain(rest);
 }
 
-/// Throws BadInput for what the reader of its kind refuses.
+/// Throws InputError for what the reader of its kind refuses.
 inline std::string what_is_run(const Scene& scene) {
   Fingerprint f;
   const std::string kind = kind_of(scene).name;

@@ -74,7 +74,7 @@ Sums<D> scalar_pass(System<D>& s, double dt, History history) {
   Sums<D> sums(s);
   PlainSink<D> sink{s.particles, sums.stiffness, sums.virial};
   if (history == History::next) s.contacts.make_next();
-  std::fill(s.contacts.particle_sum.begin(), s.contacts.particle_sum.end(), CrowdSum<D>{});
+  std::fill(s.contacts.particle_sum.begin(), s.contacts.particle_sum.end(), MultiContactSum<D>{});
   const auto over_sections = [&](auto&& work) {
     for (const ContactSection& section : s.contacts.sections)
       with_pairs<D>(
@@ -87,7 +87,7 @@ Sums<D> scalar_pass(System<D>& s, double dt, History history) {
   over_sections([](const auto& law, auto& source, const PairRange& range) { add_shares(source, law, range); });
   over_sections([&]<class Law>(const Law& law, auto&, const PairRange&) {
     if constexpr (Law::traits.needs_particle_pass)
-      for (CrowdSum<D>& sum : s.contacts.particle_sum)
+      for (MultiContactSum<D>& sum : s.contacts.particle_sum)
         if (sum.square > 0.0) law.finish(sum);
   });
   over_sections([&](const auto& law, auto& source, const PairRange& range) { run_section(source, law, range, sink); });
@@ -145,7 +145,7 @@ void expect_same(const Thing& a, const Thing& b, bool powers) {
   }
 }
 
-bool has_powers(const AnyLaw& law) { return traits_of(law).is_fitted || traits_of(law).is_crowd; }
+bool has_powers(const AnyLaw& law) { return traits_of(law).is_fitted || traits_of(law).is_multi_contact; }
 
 struct Case {
   AnyLaw law;
@@ -175,13 +175,13 @@ SoftContact soft(bool both, double damping) {
   law.friction = 0.3;
   law.damping = damping;
   law.partner_is_soft = both;
-  law.range = {0.5, Beyond::clamp};
+  law.range = {0.5, Extrapolation::clamp};
   return law;
 }
 
-template <Crowd kCrowd, bool kUnloading, bool kRolling = false>
+template <LawForm kLawForm, bool kUnloading, bool kRolling = false>
 AnyLaw counting(bool both) {
-  SoftCrowd<kCrowd, kUnloading, kRolling> law;
+  SoftMultiContact<kLawForm, kUnloading, kRolling> law;
   law.form.pressure = {0.6, 2.2, 0.1};
   law.form.coupling = {0.6, 0.5, 0.1};
   law.partner.log_weight = MonotoneCurve({-1.4, 0.0, 1.4}, {-0.5, -0.4, -0.3});
@@ -189,7 +189,7 @@ AnyLaw counting(bool both) {
   law.modulus = 1e6;
   law.friction = 0.3;
   law.kt_ratio = 0.3;
-  law.retreat = 1.5;
+  law.unloading = 1.5;
   law.rolling = 0.02;
   law.rolling_friction = 1e-3;
   law.j_is_soft = both;
@@ -219,16 +219,16 @@ std::vector<AnyLaw> laws() {
   out.push_back(LinearSpring{1e6, 5e5, 0.3, 0.2});
   for (const bool both : {false, true}) {
     for (const double damping : {0.0, 0.3}) out.push_back(soft(both, damping));
-    out.push_back(counting<Crowd::pair, false>(both));
-    out.push_back(counting<Crowd::pair, true>(both));
-    out.push_back(counting<Crowd::bag, false>(both));
-    out.push_back(counting<Crowd::bag, true>(both));
-    out.push_back(counting<Crowd::directional, false>(both));
-    out.push_back(counting<Crowd::directional, true>(both));
-    out.push_back(counting<Crowd::pair, false, true>(both));
-    out.push_back(counting<Crowd::bag, true, true>(both));
-    out.push_back(counting<Crowd::directional, false, true>(both));
-    out.push_back(counting<Crowd::directional, true, true>(both));
+    out.push_back(counting<LawForm::pair, false>(both));
+    out.push_back(counting<LawForm::pair, true>(both));
+    out.push_back(counting<LawForm::isotropic, false>(both));
+    out.push_back(counting<LawForm::isotropic, true>(both));
+    out.push_back(counting<LawForm::directional, false>(both));
+    out.push_back(counting<LawForm::directional, true>(both));
+    out.push_back(counting<LawForm::pair, false, true>(both));
+    out.push_back(counting<LawForm::isotropic, true, true>(both));
+    out.push_back(counting<LawForm::directional, false, true>(both));
+    out.push_back(counting<LawForm::directional, true, true>(both));
   }
   for (const double adhesion : {0.0, 2e4}) {
     out.push_back(disk<CohesiveDisk<false, false>>(adhesion));

@@ -11,12 +11,12 @@
 #include "macrosim/constructed_packing.h"
 #include "macrosim/preparation.h"
 #include "microsim/shell_packing.h"
-#include "pipelines/kinds/law_table/crowd_cache.h"
-#include "pipelines/kinds/law_table/crowd_members.h"
+#include "pipelines/kinds/law_table/multi_contact_cache.h"
+#include "pipelines/kinds/law_table/multi_contact_members.h"
 #include "pipelines/kinds/macro/packing_source.h"
 #include "pipelines/kinds/macro/spec_members.h"
 #include "pipelines/kinds/macro/twin_cache.h"
-#include "tests/support/crowd.h"
+#include "tests/support/multi_contact.h"
 
 namespace softgrain {
 namespace {
@@ -315,31 +315,32 @@ TEST(CacheKeys, SetupPackingAndSampleAreInTheKeys) {
   add(twin.setup, twin.packing, moved);
 }
 
-TEST(CacheKeys, EveryMemberOfACrowdRunIsInItsKey) {
-  const CrowdConfiguration configuration = [] {
-    CrowdConfiguration c = test::crowd_of(PartnerKind::solid, 0.5, {Vec3{{1.0, 0.0, 0.0}}}, 0.3);
+TEST(CacheKeys, EveryMemberOfAMultiContactRunIsInItsKey) {
+  const MultiContactConfiguration configuration = [] {
+    MultiContactConfiguration c = test::multi_contact_of(PartnerKind::solid, 0.5, {Vec3{{1.0, 0.0, 0.0}}}, 0.3);
     c.partners.front().on = 0;
     return c;
   }();
-  const CrowdPlan plan{{0.5, 1.0}};
+  const MultiContactPlan plan{{0.5, 1.0}};
   SoftParticleSpec soft;
   soft.sizes = Grading::power_law(3.0, 1e-3, 3e-3);
   expect_in_key<SoftParticleSpec>(
-      soft, [&](const SoftParticleSpec& s) { return crowd_run_key(s, configuration, plan, {}, "seed 1"); },
+      soft, [&](const SoftParticleSpec& s) { return multi_contact_run_key(s, configuration, plan, {}, "seed 1"); },
       [](const SoftParticleSpec&, const void*) { return false; });
-  expect_in_key<CrowdConfiguration>(
-      configuration, [&](const CrowdConfiguration& c) { return crowd_run_key(soft, c, plan, {}, "seed 1"); },
-      [](const CrowdConfiguration& c, const void* place) {
+  expect_in_key<MultiContactConfiguration>(
+      configuration,
+      [&](const MultiContactConfiguration& c) { return multi_contact_run_key(soft, c, plan, {}, "seed 1"); },
+      [](const MultiContactConfiguration& c, const void* place) {
         return within(c.name, place) || within(c.held_out, place);
       });
-  expect_in_key<CrowdOptions>(
-      {}, [&](const CrowdOptions& o) { return crowd_run_key(soft, configuration, plan, o, "seed 1"); },
-      [](const CrowdOptions&, const void*) { return false; });
-  expect_in_key<CrowdPlan>(
-      plan, [&](const CrowdPlan& p) { return crowd_run_key(soft, configuration, p, {}, "seed 1"); },
-      [](const CrowdPlan&, const void*) { return false; });
-  EXPECT_NE(crowd_run_key(soft, configuration, plan, {}, "seed 1"),
-            crowd_run_key(soft, configuration, plan, {}, "seed 2"));
+  expect_in_key<MultiContactOptions>(
+      {}, [&](const MultiContactOptions& o) { return multi_contact_run_key(soft, configuration, plan, o, "seed 1"); },
+      [](const MultiContactOptions&, const void*) { return false; });
+  expect_in_key<MultiContactPlan>(
+      plan, [&](const MultiContactPlan& p) { return multi_contact_run_key(soft, configuration, p, {}, "seed 1"); },
+      [](const MultiContactPlan&, const void*) { return false; });
+  EXPECT_NE(multi_contact_run_key(soft, configuration, plan, {}, "seed 1"),
+            multi_contact_run_key(soft, configuration, plan, {}, "seed 2"));
 }
 
 TEST(CacheKeys, ListsAndTextsCannotBeMistakenForEachOther) {

@@ -100,7 +100,7 @@ std::string complaint_of(const std::string& begin, const std::string& line) {
   write_text_atomic(path, text);
   try {
     (void)read_cell_card(path);
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     return std::string(e.what()).substr(directory.file("").size());
   }
   return "";
@@ -142,7 +142,7 @@ TEST(CellCardFile, NothingWrongIsTaken) {
 
 TEST(CellCardFile, TheLineIsNamedAndAMissingFileIsTrouble) {
   EXPECT_NE(complaint_of("split = ", "split = 2").find("card.toml:"), std::string::npos);
-  EXPECT_THROW((void)read_cell_card("/nowhere/card.toml"), FileTrouble);
+  EXPECT_THROW((void)read_cell_card("/nowhere/card.toml"), IoError);
 }
 
 }  // namespace

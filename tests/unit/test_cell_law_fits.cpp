@@ -115,10 +115,10 @@ TEST(ExcessPoresFit, SaysWhatIsNotDetermined) {
   dense.states.fit.parameters[5] = 0.95;
   EXPECT_NE(fit_excess_pores(dense.states, dense.groups).message.find("no excess pores"), std::string::npos);
   Mixtures few(5e-4, {1.0, 2.0});
-  EXPECT_THROW((void)fit_excess_pores(few.states, few.groups), BadInput);
+  EXPECT_THROW((void)fit_excess_pores(few.states, few.groups), InputError);
   Mixtures other(5e-4);
   other.groups.fines = "sand";
-  EXPECT_THROW((void)fit_excess_pores(other.states, other.groups), BadInput);
+  EXPECT_THROW((void)fit_excess_pores(other.states, other.groups), InputError);
   const Mixtures single(5e-4, {0.25, 0.67, 1.5, 4.0}, 0);
   const ExcessPoresFit without = fit_excess_pores(single.states, single.groups);
   EXPECT_TRUE(without.usable);
@@ -188,7 +188,7 @@ TEST(FaceFrictionFit, SaysWhatIsNotDetermined) {
   EXPECT_FALSE(rough.usable);
   EXPECT_NE(rough.message.find("mu_f"), std::string::npos) << rough.message;
   data.weight.pop_back();
-  EXPECT_THROW((void)fit_face_friction(all_curves, data), BadInput);
+  EXPECT_THROW((void)fit_face_friction(all_curves, data), InputError);
 }
 
 }  // namespace

@@ -171,27 +171,27 @@ TEST_P(CellStarts, LeaveCellsThatAreTooSmallWithoutFinesAtTheSamePressure) {
 TEST_P(CellStarts, RefuseStatesThatCannotBeAndSayWhy) {
   const CellSample s = cell_sample(40, 0.42, GetParam(), 2);
   const auto at_pressure = [&](double p, double fines) { start_at_pressure(s.law, s.bodies, s.volume, fines, p); };
-  test::expect_refused<BadInput>([&] { at_pressure(1e-4, 1.3 * s.fines); }, "no room");
-  test::expect_refused<BadInput>([&] { at_pressure(0.0, s.fines); }, "above 0");
-  test::expect_refused<BadInput>([&] { at_pressure(1.0, s.fines); }, "below");
-  test::expect_refused<BadInput>([&] { at_pressure(1e-4, 0.05 * s.fines); }, "would hold no fines");
-  test::expect_refused<BadInput>([&] { start_at_density(s.law, s.bodies, s.volume, 0.8 * s.fines); }, "does not jam");
-  test::expect_refused<BadInput>([&] { at_pressure(1e-4, 3.0 * s.fines); }, "leaves no pores");
-  test::expect_refused<BadInput>([&] { at_pressure(1e-4, NAN); }, "fines");
+  test::expect_refused<InputError>([&] { at_pressure(1e-4, 1.3 * s.fines); }, "no room");
+  test::expect_refused<InputError>([&] { at_pressure(0.0, s.fines); }, "above 0");
+  test::expect_refused<InputError>([&] { at_pressure(1.0, s.fines); }, "below");
+  test::expect_refused<InputError>([&] { at_pressure(1e-4, 0.05 * s.fines); }, "would hold no fines");
+  test::expect_refused<InputError>([&] { start_at_density(s.law, s.bodies, s.volume, 0.8 * s.fines); }, "does not jam");
+  test::expect_refused<InputError>([&] { at_pressure(1e-4, 3.0 * s.fines); }, "leaves no pores");
+  test::expect_refused<InputError>([&] { at_pressure(1e-4, NAN); }, "fines");
   CoarseBodies none = s.bodies;
   none.soft.assign(40, true);
-  test::expect_refused<BadInput>([&] { start_at_pressure(s.law, none, s.volume, s.fines, 1e-4); }, "there are none");
+  test::expect_refused<InputError>([&] { start_at_pressure(s.law, none, s.volume, s.fines, 1e-4); }, "there are none");
   auto volume = s.volume;
   volume[3] = 0.5 * s.bodies.grain(3);
-  test::expect_refused<BadInput>([&] { start_at_density(s.law, s.bodies, volume, s.fines); }, "cell 3");
+  test::expect_refused<InputError>([&] { start_at_density(s.law, s.bodies, volume, s.fines); }, "cell 3");
   volume.pop_back();
-  test::expect_refused<BadInput>([&] { start_at_density(s.law, s.bodies, volume, s.fines); }, "one volume");
+  test::expect_refused<InputError>([&] { start_at_density(s.law, s.bodies, volume, s.fines); }, "one volume");
   FinesLaw law = s.law;
   law.equation = PoreForm{0.03, 0.9};
-  test::expect_refused<BadInput>([&] { start_at_density(law, s.bodies, s.volume, s.fines); }, "exponent");
+  test::expect_refused<InputError>([&] { start_at_density(law, s.bodies, s.volume, s.fines); }, "exponent");
   law = s.law;
   law.void_ratio = 0.0;
-  test::expect_refused<BadInput>([&] { start_at_density(law, s.bodies, s.volume, s.fines); }, "void ratio");
+  test::expect_refused<InputError>([&] { start_at_density(law, s.bodies, s.volume, s.fines); }, "void ratio");
 }
 
 }  // namespace

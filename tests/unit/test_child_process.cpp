@@ -41,8 +41,8 @@ TEST_F(Child, HowItEndedIsTold) {
 }
 
 TEST_F(Child, ThatCannotBeStartedIsAnError) {
-  EXPECT_THROW((void)run({"/nowhere/program"}), FileTrouble);
-  EXPECT_THROW((void)run_child({program("true")}, directory_.file("nowhere"), log(), [] {}), FileTrouble);
+  EXPECT_THROW((void)run({"/nowhere/program"}), IoError);
+  EXPECT_THROW((void)run_child({program("true")}, directory_.file("nowhere"), log(), [] {}), IoError);
 }
 
 TEST_F(Child, EndsWhenWeAreAskedToStop) {

@@ -21,7 +21,7 @@ using Values = std::vector<double>;
 std::string message_of(const std::function<void()>& action) {
   try {
     action();
-  } catch (const BadInput& error) {
+  } catch (const InputError& error) {
     return error.what();
   }
   return "";
@@ -105,10 +105,10 @@ TEST(CompareCurves, LeavesOutUnusableAndLonelySamplesAndSaysSo) {
 
 TEST(CompareCurves, RefusesEmptyAmbiguousAndForeignSets) {
   const std::vector<MacroCurve> one{macro_curve("law", 0, 1.0)};
-  EXPECT_THROW(compare_curves({}, one), BadInput);
-  EXPECT_THROW(compare_curves(one, {}), BadInput);
-  EXPECT_THROW(compare_curves(one, {macro_curve("shelled", 5, 1.0)}), BadInput);
-  EXPECT_THROW(compare_curves(synthetic::macro(), one), BadInput);  // sample 0 under two engines
+  EXPECT_THROW(compare_curves({}, one), InputError);
+  EXPECT_THROW(compare_curves(one, {}), InputError);
+  EXPECT_THROW(compare_curves(one, {macro_curve("shelled", 5, 1.0)}), InputError);
+  EXPECT_THROW(compare_curves(synthetic::macro(), one), InputError);  // sample 0 under two engines
 }
 
 TEST(CompareCurves, ALateralStressThatWasNotRecordedDoesNotHideTheAxialOne) {
@@ -206,7 +206,7 @@ TEST(CompareRelaxations, NamesWhatIsThereWhenOneIsMissing) {
   const auto message = message_of([&] { compare_relaxations(data, "published", "swift", PairKind::soft_solid); });
   EXPECT_NE(message.find("swift"), std::string::npos);
   EXPECT_NE(message.find("damped, published"), std::string::npos);
-  EXPECT_THROW(compare_relaxations(data, "published", "damped", PairKind::soft_soft), BadInput);
+  EXPECT_THROW(compare_relaxations(data, "published", "damped", PairKind::soft_soft), InputError);
 }
 
 TEST(CompareRelaxations, NeedsAPackingInCommon) {
@@ -214,7 +214,7 @@ TEST(CompareRelaxations, NeedsAPackingInCommon) {
   data.packings = {synthetic::packing(0), synthetic::packing(1)};
   data.runs = {synthetic::packing_run(0, PairKind::soft_solid, "published", 1.0, data.spec),
                synthetic::packing_run(1, PairKind::soft_solid, "damped", 1.0, data.spec)};
-  EXPECT_THROW(compare_relaxations(data, "published", "damped", PairKind::soft_solid), BadInput);
+  EXPECT_THROW(compare_relaxations(data, "published", "damped", PairKind::soft_solid), InputError);
 }
 
 TEST(CompareMeasurements, DimensionlessSoThatStiffnessOfTheGrainsDropsOut) {
@@ -231,7 +231,7 @@ TEST(CompareMeasurements, DimensionlessSoThatStiffnessOfTheGrainsDropsOut) {
   EXPECT_NEAR(c.normal.back().ratio.ratio, 1.0, 1e-12);
   EXPECT_GT(c.normal.back().ratio.error, 0.0);
   EXPECT_NEAR(c.stiffness_initial.back().ratio.ratio, 1.0, 1e-12);
-  EXPECT_THROW(compare_measurements(candidate, "none", reference, "damped", PairKind::soft_solid), BadInput);
+  EXPECT_THROW(compare_measurements(candidate, "none", reference, "damped", PairKind::soft_solid), InputError);
 }
 
 TEST(CompareMeasurements, TheSamePackingsArePaired) {
@@ -267,8 +267,8 @@ TEST(CompareSides, ComparesEqualEnginesOrElseTheFirstOfEach) {
   const CompareResult different = compare_sides(law, twin);
   EXPECT_EQ(different.macro.at(0).reference_engine, "shelled");
   EXPECT_EQ(compare_sides(law, law).macro.at(0).result.axial_difference.mean, 0.0);
-  EXPECT_THROW(compare_sides(law, CompareSide{}), BadInput);
-  EXPECT_THROW(compare_within(law), BadInput);
+  EXPECT_THROW(compare_sides(law, CompareSide{}), InputError);
+  EXPECT_THROW(compare_within(law), InputError);
 }
 
 /// Curves that say what they start from and which law they were made with.
@@ -276,7 +276,7 @@ std::vector<MacroCurve> stated(const std::string& engine, const std::string& has
   std::vector<MacroCurve> curves = curves_of(synthetic::macro(), engine);
   for (MacroCurve& c : curves) {
     c.start = {0.01, 0.016, 5e5, 0.3, 0.3, 0.0, 0.16, 0.16, 0.16, "start " + std::to_string(c.sample)};
-    if (engine == "law") c.law = {Crowd::directional, 0.7, 5e5, 0.3, 0.3, hash};
+    if (engine == "law") c.law = {LawForm::directional, 0.7, 5e5, 0.3, 0.3, hash};
   }
   return curves;
 }

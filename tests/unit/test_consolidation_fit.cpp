@@ -76,7 +76,7 @@ TEST(ConsolidationFit, SaysWhatCannotBeTold) {
   EXPECT_FALSE(none.usable);
   EXPECT_NE(none.reason.find("does not grow"), std::string::npos);
   flat.fraction[0].pop_back();
-  EXPECT_THROW(fit_consolidation(flat), BadInput);
+  EXPECT_THROW(fit_consolidation(flat), InputError);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/contact/crowd_form.h"
+#include "common/contact/multi_contact_form.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/verlet.h"
 
@@ -50,7 +50,8 @@ double force_at(const AnyLaw& law, double overlap) {
 TEST(ContactWatch, TheElasticForceIsTheDerivativeOfWhatIsStored) {
   LinearSpring spring;
   spring.normal = 7.0;
-  const AnyLaw laws[] = {hertz_law({3.0, 1.0, 0.0, 0.0}, false), spring, soft_law({}), soft_law({0.2, Beyond::clamp})};
+  const AnyLaw laws[] = {hertz_law({3.0, 1.0, 0.0, 0.0}, false), spring, soft_law({}),
+                         soft_law({0.2, Extrapolation::clamp})};
   for (const AnyLaw& law : laws)
     for (const double h : {0.05, 0.15, 0.3}) {
       constexpr double d = 1e-5;
@@ -100,27 +101,27 @@ TEST(ContactWatch, FindsTheDeepestContactAndWhatIsBehindAPlane) {
 }
 
 TEST(ContactWatch, CountsPairLawsByOverlap) {
-  const LawRange range{0.2, Beyond::error};
+  const LawRange range{0.2, Extrapolation::error};
   System3 s = two_spheres(soft_law(range), 0.15);  // Delta 0.15: the soft one has radius 1
   force_pass(s, 0.0);
   LawUse use = watch_contacts(s).laws;
-  EXPECT_EQ(use.asked, 1);
+  EXPECT_EQ(use.evaluations, 1);
   EXPECT_EQ(use.beyond, 0);
-  EXPECT_NEAR(use.largest, 0.75, 1e-12);
+  EXPECT_NEAR(use.max_range_ratio, 0.75, 1e-12);
   EXPECT_EQ(law_use_text(use), "");
   s = two_spheres(soft_law(range), 0.3);
   force_pass(s, 0.0);
   use = watch_contacts(s).laws;
   EXPECT_EQ(use.beyond, 1);
-  EXPECT_EQ(use.refused, 1);
+  EXPECT_EQ(use.rejected, 1);
   EXPECT_NE(law_use_text(use).find("1 of 1 uses of fitted laws beyond what was measured, up to 1.50 times"),
             std::string::npos)
       << law_use_text(use);
 }
 
-template <Crowd kCrowd>
-LawUse crowd_use(Beyond beyond) {
-  SoftCrowd<kCrowd, false> law;
+template <LawForm kLawForm>
+LawUse multi_contact_use(Extrapolation beyond) {
+  SoftMultiContact<kLawForm, false> law;
   law.form.pressure = {0.6, 2.5, 0.05, {0.02, beyond}};
   law.modulus = 10.0;
   System3 s = two_spheres(law, 0.3);
@@ -128,25 +129,26 @@ LawUse crowd_use(Beyond beyond) {
   return watch_contacts(s).laws;
 }
 
-TEST(ContactWatch, CountsCrowdLawsByLostVolume) {
+TEST(ContactWatch, CountsMultiContactLawsByLostVolume) {
   const double volume = lens(0.3, 1.0 / 0.5).volume;
-  for (const LawUse& use : {crowd_use<Crowd::pair>(Beyond::clamp), crowd_use<Crowd::bag>(Beyond::clamp),
-                            crowd_use<Crowd::directional>(Beyond::clamp)}) {
-    EXPECT_EQ(use.asked, 1);
-    EXPECT_NEAR(use.largest, volume / 0.02, 1e-9);
+  for (const LawUse& use : {multi_contact_use<LawForm::pair>(Extrapolation::clamp),
+                            multi_contact_use<LawForm::isotropic>(Extrapolation::clamp),
+                            multi_contact_use<LawForm::directional>(Extrapolation::clamp)}) {
+    EXPECT_EQ(use.evaluations, 1);
+    EXPECT_NEAR(use.max_range_ratio, volume / 0.02, 1e-9);
     EXPECT_EQ(use.clamped, use.beyond);
-    EXPECT_EQ(use.refused, 0);
+    EXPECT_EQ(use.rejected, 0);
   }
 }
 
-TEST(ContactWatch, AClampedCrowdLawKeepsItsPressure) {
-  CrowdPressure open{0.6, 2.5, 0.05};
-  CrowdPressure clamped = open;
-  clamped.range = {0.1, Beyond::clamp};
+TEST(ContactWatch, AClampedMultiContactLawKeepsItsPressure) {
+  MultiContactPressure open{0.6, 2.5, 0.05};
+  MultiContactPressure clamped = open;
+  clamped.range = {0.1, Extrapolation::clamp};
   EXPECT_EQ(clamped.at(0.09).p, open.at(0.09).p);
   EXPECT_EQ(clamped.at(0.2).p, open.at(0.1).p);
   EXPECT_EQ(clamped.at(0.2).slope, 0.0);
-  clamped.range = {0.1, Beyond::extrapolate};
+  clamped.range = {0.1, Extrapolation::extrapolate};
   EXPECT_EQ(clamped.at(0.2).p, open.at(0.2).p);
 }
 
@@ -166,18 +168,18 @@ TEST(ContactWatch, WhatIsNoNumberIsTheWorst) {
 }
 
 TEST(ContactWatch, UsesOfALawThatAreNoNumberLieBeyondIt) {
-  System3 s = two_spheres(soft_law({0.2, Beyond::error}), 0.15);
+  System3 s = two_spheres(soft_law({0.2, Extrapolation::error}), 0.15);
   force_pass(s, 0.0);
   s.particles.sphere[1].x[2] = std::numeric_limits<double>::quiet_NaN();
   const LawUse use = watch_contacts(s).laws;
   EXPECT_EQ(use.beyond, 1);
-  EXPECT_TRUE(std::isnan(use.largest));
+  EXPECT_TRUE(std::isnan(use.max_range_ratio));
 }
 
-/// Crowd laws ask whether there is lost volume at all: not a number is not nothing.
-template <Crowd kCrowd>
+/// Multi-contact laws ask whether there is lost volume at all: not a number is not nothing.
+template <LawForm kLawForm>
 void expect_lost() {
-  SoftCrowd<kCrowd, false> law;
+  SoftMultiContact<kLawForm, false> law;
   law.form.pressure = {0.6, 2.5, 0.05};
   law.modulus = 10.0;
   System3 s = two_spheres(law, 0.3);
@@ -189,10 +191,10 @@ void expect_lost() {
   EXPECT_TRUE(std::isnan(s.particles.force[0][0]));
 }
 
-TEST(ContactWatch, CrowdLawsLoseNoNumber) {
-  expect_lost<Crowd::pair>();
-  expect_lost<Crowd::bag>();
-  expect_lost<Crowd::directional>();
+TEST(ContactWatch, MultiContactLawsLoseNoNumber) {
+  expect_lost<LawForm::pair>();
+  expect_lost<LawForm::isotropic>();
+  expect_lost<LawForm::directional>();
 }
 
 TEST(ContactWatch, LooksAndTouchesNothing) {

@@ -95,7 +95,7 @@ std::string refusal(const std::string& text) {
     (void)csv.quantity({"rs", "radius"}, Unit::length, Range::positive());
     (void)csv.quantity({"density", "rho"}, Unit::density, Range::positive());
     (void)csv.word({"kind"});
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     return e.what();
   }
   return "";
@@ -137,7 +137,7 @@ TEST(CsvFile, ColumnsThatCountForNothingAreRefused) {
   try {
     csv.require_known_columns({"radius", "count"}, "a list of sizes");
     FAIL() << "nothing was refused";
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("t.csv:1: column \"coutn\" is not understood; nearest is \"count\""),
               std::string::npos)
         << e.what();

@@ -158,7 +158,7 @@ TEST(DrawnSizes, ASeedOfSingleParticlesNeedsSomethingToDraw) {
                             const std::optional<std::uint64_t>& seed) -> std::string {
     try {
       (void)read_particles_scene<3>(Scene::parse(text, "s", set), seed);
-    } catch (const BadInput& e) {
+    } catch (const InputError& e) {
       return e.what();
     }
     return "";

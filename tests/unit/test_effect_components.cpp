@@ -44,7 +44,7 @@ TEST(EffectComponents, KeepWhatHoldsTheShareAndNoMoreThanAllowed) {
   EXPECT_EQ(kept(4, 0.95), 2U);
   EXPECT_EQ(kept(4, 1.0), 3U);
   EXPECT_EQ(kept(2, 1.0), 2U);
-  EXPECT_THROW((void)effect_components({{1.0}, {2.0}}, {{1.0}, {2.0}}, 1, 0.9), BadInput);
+  EXPECT_THROW((void)effect_components({{1.0}, {2.0}}, {{1.0}, {2.0}}, 1, 0.9), InputError);
 }
 
 TEST(EffectComponents, NormalDrawsHaveTheirCovariance) {
@@ -63,8 +63,8 @@ TEST(EffectComponents, NormalDrawsHaveTheirCovariance) {
   EXPECT_NEAR(mean_error(a).deviation, 2.0, 0.08);
   EXPECT_NEAR(mean_error(b).deviation, 1.0, 0.04);
   EXPECT_NEAR(product, 1.2, 0.12);
-  EXPECT_THROW((void)normal_draws({0.0, 0.0}, {1.0, 2.0, 2.0, 1.0}, 2, 1), BadInput);
-  EXPECT_THROW((void)normal_draws({0.0}, {HUGE_VAL}, 2, 1), BadInput);
+  EXPECT_THROW((void)normal_draws({0.0, 0.0}, {1.0, 2.0, 2.0, 1.0}, 2, 1), InputError);
+  EXPECT_THROW((void)normal_draws({0.0}, {HUGE_VAL}, 2, 1), InputError);
 }
 
 }  // namespace

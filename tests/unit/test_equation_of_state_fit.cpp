@@ -420,18 +420,18 @@ TEST(EquationOfStateFit, RefusesWhatTellsNothing) {
     change(curves[2]);
     fit_equation_of_state(curves);
   };
-  test::expect_refused<BadInput>([] { fit_equation_of_state({}); }, "no curves");
-  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.phi.resize(3), c.pressure.resize(3); }); },
-                                 "3 points with pressure");
-  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.pressure.assign(12, 0.0); }); }, "never bears");
-  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.phi[4] = NAN; }); }, "point 4");
-  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.pressure[4] = INFINITY; }); }, "point 4");
-  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.phi[4] = 1.0; }); }, "point 4");
-  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.weight.assign(12, -1.0); }); }, "weight");
-  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.phi.pop_back(); }); }, "11 solid fractions");
-  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.span = 0.5; }); }, "span");
-  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.span = 7.0; }); }, "has spans of");
-  test::expect_refused<BadInput>(
+  test::expect_refused<InputError>([] { fit_equation_of_state({}); }, "no curves");
+  test::expect_refused<InputError>([&] { with([](StateCurve& c) { c.phi.resize(3), c.pressure.resize(3); }); },
+                                   "3 points with pressure");
+  test::expect_refused<InputError>([&] { with([](StateCurve& c) { c.pressure.assign(12, 0.0); }); }, "never bears");
+  test::expect_refused<InputError>([&] { with([](StateCurve& c) { c.phi[4] = NAN; }); }, "point 4");
+  test::expect_refused<InputError>([&] { with([](StateCurve& c) { c.pressure[4] = INFINITY; }); }, "point 4");
+  test::expect_refused<InputError>([&] { with([](StateCurve& c) { c.phi[4] = 1.0; }); }, "point 4");
+  test::expect_refused<InputError>([&] { with([](StateCurve& c) { c.weight.assign(12, -1.0); }); }, "weight");
+  test::expect_refused<InputError>([&] { with([](StateCurve& c) { c.phi.pop_back(); }); }, "11 solid fractions");
+  test::expect_refused<InputError>([&] { with([](StateCurve& c) { c.span = 0.5; }); }, "span");
+  test::expect_refused<InputError>([&] { with([](StateCurve& c) { c.span = 7.0; }); }, "has spans of");
+  test::expect_refused<InputError>(
       [&] {
         fit_equation_of_state(curves_of(t, 1), {StateForm::porosity, 10, 1});
       },
@@ -445,7 +445,7 @@ TEST(EquationOfStateFit, OneSampleInEveryGroupHasNoErrorsAndSaysSo) {
   EXPECT_TRUE(fit.usable);
   EXPECT_NE(fit.message.find("errors are not known"), std::string::npos);
   EXPECT_TRUE(std::isinf(fit.modulus.error));
-  test::expect_refused<BadInput>([&] { extrapolate_onset(fit, 12.0); }, "two samples");
+  test::expect_refused<InputError>([&] { extrapolate_onset(fit, 12.0); }, "two samples");
 }
 
 TEST(OnsetExtrapolation, RefusesWhatItCannotStandOn) {
@@ -454,14 +454,14 @@ TEST(OnsetExtrapolation, RefusesWhatItCannotStandOn) {
   one.samples = {3};
   const StateFit alone = fitted(one, 1);
   ASSERT_TRUE(alone.usable) << alone.message;
-  test::expect_refused<BadInput>([&] { extrapolate_onset(alone, 12.0); }, "1 span");
+  test::expect_refused<InputError>([&] { extrapolate_onset(alone, 12.0); }, "1 span");
   const StateFit fit = fitted({}, 1);
-  test::expect_refused<BadInput>([&] { extrapolate_onset(fit, 0.5); }, "span");
-  test::expect_refused<BadInput>([&] { extrapolate_onset(fit, NAN); }, "span");
+  test::expect_refused<InputError>([&] { extrapolate_onset(fit, 0.5); }, "span");
+  test::expect_refused<InputError>([&] { extrapolate_onset(fit, NAN); }, "span");
   OnsetOptions options;
   options.groups = {"none such"};
-  test::expect_refused<BadInput>([&] { extrapolate_onset(fit, 12.0, options); }, "no group");
-  test::expect_refused<BadInput>([&] { extrapolate_onset({}, 12.0); }, "could not be fitted");
+  test::expect_refused<InputError>([&] { extrapolate_onset(fit, 12.0, options); }, "no group");
+  test::expect_refused<InputError>([&] { extrapolate_onset({}, 12.0); }, "could not be fitted");
 }
 
 }  // namespace

@@ -70,16 +70,16 @@ std::vector<double> array_of(const std::string& vtp, const std::string& section,
   return out;
 }
 
-const ExportFile& file_of(const std::vector<ExportFile>& files, Holds holds) {
+const ExportFile& file_of(const std::vector<ExportFile>& files, StateContent holds) {
   for (const ExportFile& f : files)
-    if (f.holds == holds) return f;
+    if (f.content == holds) return f;
   throw std::runtime_error("no file of " + to_string(holds));
 }
 
 TEST(ExportFiles, ParticlesOfVtpAreVerticesAlone) {
   const auto files = vtp_files(a_state(), 3);
   ASSERT_EQ(files.size(), 2U);
-  const ExportFile& f = file_of(files, Holds::particles);
+  const ExportFile& f = file_of(files, StateContent::particles);
   EXPECT_EQ(f.name, "scene_free-0_particles_000003.vtp");
   for (const char* needed :
        {"type=\"PolyData\"", "byte_order=\"LittleEndian\"", "NumberOfPoints=\"3\"", "NumberOfVerts=\"3\"",
@@ -103,7 +103,7 @@ TEST(ExportFiles, ParticlesOfVtpAreVerticesAlone) {
 
 TEST(ExportFiles, ContactsOfVtpAreLinesThatDoNotSpanTheCell) {
   const auto files = vtp_files(a_state(), 0);
-  const std::string& text = file_of(files, Holds::contacts).text;
+  const std::string& text = file_of(files, StateContent::contacts).text;
   EXPECT_NE(text.find("NumberOfPoints=\"6\" NumberOfVerts=\"0\" NumberOfLines=\"3\""), std::string::npos);
   const auto points = array_of(text, "Points", "Points");
   ASSERT_EQ(points.size(), 18U);
@@ -122,7 +122,7 @@ TEST(ExportFiles, StatesThatKeptNoContactsHaveNoFileOfThem) {
   s.contacts.clear();
   EXPECT_EQ(vtp_files(s, 0).size(), 1U);
   EXPECT_EQ(dump_files(s, 0).size(), 1U);
-  EXPECT_THROW((void)file_of(csv_files(s, 0), Holds::contacts), std::runtime_error);
+  EXPECT_THROW((void)file_of(csv_files(s, 0), StateContent::contacts), std::runtime_error);
 }
 
 /// Sections "ITEM: NAME rest" to their lines.
@@ -142,7 +142,7 @@ std::map<std::string, std::vector<std::string>> items_of(const std::string& dump
 TEST(ExportFiles, DumpsAreAsLammpsWritesThem) {
   const auto files = dump_files(a_state(), 0);
   ASSERT_EQ(files.size(), 3U);
-  auto atoms = items_of(file_of(files, Holds::particles).text);
+  auto atoms = items_of(file_of(files, StateContent::particles).text);
   EXPECT_EQ(atoms["TIMESTEP"], std::vector<std::string>{"12"});
   EXPECT_EQ(atoms["TIME"], std::vector<std::string>{"0.25"});
   EXPECT_EQ(atoms["NUMBER OF ATOMS"], std::vector<std::string>{"3"});
@@ -153,13 +153,13 @@ TEST(ExportFiles, DumpsAreAsLammpsWritesThem) {
   ASSERT_EQ(box.size(), 3U);
   EXPECT_EQ(box[0], "0 1.25 0.25");  // the box around the sheared cell
   EXPECT_EQ(box[1], "0 1 0");
-  auto contacts = items_of(file_of(files, Holds::contacts).text);
+  auto contacts = items_of(file_of(files, StateContent::contacts).text);
   EXPECT_EQ(contacts["NUMBER OF ENTRIES"], std::vector<std::string>{"2"});
   const auto bonds = contacts["ENTRIES index batom1 batom2 normal_force fx fy fz px py pz"];
   ASSERT_EQ(bonds.size(), 2U);
   EXPECT_TRUE(bonds[0].starts_with("1 1 2 3 -3 4 0 ")) << bonds[0];
   EXPECT_TRUE(bonds[1].starts_with("2 1 3 2 2 0 0 ")) << bonds[1];
-  auto walls = items_of(file_of(files, Holds::wall_contacts).text);
+  auto walls = items_of(file_of(files, StateContent::wall_contacts).text);
   const auto on_walls = walls["ENTRIES index id wall normal_force fx fy fz px py pz"];
   ASSERT_EQ(on_walls.size(), 1U);
   EXPECT_TRUE(on_walls[0].starts_with("1 2 1 1.5 ")) << on_walls[0];
@@ -183,12 +183,12 @@ TEST(ExportFiles, TablesHaveUnitsAndAsManyCellsAsTheirHeader) {
     const auto rows = cells_of(f.text);
     for (const auto& row : rows) EXPECT_EQ(row.size(), rows[0].size()) << f.name;
   }
-  const auto particles = cells_of(file_of(files, Holds::particles).text);
+  const auto particles = cells_of(file_of(files, StateContent::particles).text);
   ASSERT_EQ(particles.size(), 4U);
   EXPECT_EQ(particles[0][4], "x [m]");
   EXPECT_EQ(particles[0][8], "vx [m/s]");
   EXPECT_EQ(particles[3][4], "0.86");
-  const auto contacts = cells_of(file_of(files, Holds::contacts).text);
+  const auto contacts = cells_of(file_of(files, StateContent::contacts).text);
   ASSERT_EQ(contacts.size(), 4U);
   EXPECT_EQ(contacts[0][3], "normal_force [N]");
   EXPECT_EQ(contacts[1][1], "1");
@@ -198,11 +198,11 @@ TEST(ExportFiles, TablesHaveUnitsAndAsManyCellsAsTheirHeader) {
 
 TEST(ExportFiles, UnknownFormsAreRefused) {
   EXPECT_EQ(export_format("lammps-dump"), ExportFormat::lammps_dump);
-  EXPECT_THROW((void)export_format(""), BadInput);
+  EXPECT_THROW((void)export_format(""), InputError);
   try {
     (void)export_format("vpt");
     FAIL();
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("nearest is vtp"), std::string::npos) << e.what();
   }
 }

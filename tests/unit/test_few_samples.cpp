@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "common/core/limits.h"
-#include "common/data/crowd_choice.h"
 #include "common/data/estimate_words.h"
+#include "common/data/multi_contact_choice.h"
 
 namespace softgrain {
 namespace {
@@ -51,8 +51,8 @@ TEST(EstimateWords, SayWhatIsNotDetermined) {
   EXPECT_EQ(bracket_text({132.90002, 0.0, 132.9, 132.9001}), "132.9 [132.9, 132.9001]");
 }
 
-CrowdLaw law_of(Crowd form, double error, LawStatus status = LawStatus::good) {
-  CrowdLaw law;
+MultiContactLaw law_of(LawForm form, double error, LawStatus status = LawStatus::good) {
+  MultiContactLaw law;
   law.form = form;
   law.error_cross = error;
   law.status = status;
@@ -61,15 +61,15 @@ CrowdLaw law_of(Crowd form, double error, LawStatus status = LawStatus::good) {
 
 TEST(FormLabel, SaysWhetherErrorsOrASceneChose) {
   LawTableEntry entry;
-  entry.laws = {law_of(Crowd::pair, 0.5), law_of(Crowd::bag, 0.2), law_of(Crowd::directional, 0.1)};
-  entry.best = Crowd::directional;
+  entry.laws = {law_of(LawForm::pair, 0.5), law_of(LawForm::isotropic, 0.2), law_of(LawForm::directional, 0.1)};
+  entry.best = LawForm::directional;
   EXPECT_EQ(form_label(entry, entry.laws[2]), "directional (best)");
-  EXPECT_EQ(form_label(entry, entry.laws[1]), "bag");
-  entry.best = Crowd::bag;
-  EXPECT_EQ(form_label(entry, entry.laws[1]), "bag (set by the scene)");
+  EXPECT_EQ(form_label(entry, entry.laws[1]), "isotropic");
+  entry.best = LawForm::isotropic;
+  EXPECT_EQ(form_label(entry, entry.laws[1]), "isotropic (chosen)");
   EXPECT_EQ(form_label(entry, entry.laws[2]), "directional");
   entry.laws[2].status = LawStatus::underdetermined;  // what the data do not determine is not preferred
-  EXPECT_EQ(form_label(entry, entry.laws[1]), "bag (best)");
+  EXPECT_EQ(form_label(entry, entry.laws[1]), "isotropic (best)");
 }
 
 }  // namespace

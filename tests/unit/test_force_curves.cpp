@@ -37,11 +37,11 @@ class ForceCurveFile : public ::testing::Test {
   ForceCurves read(const std::string& text, const ForceCurveOptions& options = {}) const {
     return read_force_curves(write(text), options);
   }
-  /// The message of BadInput.
+  /// The message of InputError.
   std::string refused(const std::string& text, const ForceCurveOptions& options = {}) const {
     try {
       (void)read(text, options);
-    } catch (const BadInput& e) {
+    } catch (const InputError& e) {
       return e.what();
     }
     return "nothing was refused";
@@ -163,7 +163,7 @@ TEST_F(ForceCurveFile, AsManySamplesAsRowsTakeNoLonger) {
     std::string message = "read";
     try {
       EXPECT_EQ(read_force_curves(path, {}).samples.size(), 1U);
-    } catch (const BadInput& e) {
+    } catch (const InputError& e) {
       message = e.what();
     }
     for (const std::string& word : words) EXPECT_NE(message.find(word), std::string::npos) << message;
@@ -238,8 +238,8 @@ TEST_F(ForceCurveFile, FilesOfOneExperimentAreJoined) {
   EXPECT_EQ(joined[0].samples.size(), 2U);
   EXPECT_EQ(joined[0].samples[1].name, "b");
   const std::string other = write(replaced(kGood, "16 mm", "17 mm"), "d.csv");
-  EXPECT_THROW(read_force_curve_files({a, other}, {}), BadInput);
-  EXPECT_THROW(read_force_curve_files({a, a}, {}), BadInput);
+  EXPECT_THROW(read_force_curve_files({a, other}, {}), InputError);
+  EXPECT_THROW(read_force_curve_files({a, a}, {}), InputError);
 }
 
 }  // namespace

@@ -139,13 +139,13 @@ TEST(Grading, DisksCountByTheirArea) {
 }
 
 TEST(Grading, WhatIsNoDistributionIsRefused) {
-  EXPECT_THROW((void)Grading::power_law(3.5, 0.0, 0.006), BadInput);
-  EXPECT_THROW((void)Grading::power_law(3.5, 0.007, 0.006), BadInput);
-  EXPECT_THROW((void)Grading::list({}), BadInput);
-  EXPECT_THROW((void)Grading::list({1e-120}), BadInput);
-  EXPECT_THROW((void)Grading::power_law(20.0, 1e-90, 1e90), BadInput);
-  EXPECT_THROW((void)Grading::log_normal(1e-3, 1.01, 1.0, 2.0), BadInput);
-  EXPECT_THROW((void)Grading::classes({{1.0, 2.0, 4.0, -1.0}}), BadInput);
+  EXPECT_THROW((void)Grading::power_law(3.5, 0.0, 0.006), InputError);
+  EXPECT_THROW((void)Grading::power_law(3.5, 0.007, 0.006), InputError);
+  EXPECT_THROW((void)Grading::list({}), InputError);
+  EXPECT_THROW((void)Grading::list({1e-120}), InputError);
+  EXPECT_THROW((void)Grading::power_law(20.0, 1e-90, 1e90), InputError);
+  EXPECT_THROW((void)Grading::log_normal(1e-3, 1.01, 1.0, 2.0), InputError);
+  EXPECT_THROW((void)Grading::classes({{1.0, 2.0, 4.0, -1.0}}), InputError);
 }
 
 TEST(Grading, DrawingIsWithoutBias) {
@@ -180,7 +180,7 @@ class GradingFile : public ::testing::Test {
   std::string complaint(const std::string& text) {
     try {
       (void)sieves(text);
-    } catch (const BadInput& e) {
+    } catch (const InputError& e) {
       return e.what();
     }
     return "";
@@ -269,7 +269,7 @@ TEST_F(GradingFile, AListMayHaveCounts) {
   for (const char* text :
        {"radius [mm],count\n1,-1\n", "radius [mm],count\n1,\n", "radius [mm],count\n1,0\n",
         "radius [mm],count [kg]\n1,2\n", "radius [mm],mass\n1,2\n", "# mean = 3 mm\nradius [mm]\n1\n"})
-    EXPECT_THROW((void)list(text), BadInput) << text;
+    EXPECT_THROW((void)list(text), InputError) << text;
 }
 
 TEST(GradingScene, EveryFormIsRead) {
@@ -304,13 +304,13 @@ TEST(GradingScene, EveryFormIsRead) {
     try {
       (void)read(text);
       ADD_FAILURE() << text;
-    } catch (const BadInput& e) {
+    } catch (const InputError& e) {
       EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
     }
   }
-  EXPECT_THROW((void)read("form = \"fuler\"\nexponent = 0.5\n" + ends), BadInput);
-  EXPECT_THROW((void)read("form = \"fuller\"\nexponent = 0.5\nradius_min = 2.0\nradius_max = 1.0\n"), BadInput);
-  EXPECT_THROW((void)read("form = \"classes\"\n"), BadInput);
+  EXPECT_THROW((void)read("form = \"fuler\"\nexponent = 0.5\n" + ends), InputError);
+  EXPECT_THROW((void)read("form = \"fuller\"\nexponent = 0.5\nradius_min = 2.0\nradius_max = 1.0\n"), InputError);
+  EXPECT_THROW((void)read("form = \"classes\"\n"), InputError);
 }
 
 }  // namespace

@@ -296,11 +296,11 @@ TEST(GrainBoxArrangement, RefusesWhatDoesNotFit) {
   GrainBoxSpec spec;
   spec.grains = 300;
   spec.solid_fraction = 0.6;
-  EXPECT_THROW((void)make_loose_pack(spec, 1), BadInput);
+  EXPECT_THROW((void)make_loose_pack(spec, 1), InputError);
   spec = {};
   spec.grains = 8;
   spec.aspect = {{1.0, 1.0, 100.0}};
-  EXPECT_THROW((void)make_loose_pack(spec, 1), BadInput);
+  EXPECT_THROW((void)make_loose_pack(spec, 1), InputError);
 }
 
 GrainBoxResult small_result() {

@@ -3,29 +3,29 @@
 
 #include <cmath>
 
-#include "common/contact/crowd_from_table.h"
+#include "common/contact/multi_contact_from_table.h"
 #include "common/core/error.h"
 #include "common/core/solid_sphere.h"
-#include "common/data/crowd_replicates.h"
+#include "common/data/multi_contact_replicates.h"
 #include "common/dynamics/force_pass.h"
 #include "common/neighbours/verlet_list.h"
 #include "common/packing/void_filling.h"
-#include "microsim/crowd_arrangements.h"
 #include "microsim/filled_shell.h"
+#include "microsim/multi_contact_arrangements.h"
 #include "microsim/shell_compaction.h"
 #include "pipelines/kinds/hierarchy/level.h"
 #include "pipelines/kinds/hierarchy/level_errors.h"
-#include "tests/support/crowd.h"
-#include "tests/support/synthetic_crowd.h"
+#include "tests/support/multi_contact.h"
+#include "tests/support/synthetic_multi_contact.h"
 
 namespace softgrain {
 namespace {
 
 HierarchySetup setup_of(double inner_radius) {
   HierarchySetup setup;
-  setup.crowd.spec = test::coarse_spec();
+  setup.multi_contact.spec = test::coarse_spec();
   setup.inner_radius = inner_radius;
-  setup.next_volume = next_volume(setup.crowd.spec.exponent, setup.crowd.spec.polydispersity);
+  setup.next_volume = next_volume(setup.multi_contact.spec.exponent, setup.multi_contact.spec.polydispersity);
   return setup;
 }
 
@@ -58,9 +58,9 @@ TEST(FillShell, SoftParticlesHoldTheMassOfTheNextLevel) {
   const HierarchySetup setup = setup_of(0.125);
   constexpr double kGrainsBelow = 0.7;
   for (std::uint64_t index = 0; index < 3; ++index) {
-    const ShellPacking published = generate_shell_packing(setup.crowd.spec, 1, index);
+    const ShellPacking published = generate_shell_packing(setup.multi_contact.spec, 1, index);
     const ShellFilling filling{setup.inner_radius, setup.next_volume / kGrainsBelow, 0.05};
-    const SoftContent content = fill_shell(setup.crowd.spec, filling, published, 1);
+    const SoftContent content = fill_shell(setup.multi_contact.spec, filling, published, 1);
     const double grains = content.grains.solid_fraction();
     const double soft = volume_of(content.inner);
     const double one = cube(setup.inner_radius);
@@ -73,10 +73,10 @@ TEST(FillShell, SoftParticlesHoldTheMassOfTheNextLevel) {
       all.push_back({content.grains.position[k], content.grains.radius[k]});
     for (const InnerSoft& s : content.inner) all.push_back({s.x, 0.95 * s.r});  // at their onset
     expect_touching(all);
-    const SoftContent again = fill_shell(setup.crowd.spec, filling, published, 1);
+    const SoftContent again = fill_shell(setup.multi_contact.spec, filling, published, 1);
     ASSERT_EQ(again.inner.size(), content.inner.size());
     EXPECT_EQ(again.inner.front().x, content.inner.front().x);
-    EXPECT_NE(fill_shell(setup.crowd.spec, filling, published, 2).inner.front().x, content.inner.front().x);
+    EXPECT_NE(fill_shell(setup.multi_contact.spec, filling, published, 2).inner.front().x, content.inner.front().x);
   }
 }
 
@@ -84,7 +84,7 @@ TEST(FillHoles, InnerSoftParticlesLieInTheVoids) {
   HierarchySetup setup = setup_of(0.16);
   setup.inner_radius_min = 0.08;
   for (std::uint64_t index = 0; index < 3; ++index) {
-    const ShellPacking packing = generate_shell_packing(setup.crowd.spec, 1, index);
+    const ShellPacking packing = generate_shell_packing(setup.multi_contact.spec, 1, index);
     const SoftContent content = fill_holes(setup, {0.16, 10.0, 0.0}, packing);
     ASSERT_GT(content.inner.size(), 3U);
     EXPECT_EQ(content.grains.radius, packing.radius);
@@ -118,16 +118,16 @@ TEST(CompactInShell, GrowsToTheRadiiWhereThereIsRoom) {
   // Equal spheres jam at 0.64, less beside a wall seven of them across.
   EXPECT_GT(jammed.packing.solid_fraction(), 0.50);
   EXPECT_LT(jammed.packing.solid_fraction(), 0.66);
-  EXPECT_THROW((void)compact_in_shell({}, random), BadInput);
-  EXPECT_THROW((void)compact_in_shell({1.2}, random), BadInput);
+  EXPECT_THROW((void)compact_in_shell({}, random), InputError);
+  EXPECT_THROW((void)compact_in_shell({1.2}, random), InputError);
 }
 
 TEST(LevelErrors, TheOnsetIsWhereSixPlanesBegin) {
   const LawTableEntry entry = synthetic::law_entry();
-  const CrowdLaw& law = *entry.find(Crowd::bag);
+  const MultiContactLaw& law = *entry.find(LawForm::isotropic);
   const double onset = law_onset(law, 0.28);
-  const CrowdModel model = crowd_model(law);
-  const auto force = [&](double x) { return crowd_forces(model, six_planes(), std::vector<double>(6, x))[0]; };
+  const MultiContactModel model = multi_contact_model(law);
+  const auto force = [&](double x) { return multi_contact_forces(model, six_planes(), std::vector<double>(6, x))[0]; };
   EXPECT_GT(onset, 0.01);
   EXPECT_LT(onset, law.delta.value);
   EXPECT_EQ(force(onset * (1.0 - 1e-6)), 0.0);
@@ -136,35 +136,35 @@ TEST(LevelErrors, TheOnsetIsWhereSixPlanesBegin) {
 
 TEST(LevelErrors, DrawsOfTheLawBelowGoIntoThoseOfTheLevel) {
   LawTableEntry below = synthetic::law_entry();
-  for (CrowdLaw& law : below.laws)
+  for (MultiContactLaw& law : below.laws)
     for (const double factor : {0.8, 1.0, 1.25}) {
-      law.replicates.push_back(crowd_numbers(law));
+      law.replicates.push_back(multi_contact_numbers(law));
       law.replicates.back()[0] *= factor;
     }
-  const std::vector<double> draws = strength_draws(below, Crowd::bag, 0.5);
+  const std::vector<double> draws = strength_draws(below, LawForm::isotropic, 0.5);
   ASSERT_EQ(draws.size(), 3U);
   EXPECT_NEAR(draws[0], std::sqrt(0.8), 1e-12);
   EXPECT_NEAR(draws[1], 1.0, 1e-12);
   EXPECT_NEAR(draws[2], std::sqrt(1.25), 1e-12);
   LawTableEntry level = synthetic::law_entry();
-  for (CrowdLaw& law : level.laws) law.replicates.assign(6, crowd_numbers(law));
-  EXPECT_NEAR(strength_error(level, Crowd::bag), 0.0, 1e-12);
-  const Estimate before = level.find(Crowd::bag)->a;
+  for (MultiContactLaw& law : level.laws) law.replicates.assign(6, multi_contact_numbers(law));
+  EXPECT_NEAR(strength_error(level, LawForm::isotropic), 0.0, 1e-12);
+  const Estimate before = level.find(LawForm::isotropic)->a;
   spread(level, draws);
-  EXPECT_NEAR(level.find(Crowd::bag)->replicates[3][0], before.value * std::sqrt(0.8), 1e-12);
-  EXPECT_GT(level.find(Crowd::bag)->a.standard_error, before.standard_error);
-  EXPECT_GT(strength_error(level, Crowd::bag), 0.08);
-  EXPECT_NEAR(law_strength(*scaled_law(below, 1.25).find(Crowd::bag), 0.2),
-              1.25 * law_strength(*below.find(Crowd::bag), 0.2), 1e-12);
+  EXPECT_NEAR(level.find(LawForm::isotropic)->replicates[3][0], before.value * std::sqrt(0.8), 1e-12);
+  EXPECT_GT(level.find(LawForm::isotropic)->a.standard_error, before.standard_error);
+  EXPECT_GT(strength_error(level, LawForm::isotropic), 0.08);
+  EXPECT_NEAR(law_strength(*scaled_law(below, 1.25).find(LawForm::isotropic), 0.2),
+              1.25 * law_strength(*below.find(LawForm::isotropic), 0.2), 1e-12);
 }
 
 TEST(LawDistance, IsZeroForTheSameLawAndGrowsWithTheDifference) {
   const LawTableEntry a = synthetic::law_entry();
   LawTableEntry b = a;
-  EXPECT_EQ(law_distance(a, b, Crowd::directional), 0.0);
-  for (CrowdLaw& law : b.laws) law.a.value *= 1.1;
-  EXPECT_NEAR(law_distance(b, a, Crowd::directional), 0.1, 1e-9);
-  EXPECT_NEAR(law_distance(b, a, Crowd::pair), 0.1, 1e-9);
+  EXPECT_EQ(law_distance(a, b, LawForm::directional), 0.0);
+  for (MultiContactLaw& law : b.laws) law.a.value *= 1.1;
+  EXPECT_NEAR(law_distance(b, a, LawForm::directional), 0.1, 1e-9);
+  EXPECT_NEAR(law_distance(b, a, LawForm::pair), 0.1, 1e-9);
 }
 
 /// Shell A of radius 1, shell B of radius 0.5 in it that reaches through its wall, grains in B. `inner_first`: B has
@@ -215,9 +215,9 @@ TEST(NestedShells, AGrainMeetsBoth) {
 
 TEST(NestedShells, ALostGrainIsFoundInEitherShell) {
   System3 s = nested(false, {1.15});  // beyond both walls by more than its radius
-  EXPECT_THROW(force_pass(s, 0.0), NotUsable);
+  EXPECT_THROW(force_pass(s, 0.0), UnusableResult);
   System3 inner = nested(true, {-0.2});  // in the outer shell, out of the inner one
-  EXPECT_THROW(force_pass(inner, 0.0), NotUsable);
+  EXPECT_THROW(force_pass(inner, 0.0), UnusableResult);
   System3 fine = nested(true, {0.3});
   EXPECT_NO_THROW(force_pass(fine, 0.0));
 }
@@ -232,9 +232,9 @@ class ResolvedInner : public ::testing::Test {
     for (std::uint64_t k = 0; k < 2; ++k) content_.inner_packings.push_back(generate_shell_packing(spec_, 1, 100 + k));
     laws_ = inner_laws(setup, synthetic::law_entry());
   }
-  CrowdExperiment make(Arrangement arranged, double overlap) {
-    return make_crowd(spec_, test::crowd_of(PartnerKind::plane, 0.0, directions_of(arranged), overlap), content_, {},
-                      &laws_);
+  MultiContactExperiment make(Arrangement arranged, double overlap) {
+    return make_multi_contact(spec_, test::multi_contact_of(PartnerKind::plane, 0.0, directions_of(arranged), overlap),
+                              content_, {}, &laws_);
   }
 
   SoftParticleSpec spec_;
@@ -244,7 +244,7 @@ class ResolvedInner : public ::testing::Test {
 
 TEST_F(ResolvedInner, CountsAndMasses) {
   ASSERT_EQ(content_.inner.size(), 2U);
-  const CrowdExperiment e = make(Arrangement::opposite, 0.2);
+  const MultiContactExperiment e = make(Arrangement::opposite, 0.2);
   const auto& p = e.system.particles;
   std::size_t grains = content_.grains.radius.size();
   for (const ShellPacking& inner : content_.inner_packings) grains += inner.radius.size();
@@ -274,10 +274,10 @@ TEST_F(ResolvedInner, CountsAndMasses) {
 }
 
 TEST_F(ResolvedInner, ForcesBalance) {
-  CrowdExperiment e = make(Arrangement::opposite, 0.25);
-  CrowdOptions options;
+  MultiContactExperiment e = make(Arrangement::opposite, 0.25);
+  MultiContactOptions options;
   options.tolerance = 1e-3;
-  const CrowdRun run = run_crowd(e, {{1.0}}, options);
+  const MultiContactRun run = run_multi_contact(e, {{1.0}}, options);
   ASSERT_TRUE(run.points[0].converged);
   EXPECT_GT(run.points[0].normal[0], 1e-3);
   force_pass(e.system, 0.0);
@@ -291,8 +291,9 @@ TEST_F(ResolvedInner, ForcesBalance) {
 }
 
 TEST_F(ResolvedInner, OnlyTheCentreHoldsThem) {
-  const CrowdConfiguration c = test::crowd_of(PartnerKind::soft, 1.0, directions_of(Arrangement::one), 0.2);
-  EXPECT_THROW((void)make_crowd(spec_, c, content_, {&content_}, &laws_), BadInput);
+  const MultiContactConfiguration c =
+      test::multi_contact_of(PartnerKind::soft, 1.0, directions_of(Arrangement::one), 0.2);
+  EXPECT_THROW((void)make_multi_contact(spec_, c, content_, {&content_}, &laws_), InputError);
 }
 
 }  // namespace

@@ -82,8 +82,8 @@ TEST(ResponseSurface, ReproducesAQuadraticAndItsGradient) {
 }
 
 TEST(ResponseSurface, RefusesWhatDoesNotFit) {
-  EXPECT_THROW(ResponseSurface({{0.5}}, {{1.0}}, {}), BadInput);
-  EXPECT_THROW(ResponseSurface({{0.5}}, {{1.0}}, {0.0}), BadInput);
+  EXPECT_THROW(ResponseSurface({{0.5}}, {{1.0}}, {}), InputError);
+  EXPECT_THROW(ResponseSurface({{0.5}}, {{1.0}}, {0.0}), InputError);
 }
 
 TEST(SpreadPoint, FillsTheBoxEvenly) {
@@ -152,7 +152,7 @@ TEST(InverseSearch, MissingForcesAreLeftOut) {
   EXPECT_TRUE(std::isinf(misfit_of(done[3], t)));
   EXPECT_NO_THROW(answer(done, t, 2, 20));
   done.resize(4);
-  EXPECT_THROW(answer(done, t, 2, 20), NotUsable);
+  EXPECT_THROW(answer(done, t, 2, 20), UnusableResult);
 }
 
 TEST(InverseSearch, DoesNotDependOnThreads) {

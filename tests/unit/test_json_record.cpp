@@ -46,9 +46,9 @@ void fields(auto&& visit, Of<Outer> auto& r) {
 }  // namespace softgrain::json_record_test
 
 template <>
-inline constexpr auto softgrain::words<softgrain::json_record_test::Colour> =
-    softgrain::word_list<softgrain::json_record_test::Colour>({{softgrain::json_record_test::Colour::red, "red"},
-                                                               {softgrain::json_record_test::Colour::green, "green"}});
+inline constexpr auto softgrain::enum_names<softgrain::json_record_test::Colour> =
+    softgrain::enum_name_list<softgrain::json_record_test::Colour>(
+        {{softgrain::json_record_test::Colour::red, "red"}, {softgrain::json_record_test::Colour::green, "green"}});
 
 namespace softgrain::json_record_test {
 

@@ -29,7 +29,7 @@ class KeysThatCount : public ::testing::Test {
   }
   void refused(const std::string& text, const std::string& words) const {
     const Scene s = scene(text);
-    expect_refused<BadInput>([&] { kind_of(s).read(s); }, words);
+    expect_refused<InputError>([&] { kind_of(s).read(s); }, words);
   }
   [[nodiscard]] std::vector<std::string> warnings(const std::string& text) const {
     Findings out;

@@ -12,7 +12,7 @@ namespace {
 std::string complaint(const std::string& kind, const std::string& command) {
   try {
     (void)kind_of(Scene::parse("kind = \"" + kind + "\"\n", "s.toml"), command);
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     return e.what();
   }
   return "";
@@ -37,11 +37,11 @@ TEST(Kinds, TheCommandThatRunsAKindIsNamed) {
 }
 
 /// What the reader of its kind says of a scene.
-std::string mistakes_of(const std::string& text) {
+std::string errors_of(const std::string& text) {
   const Scene scene = Scene::parse(text, "s");
   try {
     kind_of(scene).read(scene);
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     return e.what();
   }
   return "";
@@ -87,7 +87,7 @@ bodies = 0
 s:4: replicates = -3: must be a whole number from 0 to 1000000
 s:6: bodies = 0: must be a whole number from 1 to 10000000)"},
     {R"(kind = "law-table"
-[crowd]
+[multi_contact]
 packings_min = 5
 packings_max = 2
 pionts = 3
@@ -103,7 +103,7 @@ overlap = 3
 packings = 0
 )",
      R"(s:4: packings_max = 2: must be at least packings_min
-s:5: unknown key 'pionts' in [crowd]; nearest known key is 'points'
+s:5: unknown key 'pionts' in [multi_contact]; nearest known key is 'points'
 s:9: ratio = 2: a plane has no radius; leave it out
 s:11: missing key 'arrangement' in [[configuration]]
 s:13: overlap = 3: must be above 0 and below 1
@@ -186,7 +186,7 @@ name = "a b"
 [[scene]]
 samples = 0
 [law]
-forms = ["pair", "bog"]
+forms = ["pair", "isotrop"]
 )",
      R"(s:3: test = "sheer": must be "oedometric", "isotropic" or "shear"; nearest is "shear"
 s:5: name = "a b": letters, digits and '-' only: it becomes part of file names
@@ -219,13 +219,13 @@ mixtures = [0.5]
 [test]
 test = "shear"
 [shells]
-form = "bog"
+form = "isotrop"
 )",
      R"(s:2: samples = 0: must be a whole number from 1 to 10000
 s:7: ratio = 20: must be from 1.5 to 10
 s:8: mixtures = [ 0.5 ]: at least three shares are needed: w_inf and xi are fitted to them
 s:10: test = "shear": levels are measured in oedometric compression (and one of them in shear)
-s:12: form = "bog": must be "pair", "bag" or "directional"; nearest is "bag")"},
+s:12: form = "isotrop": must be "pair", "isotropic" or "directional"; nearest is "isotropic")"},
     {R"(kind = "material-models"
 blind = ["gap"]
 [grains]
@@ -236,7 +236,7 @@ kind = "coarse"
 places = "own"
 [[model]]
 name = "a"
-kind = "stand-in"
+kind = "substitute"
 smallest = 0.4
 [[model]]
 name = "b"
@@ -247,7 +247,7 @@ s:4: count = 200: 200 grains are too few for a periodic cell: packed, its shorte
 s:8: places = "own": does not go with kind = "coarse"
 s:10: name = "a": is used twice
 s:12: smallest = 0.4: must be above 0 and below 0.333333333333333
-s:15: kind = "cell": must be "cells", "stand-in", "mean-field", "coarse" or "shells"; nearest is "cells")"},
+s:15: kind = "cell": must be "cells", "substitute", "mean-field", "coarse" or "shells"; nearest is "cells")"},
     {R"(kind = "inverse"
 [packing]
 count = 1
@@ -339,7 +339,7 @@ s:20: record = 3: must be true or false)"}};
 TEST(Kinds, SayAllMistakesOfASceneAtOnce) {
   std::set<std::string> kinds;
   for (const Mistaken& m : kMistaken) {
-    EXPECT_EQ(mistakes_of(m.scene), m.message);
+    EXPECT_EQ(errors_of(m.scene), m.message);
     kinds.insert(kind_of(Scene::parse(m.scene, "s")).name);
   }
   EXPECT_EQ(kinds.size(), scene_kinds().size()) << "one scene of each kind";
@@ -348,7 +348,7 @@ TEST(Kinds, SayAllMistakesOfASceneAtOnce) {
 TEST(Kinds, UnknownOnesAreNamedWithTheNearest) {
   EXPECT_NE(complaint("pipline", "run").find("nearest is \"pipeline\""), std::string::npos)
       << complaint("pipline", "run");
-  EXPECT_THROW((void)kind_of(Scene::parse("seed = 1\n", "s.toml"), "run"), BadInput);
+  EXPECT_THROW((void)kind_of(Scene::parse("seed = 1\n", "s.toml"), "run"), InputError);
 }
 
 }  // namespace

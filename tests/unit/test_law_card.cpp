@@ -71,7 +71,7 @@ class LawCardFile : public testing::Test {
     write_text_atomic(path(), text.replace(place, from.size(), to));
     try {
       (void)load_card(path());
-    } catch (const BadInput& e) {
+    } catch (const InputError& e) {
       return e.what();
     }
     return "";
@@ -252,7 +252,7 @@ TEST_F(LawCardFile, ATableOfAnotherCardIsRefused) {
   try {
     (void)load_card(path());
     FAIL() << "the table of another card was taken";
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("law.h5: this file belongs to another law"), std::string::npos) << e.what();
   }
 
@@ -274,8 +274,8 @@ TEST_F(LawCardFile, DamagedTablesAndMissingCardsAreFileTrouble) {
   save_card(card_, path());
   const fs::path table = fs::path(path()).replace_extension(".h5");
   fs::resize_file(table, fs::file_size(table) / 2);
-  EXPECT_THROW((void)load_card(path()), FileTrouble);
-  EXPECT_THROW((void)load_card("/nowhere/law.toml"), FileTrouble);
+  EXPECT_THROW((void)load_card(path()), IoError);
+  EXPECT_THROW((void)load_card("/nowhere/law.toml"), IoError);
 }
 
 }  // namespace

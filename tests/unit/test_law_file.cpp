@@ -19,34 +19,34 @@ std::vector<LawFileEntry> every_law() {
   soft.modulus = 5e5;
   soft.friction = 0.3;
   soft.damping = 0.1;
-  soft.range = {0.3, Beyond::error};
+  soft.range = {0.3, Extrapolation::error};
   SoftContact both = soft;
   both.partner_is_soft = true;
   both.range = {};
-  SoftCrowd<Crowd::directional, true> crowd;
-  crowd.form.pressure = {0.8, 3.0, 0.07, {0.1, Beyond::clamp}};
-  crowd.form.coupling = {0.8, 0.15, 0.1};
-  crowd.partner.log_weight = MonotoneCurve({-1.3, 0.0, 1.3}, {-0.9, -0.5, -0.1});
-  crowd.partner.exponent = MonotoneCurve({-1.3, 0.0}, {1.3, 1.2});
-  crowd.partner.common_exponent = 1.25;
-  crowd.modulus = 5e5;
-  crowd.friction = 0.3;
-  crowd.kt_ratio = 0.4;
-  crowd.retreat = 1.7;
-  SoftCrowd<Crowd::directional, true, true> rolling;
-  rolling.form = crowd.form;
-  rolling.partner = crowd.partner;
+  SoftMultiContact<LawForm::directional, true> multi_contact;
+  multi_contact.form.pressure = {0.8, 3.0, 0.07, {0.1, Extrapolation::clamp}};
+  multi_contact.form.coupling = {0.8, 0.15, 0.1};
+  multi_contact.partner.log_weight = MonotoneCurve({-1.3, 0.0, 1.3}, {-0.9, -0.5, -0.1});
+  multi_contact.partner.exponent = MonotoneCurve({-1.3, 0.0}, {1.3, 1.2});
+  multi_contact.partner.common_exponent = 1.25;
+  multi_contact.modulus = 5e5;
+  multi_contact.friction = 0.3;
+  multi_contact.kt_ratio = 0.4;
+  multi_contact.unloading = 1.7;
+  SoftMultiContact<LawForm::directional, true, true> rolling;
+  rolling.form = multi_contact.form;
+  rolling.partner = multi_contact.partner;
   rolling.partner.plane_weight = 0.8;
   rolling.modulus = 5e5;
-  rolling.retreat = 1.2;
+  rolling.unloading = 1.2;
   rolling.rolling = 0.005;
   rolling.rolling_friction = 0.13;
-  SoftCrowd<Crowd::bag, false> bag;
-  bag.form = crowd.form;
+  SoftMultiContact<LawForm::isotropic, false> bag;
+  bag.form = multi_contact.form;
   bag.modulus = 1.0;
   bag.j_is_soft = true;
-  SoftCrowd<Crowd::pair, false> pair;
-  pair.form = crowd.form;
+  SoftMultiContact<LawForm::pair, false> pair;
+  pair.form = multi_contact.form;
   pair.modulus = 1.0;
   pair.i_is_soft = false;
   pair.j_is_soft = true;
@@ -56,9 +56,9 @@ std::vector<LawFileEntry> every_law() {
           {"spring", LinearSpring{2e3, 1e3, 0.4, 0.2}},
           {"soft", soft},
           {"soft both", both},
-          {"crowd", crowd},
+          {"crowd", multi_contact},
           {"crowd that rolls", rolling},
-          {"bag", bag},
+          {"isotropic", bag},
           {"pair", pair},
           {"disk", CohesiveDisk<false, false>{1e3, 0.0, 0.0, 0.1, 0.2, 1e-5, 0.0, 0.0}},
           {"disk that slides", CohesiveDisk<true, false>{1e3, 5e2, 0.3, 0.1, 0.0, 0.0, 0.0, 0.0}},
@@ -90,7 +90,7 @@ TEST(LawFile, MirroredTwiceIsTheSame) {
 std::string complaint(const std::string& text) {
   try {
     (void)parse_laws(text, "laws.toml");
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     return e.what();
   }
   return "";
@@ -112,7 +112,7 @@ TEST(LawFile, SaysWhatIsWrong) {
            {"friction = 0.3", "frictoin = 0.3", "key 'friction' is missing"},
            {"friction = 0.3", "friction = 0.3\nmore = 1", "key 'more' is no key of this law"},
            {"name = \"smooth\"", "name = \"mindlin\"", "is there twice"},
-           {"type = \"linear\"", "type = \"cubic\"", "must be hertz, linear, soft, crowd or cohesive"},
+           {"type = \"linear\"", "type = \"cubic\"", "must be hertz, linear, soft, multi-contact or cohesive"},
            {"modulus = 5e+05", "modulus = inf", "must be finite"},
            {"modulus = 5e+05", "modulus = 0", "must be above 0"},
            {"beyond = \"error\"", "beyond = \"never\"", "must be error, clamp or extrapolate"},
@@ -121,7 +121,7 @@ TEST(LawFile, SaysWhatIsWrong) {
            {"pressure = [0.8, 3.0, 0.07]", "pressure = [0.8, 3.0]", "needs three numbers"},
            {"range = 1e-05", "range = 0.0", "law 'disk': key 'range' must be above 0"},
            {"rolling = 1e-04", "rolling = 0.0", "key 'rolling' must be above 0"},
-           {"form = \"bag\"", "form = \"sack\"", "must be pair, bag or directional"}})
+           {"form = \"isotropic\"", "form = \"sack\"", "must be pair, isotropic or directional"}})
     EXPECT_NE(complaint(replaced(text, from, to)).find(expected), std::string::npos)
         << to << " gave: " << complaint(replaced(text, from, to));
 }

@@ -10,7 +10,7 @@
 
 #include "common/contact/laws.h"
 #include "common/contact/soft_contact_from_card.h"
-#include "common/data/crowd_law.h"
+#include "common/data/multi_contact_law.h"
 #include "pipelines/report/svg_plot.h"
 
 namespace softgrain {
@@ -203,7 +203,7 @@ TEST(LawPictures, SoftContacts) {
     const Series inside = soft_curve(law, to_string(kind), color, 0.0, end, "");
     curves.push_back(inside);
     curves.push_back(soft_curve(law, to_string(kind) + ", extrapolated", color, end, 0.5, "6 3"));
-    law.range.beyond = Beyond::clamp;
+    law.range.beyond = Extrapolation::clamp;
     const Series clamped = soft_curve(law, to_string(kind) + ", clamped", color, end, 0.5, "2 3");
     curves.push_back(clamped);
     for (std::size_t k = 0; k < inside.x.size(); ++k) {
@@ -221,15 +221,15 @@ TEST(LawPictures, SoftContacts) {
 }
 
 /// Force per plane over E Rs^2 of a soft particle pressed by planes from the given sides.
-double crowd_force(const CrowdForm& form, bool bag, const std::vector<Vec3>& sides, double x) {
+double multi_contact_force(const MultiContactForm& form, bool bag, const std::vector<Vec3>& sides, double x) {
   const LostVolume nu = lost_volume(lens(x, 0.0), 1.0, 1.0);
-  CrowdSum<3> sum;
+  MultiContactSum<3> sum;
   for (const Vec3& n : sides) sum.add(nu.nu, n);
   sum.close(form.pressure, bag ? sum.volume : form.equivalent_volume(sum));
   return nu.slope * sum.gain * (bag ? sum.volume : form.felt(sum, nu.nu, sides.front()));
 }
 
-TEST(LawPictures, Crowds) {
+TEST(LawPictures, MultiContacts) {
   const LawTable table = load_law_table(source("results/law_table/law_table.toml"));
   const LawTableEntry& entry = table.entries.back();
   const std::vector<Vec3> one{{{0.0, 0.0, 1.0}}};
@@ -241,37 +241,39 @@ TEST(LawPictures, Crowds) {
       six.push_back(n);
     }
   std::vector<Series> curves;
-  for (const auto& [kind, text] : words<Crowd>) {
+  for (const auto& [kind, text] : enum_names<LawForm>) {
     const std::string name = text;
-    const CrowdLaw& law = *entry.find(kind);
-    const CrowdForm form{{law.a.value, law.b.value, law.delta.value}, {law.m0.value, law.m1.value, law.m2.value}};
-    const char* color = kind == Crowd::pair  ? report::palette::grey
-                        : kind == Crowd::bag ? report::palette::vermillion
-                                             : report::palette::blue;
+    const MultiContactLaw& law = *entry.find(kind);
+    const MultiContactForm form{{law.a.value, law.b.value, law.delta.value},
+                                {law.m0.value, law.m1.value, law.m2.value}};
+    const char* color = kind == LawForm::pair        ? report::palette::grey
+                        : kind == LawForm::isotropic ? report::palette::vermillion
+                                                     : report::palette::blue;
     Series alone = curve(name + ", one plane", color, "6 3");
-    Series crowd = curve(name + ", six planes", color);
+    Series multi_contact = curve(name + ", six planes", color);
     for (int k = 0; k <= 50; ++k) {
       const double x = 0.2 * k / 50.0;
       alone.x.push_back(x);
-      crowd.x.push_back(x);
-      alone.y.push_back(crowd_force(form, kind == Crowd::bag, one, x));
-      crowd.y.push_back(kind == Crowd::pair ? alone.y.back() : crowd_force(form, kind == Crowd::bag, six, x));
+      multi_contact.x.push_back(x);
+      alone.y.push_back(multi_contact_force(form, kind == LawForm::isotropic, one, x));
+      multi_contact.y.push_back(kind == LawForm::pair ? alone.y.back()
+                                                      : multi_contact_force(form, kind == LawForm::isotropic, six, x));
       // One plane alone is the power law itself, whatever the coupling is.
       const double power =
           x > law.delta.value ? law.a.value * (std::pow(x, law.b.value) - std::pow(law.delta.value, law.b.value)) : 0.0;
       EXPECT_NEAR(alone.y.back(), power, 1e-9 + 1e-6 * power);
     }
-    if (kind != Crowd::pair) {
-      EXPECT_GT(crowd.y.back(), 2.0 * alone.y.back());
+    if (kind != LawForm::pair) {
+      EXPECT_GT(multi_contact.y.back(), 2.0 * alone.y.back());
     }
     curves.push_back(alone);
-    if (kind != Crowd::pair) curves.push_back(crowd);
+    if (kind != LawForm::pair) curves.push_back(multi_contact);
   }
   expect_picture({.id = "crowd",
                   .title = "One and six planes: the table of results/law_table",
                   .x = {.label = "h/Rs of each plane"},
                   .y = {.label = "force of one plane over E Rs\u00b2"}},
-                 curves, "law_crowd.svg");
+                 curves, "law_multi_contact.svg");
 }
 
 TEST(LawPictures, Cohesion) {

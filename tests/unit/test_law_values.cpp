@@ -4,17 +4,17 @@
 #include <cmath>
 #include <numeric>
 
-#include "common/contact/crowd_from_table.h"
-#include "common/contact/crowd_table_file.h"
+#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/multi_contact_table_file.h"
 #include "common/contact/soft_contact_from_card.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
-#include "common/data/crowd_replicates.h"
+#include "common/data/multi_contact_replicates.h"
 #include "common/io/text_file.h"
 #include "pipelines/law/law_difference.h"
 #include "pipelines/law/law_values.h"
 #include "pipelines/law/value_output.h"
-#include "tests/support/synthetic_crowd.h"
+#include "tests/support/synthetic_multi_contact.h"
 #include "tests/support/synthetic_run.h"
 #include "tests/support/temporary_directory.h"
 
@@ -66,15 +66,15 @@ TEST(CardValues, TheSlopeIsTheDerivative) {
 TEST(CardValues, BeyondTheRange) {
   const LawCard card = published();
   const std::vector<double> deltas{0.05, 0.3, 3.0 * 0.1, 0.4};
-  const auto at = [&](Beyond beyond) { return law::card_values(card, PairKind::soft_solid, deltas, beyond); };
-  const auto extrapolated = at(Beyond::extrapolate);
+  const auto at = [&](Extrapolation beyond) { return law::card_values(card, PairKind::soft_solid, deltas, beyond); };
+  const auto extrapolated = at(Extrapolation::extrapolate);
   EXPECT_EQ(extrapolated[0].where, Where::no_contact);
   EXPECT_EQ(extrapolated[1].where, Where::inside);
   EXPECT_EQ(extrapolated[2].where, Where::inside);
   EXPECT_EQ(extrapolated[3].where, Where::beyond);
   EXPECT_FALSE(extrapolated[3].refused);
   EXPECT_GT(extrapolated[3].force.value, extrapolated[1].force.value);
-  const auto clamped = at(Beyond::clamp);
+  const auto clamped = at(Extrapolation::clamp);
   EXPECT_EQ(clamped[3].force.value, clamped[1].force.value);
   // Nothing says how far off a law is where nobody measured it: no interval, whatever the law does there.
   for (const auto* points : {&extrapolated, &clamped}) {
@@ -83,14 +83,14 @@ TEST(CardValues, BeyondTheRange) {
     EXPECT_FALSE(beyond.force.interval || beyond.stiffness.interval);
     EXPECT_FALSE(beyond.tangential_initial->interval || beyond.tangential_secant->interval);
   }
-  const law::ValueTable far{"soft-solid", LawStatus::good, "", Beyond::extrapolate, false, extrapolated};
+  const law::ValueTable far{"soft-solid", LawStatus::good, "", Extrapolation::extrapolate, false, extrapolated};
   EXPECT_TRUE(law::values_json(far, {})["values"][3]["force_interval"].is_null());
   EXPECT_NE(law::values_csv({far}, {}).find(",,,beyond range: extrapolated"), std::string::npos);
   EXPECT_NE(law::values_text(far, {}).find("no interval beyond the measured range"), std::string::npos);
-  const auto refused = at(Beyond::error);
+  const auto refused = at(Extrapolation::error);
   EXPECT_FALSE(refused[1].refused);
   EXPECT_TRUE(refused[3].refused);
-  const law::ValueTable table{"soft-solid", LawStatus::good, "", Beyond::error, false, refused};
+  const law::ValueTable table{"soft-solid", LawStatus::good, "", Extrapolation::error, false, refused};
   EXPECT_TRUE(law::values_json(table, {})["values"][3]["force"].is_null());
   EXPECT_NE(law::values_csv({table}, {}).find(",0.4,0.4,,,,,,,,,,,,,beyond range: refused"), std::string::npos);
 }
@@ -152,7 +152,7 @@ TEST(CardValues, BandsComeWithTheCardUnlessItWasEdited) {
   const std::size_t at = text.find("value = 0.8294");
   ASSERT_NE(at, std::string::npos);
   write_text_atomic(path, text.replace(at, 14, "value = 0.8295"));
-  EXPECT_THROW((void)load_card(path), BadInput);  // c must fit
+  EXPECT_THROW((void)load_card(path), InputError);  // c must fit
   card.pairs[0].normal.a.value *= 1.01;
   card.pairs[0].normal.c.value *= 1.01;
   const std::string other = directory.file("other.toml");
@@ -165,13 +165,13 @@ TEST(CardValues, BandsComeWithTheCardUnlessItWasEdited) {
 }
 
 struct Asked {
-  Crowd form;
+  LawForm form;
   Arrangement arrangement;
   PartnerKind partner;
   double ratio;
 };
 
-class CrowdValues : public ::testing::TestWithParam<Asked> {
+class MultiContactValues : public ::testing::TestWithParam<Asked> {
  protected:
   void SetUp() override {
     entry_ = synthetic::law_entry();
@@ -182,18 +182,18 @@ class CrowdValues : public ::testing::TestWithParam<Asked> {
     question_.ratio = GetParam().ratio;
   }
   [[nodiscard]] std::vector<double> predicted(const std::vector<double>& overlap) const {
-    std::vector<CrowdPartner> partners;
+    std::vector<MultiContactPartner> partners;
     for (const Vec3& d : directions_of(question_.arrangement))
       partners.push_back({question_.partner, question_.partner == PartnerKind::plane ? 0.0 : question_.ratio, d});
-    return crowd_forces(crowd_model(*entry_.find(*question_.form)), partners, overlap);
+    return multi_contact_forces(multi_contact_model(*entry_.find(*question_.form)), partners, overlap);
   }
   LawTableEntry entry_;
-  law::CrowdQuestion question_;
+  law::MultiContactQuestion question_;
 };
 
-TEST_P(CrowdValues, AreThoseOfThePrediction) {
+TEST_P(MultiContactValues, AreThoseOfThePrediction) {
   for (const double delta : {0.05, 0.15, 0.22}) {
-    const law::CrowdAnswer answer = law::crowd_values({1, {entry_}}, question_, {delta});
+    const law::MultiContactAnswer answer = law::multi_contact_values({1, {entry_}}, question_, {delta});
     std::vector<double> overlap = depth_shares(question_.arrangement, question_.shallow);
     for (double& h : overlap) h *= delta;
     const std::vector<double> expected = predicted(overlap);
@@ -213,14 +213,15 @@ TEST_P(CrowdValues, AreThoseOfThePrediction) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(FormsAndNeighbours, CrowdValues,
-                         ::testing::Values(Asked{Crowd::pair, Arrangement::one, PartnerKind::plane, 1.0},
-                                           Asked{Crowd::pair, Arrangement::cube, PartnerKind::solid, 0.7},
-                                           Asked{Crowd::bag, Arrangement::tetrahedron, PartnerKind::plane, 1.0},
-                                           Asked{Crowd::bag, Arrangement::octant, PartnerKind::soft, 0.5},
-                                           Asked{Crowd::directional, Arrangement::cube, PartnerKind::plane, 1.0},
-                                           Asked{Crowd::directional, Arrangement::random_8, PartnerKind::solid, 1.3},
-                                           Asked{Crowd::directional, Arrangement::beside_five, PartnerKind::soft, 2.0}),
+INSTANTIATE_TEST_SUITE_P(FormsAndNeighbours, MultiContactValues,
+                         ::testing::Values(Asked{LawForm::pair, Arrangement::one, PartnerKind::plane, 1.0},
+                                           Asked{LawForm::pair, Arrangement::cube, PartnerKind::solid, 0.7},
+                                           Asked{LawForm::isotropic, Arrangement::tetrahedron, PartnerKind::plane, 1.0},
+                                           Asked{LawForm::isotropic, Arrangement::octant, PartnerKind::soft, 0.5},
+                                           Asked{LawForm::directional, Arrangement::cube, PartnerKind::plane, 1.0},
+                                           Asked{LawForm::directional, Arrangement::random_8, PartnerKind::solid, 1.3},
+                                           Asked{LawForm::directional, Arrangement::beside_five, PartnerKind::soft,
+                                                 2.0}),
                          [](const auto& i) {
                            std::string name =
                                to_string(i.param.form) + to_string(i.param.arrangement) + to_string(i.param.partner);
@@ -228,18 +229,18 @@ INSTANTIATE_TEST_SUITE_P(FormsAndNeighbours, CrowdValues,
                            return name;
                          });
 
-TEST(CrowdTables, IntervalsAreThoseOfTheReplicates) {
+TEST(MultiContactTables, IntervalsAreThoseOfTheReplicates) {
   LawTableEntry entry = synthetic::law_entry();
   entry.volume_max = 0.5;
-  CrowdLaw& directional = entry.laws[2];
+  MultiContactLaw& directional = entry.laws[2];
   for (int r = 0; r <= 40; ++r) {  // forces scale with a
-    std::vector<double> numbers = crowd_numbers(directional);
+    std::vector<double> numbers = multi_contact_numbers(directional);
     numbers[0] *= 0.8 + 0.01 * r;
     directional.replicates.push_back(numbers);
   }
-  law::CrowdQuestion q;
+  law::MultiContactQuestion q;
   q.arrangement = Arrangement::octant;
-  const law::CrowdAnswer answer = law::crowd_values({1, {entry}}, q, {0.2});
+  const law::MultiContactAnswer answer = law::multi_contact_values({1, {entry}}, q, {0.2});
   const law::Quantity& force = answer.points[0].force;
   EXPECT_EQ(answer.replicates, 41u);
   ASSERT_TRUE(force.interval.has_value());
@@ -248,20 +249,21 @@ TEST(CrowdTables, IntervalsAreThoseOfTheReplicates) {
   EXPECT_NEAR(force.interval->low, std::pow(0.8005, few) * force.value, 1e-12);
   EXPECT_NEAR(force.interval->high, std::pow(1.1995, few) * force.value, 1e-12);
   // None beyond what was measured, by depth or by volume.
-  const law::CrowdAnswer deep = law::crowd_values({1, {entry}}, q, {0.2, 1.9});
+  const law::MultiContactAnswer deep = law::multi_contact_values({1, {entry}}, q, {0.2, 1.9});
   EXPECT_EQ(deep.points[1].where, Where::beyond);
   EXPECT_TRUE(deep.points[0].force.interval && deep.points[0].stiffness.interval);
   EXPECT_FALSE(deep.points[1].force.interval || deep.points[1].stiffness.interval);
-  q.form = Crowd::bag;
-  EXPECT_FALSE(law::crowd_values({1, {entry}}, q, {0.2}).points[0].force.interval.has_value());
+  q.form = LawForm::isotropic;
+  EXPECT_FALSE(law::multi_contact_values({1, {entry}}, q, {0.2}).points[0].force.interval.has_value());
 }
 
-TEST(CrowdTables, ReplicatesAreKeptBesideTheTableAndBelongToItsNumbers) {
+TEST(MultiContactTables, ReplicatesAreKeptBesideTheTableAndBelongToItsNumbers) {
   const test::TemporaryDirectory directory;
   const std::string path = directory.file("law_table.toml");
   LawTable table{1, {synthetic::law_entry(0.7), synthetic::law_entry(0.75, 0.02)}};
   for (LawTableEntry& e : table.entries)
-    e.laws[1].replicates = {crowd_numbers(e.laws[1]), crowd_numbers(synthetic::crowd_law(Crowd::bag, 0.03))};
+    e.laws[1].replicates = {multi_contact_numbers(e.laws[1]),
+                            multi_contact_numbers(synthetic::multi_contact_law(LawForm::isotropic, 0.03))};
   save_law_table(table, path);
   LawTable read = load_law_table(path);
   EXPECT_TRUE(read.entries[0].laws[1].replicates.empty());
@@ -269,11 +271,11 @@ TEST(CrowdTables, ReplicatesAreKeptBesideTheTableAndBelongToItsNumbers) {
   for (std::size_t k = 0; k < 2; ++k)
     EXPECT_EQ(read.entries[k].laws[1].replicates, table.entries[k].laws[1].replicates);
   EXPECT_TRUE(read.entries[0].laws[2].replicates.empty());
-  EXPECT_EQ(replicate_count(read, Crowd::bag), 2u);
-  EXPECT_EQ(replicate_count(read, Crowd::pair), 0u);
-  const LawTable drawn = replicate_of(read, Crowd::bag, 1);
-  EXPECT_EQ(crowd_numbers(drawn.entries[0].laws[1]), table.entries[0].laws[1].replicates[1]);
-  EXPECT_EQ(crowd_numbers(drawn.entries[0].laws[0]), crowd_numbers(table.entries[0].laws[0]));
+  EXPECT_EQ(replicate_count(read, LawForm::isotropic), 2u);
+  EXPECT_EQ(replicate_count(read, LawForm::pair), 0u);
+  const LawTable drawn = replicate_of(read, LawForm::isotropic, 1);
+  EXPECT_EQ(multi_contact_numbers(drawn.entries[0].laws[1]), table.entries[0].laws[1].replicates[1]);
+  EXPECT_EQ(multi_contact_numbers(drawn.entries[0].laws[0]), multi_contact_numbers(table.entries[0].laws[0]));
   LawTable edited = load_law_table(path);
   edited.entries[0].laws[1].b.value *= 1.01;
   read_replicates(edited, path);
@@ -281,22 +283,22 @@ TEST(CrowdTables, ReplicatesAreKeptBesideTheTableAndBelongToItsNumbers) {
   EXPECT_FALSE(edited.entries[1].laws[1].replicates.empty());
 }
 
-TEST(CrowdTables, WhatWasNotMeasuredIsSaid) {
+TEST(MultiContactTables, WhatWasNotMeasuredIsSaid) {
   const LawTable table{1, {synthetic::law_entry()}};
-  law::CrowdQuestion q;
+  law::MultiContactQuestion q;
   q.arrangement = Arrangement::cube;
-  const law::CrowdAnswer planes = law::crowd_values(table, q, {0.1, 0.27});
+  const law::MultiContactAnswer planes = law::multi_contact_values(table, q, {0.1, 0.27});
   EXPECT_EQ(planes.points[0].where, Where::inside);
   EXPECT_EQ(planes.points[1].where, Where::beyond);  // by volume
   q.arrangement = Arrangement::one;
-  EXPECT_EQ(law::crowd_values(table, q, {0.3}).points[0].where, Where::beyond);  // by depth
+  EXPECT_EQ(law::multi_contact_values(table, q, {0.3}).points[0].where, Where::beyond);  // by depth
   q.partner = PartnerKind::soft;
   q.ratio = 5.0;
-  EXPECT_NE(law::crowd_values(table, q, {0.1}).remark.find("ratio 5 was not measured"), std::string::npos);
+  EXPECT_NE(law::multi_contact_values(table, q, {0.1}).remark.find("ratio 5 was not measured"), std::string::npos);
   q.solid_fraction = 0.5;
-  EXPECT_THROW((void)law::crowd_values(table, q, {0.1}), BadInput);
+  EXPECT_THROW((void)law::multi_contact_values(table, q, {0.1}), InputError);
   q.range = RangePolicy::clamp;
-  EXPECT_NE(law::crowd_values(table, q, {0.1}).remark.find("nearest entry"), std::string::npos);
+  EXPECT_NE(law::multi_contact_values(table, q, {0.1}).remark.find("nearest entry"), std::string::npos);
 }
 
 TEST(LawDifferences, OfACardWithItself) {

@@ -176,8 +176,8 @@ TEST(LeastSquares, StalledFitSaysSoAndFurtherStartsRescueIt) {
 TEST(LeastSquares, StartOutsideItsBoundsIsRefused) {
   auto problem = curve_problem<2>(decay_data(3.0, 0.7), kDecay);
   problem.bounds = {{0.0, 10.0}, {0.0, 0.5}};
-  EXPECT_THROW(fit_least_squares(problem, {{1.0, 2.0}}), BadInput);
-  EXPECT_THROW(fit_least_squares(problem, {}), BadInput);
+  EXPECT_THROW(fit_least_squares(problem, {{1.0, 2.0}}), InputError);
+  EXPECT_THROW(fit_least_squares(problem, {}), InputError);
 }
 
 TEST(LeastSquares, BestOfSeveralStartsIsKept) {

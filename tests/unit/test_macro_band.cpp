@@ -74,7 +74,7 @@ TEST(MacroBand, TheMeanOverSamplesHasTheIntervalOfStudent) {
   EXPECT_NEAR(known.high, 100.0 + std::hypot(3.0, 4.0, 2.570582 * std::sqrt(120.0 / 6.0)), 1e-2);
   EXPECT_NEAR(known.high - known.stress, known.stress - known.low, 1e-9);
   EXPECT_EQ(banded_text(known).find("beyond"), std::string::npos);
-  more[1].law_asked = {100.0, 100.0};
+  more[1].law_evaluations = {100.0, 100.0};
   more[1].law_beyond = {0.0, 7.0};
   EXPECT_NE(banded_text(banded_ends(more)[0]).find("at least: 7 % of the contacts are beyond"), std::string::npos);
   curves.erase(curves.begin());
@@ -114,7 +114,7 @@ TEST(MacroBand, ScoresKnowNoisePlacesAndTheErrorOfTheMean) {
     curves.push_back(curve("shelled", k, {0.0, 100.0, 200.0}));
   }
   curves[0].more[kAgainAxial] = {0.0, 1.1 * 120.0, 1.1 * 240.0};
-  curves[0].law.form = Crowd::directional;
+  curves[0].law.form = LawForm::directional;
   curves[0].cost.contact_evaluations = 50;
   for (MacroCurve& c : curves) {
     if (c.engine != "shelled") continue;
@@ -128,33 +128,33 @@ TEST(MacroBand, ScoresKnowNoisePlacesAndTheErrorOfTheMean) {
   EXPECT_NEAR(s.noise.mean, 0.1 / std::sqrt(2.0), 1e-12);
   EXPECT_NEAR(s.places.solid.mean, 1.2, 1e-12);
   EXPECT_EQ(s.places.wall.n, 0U);
-  EXPECT_NEAR(s.contact_evaluations, 2.0 * 50.0 / 4.0, 1e-12) << "a crowd law visits a contact twice";
+  EXPECT_NEAR(s.contact_evaluations, 2.0 * 50.0 / 4.0, 1e-12) << "a multi-contact law visits a contact twice";
 }
 
 TEST(MacroBand, WhatAFormIsOffByComesFromWhatItHasNotSeen) {
-  CrowdLaw law;
+  MultiContactLaw law;
   law.error_cross = 0.2;
   EXPECT_EQ(form_discrepancy(law), 0.2) << "nothing was held out";
-  law.errors = {{"fitted", CrowdUse::fitted, 0.5, 1.0, 0.0},
-                {"a", CrowdUse::predicted, 0.10, 1.0, 0.06},
-                {"b", CrowdUse::predicted, 0.05, 1.0, 0.03}};
+  law.errors = {{"fitted", MultiContactUse::fitted, 0.5, 1.0, 0.0},
+                {"a", MultiContactUse::predicted, 0.10, 1.0, 0.06},
+                {"b", MultiContactUse::predicted, 0.05, 1.0, 0.03}};
   const double pressed = std::sqrt(0.5 * (0.08 * 0.08 + 0.04 * 0.04));
   EXPECT_NEAR(form_discrepancy(law), pressed, 1e-12);
-  law.errors.push_back({"sheared", CrowdUse::predicted, 0.13, 1.0, 0.05, 10, {}, false});
+  law.errors.push_back({"sheared", MultiContactUse::predicted, 0.13, 1.0, 0.05, 10, {}, false});
   EXPECT_NEAR(form_discrepancy(law), 0.12, 1e-12) << "a scene may be all shear";
   law.errors.back().error = 0.05;
   EXPECT_NEAR(form_discrepancy(law), pressed, 1e-12) << "or none";
 }
 
 TEST(MacroBand, AFormIsOffInItsForcesAndInItsOnset) {
-  CrowdLaw law;
-  law.errors = {{"a", CrowdUse::predicted, 0.10, 1.0, 0.06}};
+  MultiContactLaw law;
+  law.errors = {{"a", MultiContactUse::predicted, 0.10, 1.0, 0.06}};
   ASSERT_EQ(form_offsets(law).size(), 1U) << "an earlier table does not say them";
   EXPECT_NEAR(form_offsets(law)[0].force, 0.08, 1e-12);
   EXPECT_EQ(form_offsets(law)[0].onset, 0.0);
-  law.errors = {{"a", CrowdUse::predicted, 0.1, 1.0, 0.03, 10, FormOffset{0.2, -0.010}},
-                {"b", CrowdUse::predicted, 0.1, 1.0, 0.04, 10, FormOffset{-0.1, 0.020}},
-                {"seen", CrowdUse::fitted, 0.1, 1.0, 0.0, 10, FormOffset{9.0, 9.0}}};
+  law.errors = {{"a", MultiContactUse::predicted, 0.1, 1.0, 0.03, 10, FormOffset{0.2, -0.010}},
+                {"b", MultiContactUse::predicted, 0.1, 1.0, 0.04, 10, FormOffset{-0.1, 0.020}},
+                {"seen", MultiContactUse::fitted, 0.1, 1.0, 0.0, 10, FormOffset{9.0, 9.0}}};
   const std::vector<FormOffset> ways = form_offsets(law);
   ASSERT_EQ(ways.size(), 2U);
   EXPECT_NEAR(ways[0].force, form_discrepancy(law), 1e-12);

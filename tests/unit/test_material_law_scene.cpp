@@ -82,7 +82,7 @@ TEST(MaterialLawScene, MakesFinesCoarseGrainsAndMixtures) {
 std::string refusal(const std::string& law, const std::string& grains = "count = 600\nratio = 6") {
   try {
     (void)read_law_scene(law, grains);
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     return e.what();
   }
   return "";

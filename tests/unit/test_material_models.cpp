@@ -62,7 +62,7 @@ TEST_P(MeanFields, GiveBackWhatFollowsTheirLaw) {
   }
 }
 
-/// A stand-in of another onset, from the same start pressure: mapped, it is the truth.
+/// A substitute of another onset, from the same start pressure: mapped, it is the truth.
 TEST_P(MeanFields, MapStandInsOntoTheTruth) {
   const CellCard card = card_of(GetParam());
   const MacroCurve truth = exact(card, 0.66, 0.64);

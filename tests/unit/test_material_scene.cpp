@@ -35,7 +35,7 @@ MaterialScene loaded_material(const std::string& more) {
 std::string complaint_of_loadings(const std::string& more) {
   try {
     (void)loaded_material(more);
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     return e.what();
   }
   return "";
@@ -131,7 +131,7 @@ TEST(MaterialScene, RefusesCellsWithoutRoomForImages) {
   const auto refusal = [](const std::string& count) -> std::string {
     try {
       (void)read_material_scene(Scene::parse("kind = \"material\"\n[grains]\ncount = " + count + "\n", "s"));
-    } catch (const BadInput& e) {
+    } catch (const InputError& e) {
       return e.what();
     }
     return "";

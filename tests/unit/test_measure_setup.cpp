@@ -26,7 +26,7 @@ TEST(MeasureSetup, LeastWorkWithoutIncrementsOfLeastWorkIsCalledSlowDynamics) {
   EXPECT_EQ(read("relaxation = \"least-work\"\n" + kNone).series[0].relaxation, Relaxation::slow_dynamics);
   EXPECT_EQ(read(kNone).series[0].relaxation, Relaxation::slow_dynamics);
   EXPECT_EQ(read("relaxation = \"slow-dynamics\"").series[0].relaxation, Relaxation::slow_dynamics);
-  EXPECT_THROW((void)read("relaxation = \"damped\"\n" + kNone), BadInput) << "it has no increments by least work";
+  EXPECT_THROW((void)read("relaxation = \"damped\"\n" + kNone), InputError) << "it has no increments by least work";
   const MeasureSetup beside =
       read("relaxation = \"slow-dynamics\"",
            "[reference]\nrelaxation = \"least-work\"\n[reference.soft_solid]\ndeltas = [0.1]\n");
@@ -38,7 +38,7 @@ TEST(MeasureSetup, SlowDynamicsAndIncrementsOfLeastWorkExcludeEachOther) {
     try {
       (void)read(measure, reference);
       ADD_FAILURE() << measure;
-    } catch (const BadInput& e) {
+    } catch (const InputError& e) {
       EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << e.what();
     }
   };

@@ -133,18 +133,18 @@ TEST(MeasurementsIo, EmptyDataAreData) {
 
 TEST(MeasurementsIo, OtherFilesAndDamageAreRefused) {
   const std::string path = temporary("refused.h5");
-  EXPECT_THROW((void)load_measurements(path), FileTrouble);
+  EXPECT_THROW((void)load_measurements(path), IoError);
   save_macro({}, path);
-  EXPECT_THROW((void)load_measurements(path), FileTrouble);
+  EXPECT_THROW((void)load_measurements(path), IoError);
   save(sample(), path);
   fs::resize_file(path, fs::file_size(path) * 2 / 3);
-  EXPECT_THROW((void)load_measurements(path), FileTrouble);
+  EXPECT_THROW((void)load_measurements(path), IoError);
   Measurements bad = sample();
   bad.runs[0].packing = 17;  // points nowhere
   save(bad, path);
-  EXPECT_THROW((void)load_measurements(path), FileTrouble);
+  EXPECT_THROW((void)load_measurements(path), IoError);
   fs::remove(path);
-  EXPECT_THROW(save(sample(), "/proc/softgrain/measurements.h5"), FileTrouble);
+  EXPECT_THROW(save(sample(), "/proc/softgrain/measurements.h5"), IoError);
 }
 
 TEST(MacroIo, RoundTripIsExactAndKeepsTheOrder) {
@@ -217,7 +217,7 @@ TEST(MacroIo, LaterColumnsAreKeptAndMayBeAbsent) {
   EXPECT_EQ(in[1].body_forces, full.body_forces);
   out[1].fabric.push_back(0.5);
   save_macro(out, path);
-  EXPECT_THROW((void)load_macro(path), FileTrouble);
+  EXPECT_THROW((void)load_macro(path), IoError);
 }
 
 TEST(MacroIo, ColumnsOfUnequalLengthAreRefused) {
@@ -225,7 +225,7 @@ TEST(MacroIo, ColumnsOfUnequalLengthAreRefused) {
   curves[0].strain = {0.0, 0.1};
   const std::string path = temporary("unequal.h5");
   save_macro(curves, path);
-  EXPECT_THROW((void)load_macro(path), FileTrouble);
+  EXPECT_THROW((void)load_macro(path), IoError);
   fs::remove(path);
 }
 

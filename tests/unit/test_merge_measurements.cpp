@@ -31,7 +31,7 @@ TEST(MergeMeasurements, AnotherSoftParticleIsRefusedByName) {
   try {
     merge_measurements({part(1), other}, {"a.h5", "b.h5"});
     FAIL() << "merged packings of different friction";
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     const std::string text = e.what();
     EXPECT_NE(text.find("mu = 0.3 and 0.5"), std::string::npos) << text;
     EXPECT_NE(text.find("b.h5"), std::string::npos) << text;
@@ -41,7 +41,7 @@ TEST(MergeMeasurements, AnotherSoftParticleIsRefusedByName) {
 TEST(MergeMeasurements, ProtocolsAreNotMixed) {
   auto other = part(2);
   other.shell_turns = false;
-  EXPECT_THROW(merge_measurements({part(1), other}, {"a", "b"}), BadInput);
+  EXPECT_THROW(merge_measurements({part(1), other}, {"a", "b"}), InputError);
 }
 
 /// Of files that hold rotations; others have nothing to disagree about, and say nothing of what they are merged with.
@@ -51,23 +51,23 @@ TEST(MergeMeasurements, FrozenAndSlowTurnsAreNotMixed) {
   for (auto* m : {&a, &b})
     for (auto& run : m->runs) run.tangential = {{0.2, 0.05, 0.1, 0.0, 0.0, true}};
   b.turn = TurnProtocol::frozen;
-  EXPECT_THROW(merge_measurements({a, b}, {"a", "b"}), BadInput);
+  EXPECT_THROW(merge_measurements({a, b}, {"a", "b"}), InputError);
   for (auto& run : a.runs) run.tangential.clear();
   EXPECT_EQ(merge_measurements({a, b}, {"a", "b"}).turn, TurnProtocol::frozen);
 }
 
 TEST(MergeMeasurements, TheSamePackingTwiceIsRefused) {
-  EXPECT_THROW(merge_measurements({part(1), part(1)}, {"a", "a"}), BadInput);
+  EXPECT_THROW(merge_measurements({part(1), part(1)}, {"a", "a"}), InputError);
   auto other = part(1);
   for (auto& run : other.runs) run.relaxation = "published";
   EXPECT_EQ(merge_measurements({part(1), other}, {"a", "b"}).runs.size(), 6U);
 }
 
 TEST(MergeMeasurements, NothingOrDamagedIsRefused) {
-  EXPECT_THROW(merge_measurements({}, {}), BadInput);
+  EXPECT_THROW(merge_measurements({}, {}), InputError);
   auto broken = part(1);
   broken.runs[0].packing = 7;
-  EXPECT_THROW(merge_measurements({broken}, {"a"}), BadInput);
+  EXPECT_THROW(merge_measurements({broken}, {"a"}), InputError);
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ void expect_lost(Box box, double place, Slot many) {
   try {
     rebuild_neighbours(s);
     ADD_FAILURE() << "taken for a state: " << place << ", box " << static_cast<int>(box);
-  } catch (const NotUsable& e) {
+  } catch (const UnusableResult& e) {
     EXPECT_NE(std::string(e.what()).find("grain 0 is lost"), std::string::npos) << e.what();
   }
 }
@@ -104,7 +104,7 @@ void expect_search_survives(Box box, double place, Slot many) {
   const System<D> s = wild_system<D>(box, place, many);
   const std::vector<double> skin = default_skin(s.particles);
   if (box != Box::open) {
-    EXPECT_THROW((void)candidate_pairs(s.particles, s.cell, skin), NotUsable) << place << static_cast<int>(box);
+    EXPECT_THROW((void)candidate_pairs(s.particles, s.cell, skin), UnusableResult) << place << static_cast<int>(box);
     return;
   }
   EXPECT_EQ(sorted(candidate_pairs(s.particles, s.cell, skin)),
@@ -162,7 +162,7 @@ TEST(Neighbours, ANarrowPeriodicCellIsRefused) {
   Particles<3> p;
   add_grain(p, test_sphere<3>({{1.0, 1.0, 1.0}}, 1.0, 1.0));
   add_grain(p, test_sphere<3>({{1.0, 5.0, 1.0}}, 1.0, 1.0));
-  EXPECT_THROW((void)candidate_pairs(p, cell, {0.0, 0.0}), BadInput);
+  EXPECT_THROW((void)candidate_pairs(p, cell, {0.0, 0.0}), InputError);
 }
 
 /// Images stay two diameters apart however the cell leans, though its faces come nearer.

@@ -96,12 +96,12 @@ TEST(NextMeasurements, WhatCannotBePlannedIsRefused) {
   const Drawn d(20);
   auto wrong = d.measurables;
   wrong[1].scatter = 0.0;
-  EXPECT_THROW(NextMeasurements(d.predicted, wrong), BadInput);
+  EXPECT_THROW(NextMeasurements(d.predicted, wrong), InputError);
   wrong = d.measurables;
   wrong[2].drawn.pop_back();
-  EXPECT_THROW(NextMeasurements(d.predicted, wrong), BadInput);
-  EXPECT_THROW(NextMeasurements({{1.0}, {2.0}}, {}), BadInput);
-  EXPECT_THROW(NextMeasurements({{1.0}, {1.0}, {1.0}}, {}), BadInput) << "nothing to narrow";
+  EXPECT_THROW(NextMeasurements(d.predicted, wrong), InputError);
+  EXPECT_THROW(NextMeasurements({{1.0}, {2.0}}, {}), InputError);
+  EXPECT_THROW(NextMeasurements({{1.0}, {1.0}, {1.0}}, {}), InputError) << "nothing to narrow";
 }
 
 }  // namespace

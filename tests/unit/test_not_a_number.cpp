@@ -33,7 +33,7 @@ TEST(NotANumber, InAVelocityEndsTheStep) {
   integrator.initialise(s);
   integrator.advance(s, 3);
   s.particles.velocity[4][1] = kNaN;
-  EXPECT_THROW(integrator.advance(s, 1), NotUsable);
+  EXPECT_THROW(integrator.advance(s, 1), UnusableResult);
 }
 
 TEST(NotANumber, InAPlaceEndsTheNextSteps) {
@@ -42,7 +42,7 @@ TEST(NotANumber, InAPlaceEndsTheNextSteps) {
   VelocityVerlet<3> integrator(1e-5);
   integrator.initialise(s);
   s.particles.sphere[13].x[0] = kNaN;
-  EXPECT_THROW(integrator.advance(s, 2), NotUsable);
+  EXPECT_THROW(integrator.advance(s, 2), UnusableResult);
 }
 
 TEST(NotANumber, InAForceIsTheResidualOfAPowder) {
@@ -85,7 +85,7 @@ TEST(NotANumber, InTheWayOfAWallStopsTheRun) {
   Guards<3> guards({}, s);
   EXPECT_NO_THROW(guards.look(s));
   s.particles.sphere[1].x[2] = kNaN;
-  EXPECT_THROW(guards.look(s), NotUsable);
+  EXPECT_THROW(guards.look(s), UnusableResult);
 }
 
 }  // namespace

@@ -23,8 +23,8 @@ TEST(Observables, SamplesThatBrokeOffDoNotCountBeyondWhereTheyEnded) {
     c.residual = {0.0, 0.0};
     c.stress_axial_contacts = c.stress_axial;
     for (auto* column : {&c.stress_x, &c.stress_y, &c.stress_deviator, &c.fabric, &c.fabric_bodies,
-                         &c.coordination_bodies, &c.law_asked, &c.law_beyond, &c.law_largest, &c.stage, &c.strain_x,
-                         &c.strain_y, &c.strain_z, &c.residual_largest})
+                         &c.coordination_bodies, &c.law_evaluations, &c.law_beyond, &c.law_largest, &c.stage,
+                         &c.strain_x, &c.strain_y, &c.strain_z, &c.residual_largest})
       column->clear();
     c.more.clear();
     if (sample > 0) {

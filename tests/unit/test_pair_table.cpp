@@ -5,10 +5,10 @@
 #include <map>
 #include <sstream>
 
-#include "common/contact/crowd_from_table.h"
+#include "common/contact/multi_contact_from_table.h"
 #include "common/core/error.h"
 #include "pipelines/law/pair_table.h"
-#include "tests/support/synthetic_crowd.h"
+#include "tests/support/synthetic_multi_contact.h"
 
 namespace softgrain {
 namespace {
@@ -124,7 +124,7 @@ TEST(PairTable, OfALawTable) {
   c.ratios = {1.0, 0.5, 2.0};
   const auto tables = read_lammps(law::lammps_text(law::pair_tables(file, c), {}));
   ASSERT_EQ(tables.size(), 6u);
-  const CrowdModel model = crowd_model(*entry.find(entry.best));
+  const MultiContactModel model = multi_contact_model(*entry.find(entry.best));
   for (const double ratio : c.ratios) {
     const std::string text = ratio == 0.5 ? "0.5" : (ratio == 1.0 ? "1" : "2");
     const double touch = 0.01 * (1.0 + ratio);
@@ -134,7 +134,8 @@ TEST(PairTable, OfALawTable) {
       expect_sound(t, touch);
       for (std::size_t k = 0; k < t.n; k += 50) {
         const double h = (touch - t.r[k]) / 0.01;
-        const double expected = 2e6 * 1e-4 * crowd_forces(model, {{kind, ratio, {{1.0, 0.0, 0.0}}}}, {h}).front();
+        const double expected =
+            2e6 * 1e-4 * multi_contact_forces(model, {{kind, ratio, {{1.0, 0.0, 0.0}}}}, {h}).front();
         EXPECT_NEAR(t.force[k], expected, 1e-10 * t.force.front());
       }
     }
@@ -144,7 +145,7 @@ TEST(PairTable, OfALawTable) {
 TEST(PairTable, AClampedLawStaysConstantAndItsEnergyGoesOn) {
   law::PairTableChoice c = choice();
   c.ratios = {1.0};
-  c.beyond = Beyond::clamp;
+  c.beyond = Extrapolation::clamp;
   c.delta_max = 0.45;
   c.kinds = {PairKind::soft_solid};
   law::LawFile file = published();
@@ -162,13 +163,13 @@ TEST(PairTable, AClampedLawStaysConstantAndItsEnergyGoesOn) {
 
 TEST(PairTable, WhatCannotBe) {
   law::PairTableChoice c = choice();
-  c.beyond = Beyond::error;
+  c.beyond = Extrapolation::error;
   c.delta_max = 0.5;
-  EXPECT_THROW((void)law::pair_tables(published(), c), BadInput);
-  c.beyond = Beyond::extrapolate;
+  EXPECT_THROW((void)law::pair_tables(published(), c), InputError);
+  c.beyond = Extrapolation::extrapolate;
   c.delta_max = 1.0;
   c.ratios = {0.01};
-  EXPECT_THROW((void)law::pair_tables(published(), c), BadInput);
+  EXPECT_THROW((void)law::pair_tables(published(), c), InputError);
 }
 
 }  // namespace

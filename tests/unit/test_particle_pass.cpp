@@ -9,11 +9,11 @@ namespace softgrain {
 namespace {
 
 /// Force = overlap times the sum of all overlaps of both bodies: needs the sums before the first contact.
-struct CrowdLaw {
+struct MultiContactLaw {
   static constexpr LawTraits traits{.needs_particle_pass = true};
 
   template <int D>
-  void share(const ContactState<D>& s, bool of_i, CrowdSum<D>& sum) const {
+  void share(const ContactState<D>& s, bool of_i, MultiContactSum<D>& sum) const {
     sum.add(of_i ? s.overlap : 2.0 * s.overlap, s.normal);
   }
   template <int D>
@@ -52,8 +52,8 @@ System3 three_in_a_row() {
 TEST(ParticlePass, SumsAreThereBeforeTheFirstContactIsEvaluated) {
   System3 s = three_in_a_row();  // overlaps 0.1 (0-1) and 0.3 (1-2)
   ASSERT_EQ(s.contacts.sections.size(), 1u);
-  s.contacts.particle_sum.assign(3, CrowdSum<3>{});
-  const CrowdLaw law;
+  s.contacts.particle_sum.assign(3, MultiContactSum<3>{});
+  const MultiContactLaw law;
   const ContactSection section = s.contacts.sections[0];
   SystemPairs<3, Geometry::sphere_sphere, false, System3> source{s, 0.0, History::none};
   const PairRange range{section.begin, section.end};

@@ -252,7 +252,7 @@ TEST(ParticlesDisks, TheStepFollowsTheStiffestSpringAndTheAttraction) {
   EXPECT_NEAR(with("rolling_stiffness = 1", "rolling_stiffness = 1e5").natural_time, 1.0 / std::sqrt(8e5), 1e-9);
   EXPECT_NEAR(with("tangential_stiffness = 10000", "tangential_stiffness = 90000").natural_time, plain / 3.0, 1e-9);
   const SceneTime moving = read_disks(head() + disk(0.0, 0.0, 1.0) + disk(1.1, 0.0) + "[time]\nend = 1.0\n").time;
-  EXPECT_THROW((void)with("end = 1.0", "end = 1.0\nstep = 2.1e-3"), BadInput);
+  EXPECT_THROW((void)with("end = 1.0", "end = 1.0\nstep = 2.1e-3"), InputError);
   EXPECT_NO_THROW((void)with("end = 1.0", "end = 1.0\nstep = 1.9e-3"));
   EXPECT_NEAR(moving.contact_time, std::numbers::pi * std::sqrt(0.5 / kStiffness), 1e-9);
   EXPECT_NEAR(moving.reach_time, kReach, 1e-12) << "at speed 1";
@@ -274,7 +274,7 @@ TEST(ParticlesDisks, WhatCannotBeCombinedIsRefused) {
       else
         (void)read_particles_scene<3>(scene);
       ADD_FAILURE() << to << " was accepted";
-    } catch (const BadInput& e) {
+    } catch (const InputError& e) {
       for (const std::string& word : words)
         EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << word << " not in: " << e.what();
     }

@@ -42,10 +42,10 @@ class ParticlesLawCard : public ::testing::Test {
   }
   /// `pair` and `more` go into the contact; a soft and a solid ball overlap by 0.2 of the soft radius.
   ParticlesScene read(const std::string& pair, const std::string& more, bool soft_first, const std::string& wall = "") {
-    const std::string soft = "[[particle]]\nmaterial = \"bag\"\nradius = 0.02\nposition = [0.0, 0.0, 0.0]\n";
+    const std::string soft = "[[particle]]\nmaterial = \"soft\"\nradius = 0.02\nposition = [0.0, 0.0, 0.0]\n";
     const std::string solid = "[[particle]]\nmaterial = \"stone\"\nradius = 0.05\nposition = [0.066, 0.0, 0.0]\n";
     const std::string text =
-        "kind = \"particles\"\n[material.bag]\ndensity = 1500.0\n[material.stone]\ndensity = 2500.0\n"
+        "kind = \"particles\"\n[material.soft]\ndensity = 1500.0\n[material.stone]\ndensity = 2500.0\n"
         "[[contact]]\npair = " +
         pair +
         "\nlaw = \"law-card\"\nfile = \"law.toml\"\nE = \"0.5 MPa\"\nmu = 0.3\ndamping = 0.1\nkt = \"initial\"\n" +
@@ -58,9 +58,9 @@ class ParticlesLawCard : public ::testing::Test {
 TEST_F(ParticlesLawCard, ForceDoesNotDependOnTheOrderOfPairOrBodies) {
   // E R^2 (a D^b + c), R the soft radius
   const double expected = 0.5e6 * 0.02 * 0.02 * 0.6 * (std::pow(0.2, 2.2) - std::pow(0.05, 2.2));
-  for (const char* pair : {"[\"bag\", \"stone\"]", "[\"stone\", \"bag\"]"})
+  for (const char* pair : {"[\"soft\", \"stone\"]", "[\"stone\", \"soft\"]"})
     for (const bool soft_first : {true, false}) {
-      ParticlesScene scene = read(pair, "kind = \"soft-solid\"\nwhich_soft = \"bag\"\n", soft_first);
+      ParticlesScene scene = read(pair, "kind = \"soft-solid\"\nwhich_soft = \"soft\"\n", soft_first);
       force_pass(scene.system, 0.0);
       EXPECT_NEAR(std::abs(scene.system.particles.force[0][0]), expected, 1e-9 * expected) << pair << soft_first;
       EXPECT_TRUE(run_particles(scene, {}).usable);
@@ -68,14 +68,15 @@ TEST_F(ParticlesLawCard, ForceDoesNotDependOnTheOrderOfPairOrBodies) {
 }
 
 TEST_F(ParticlesLawCard, UnusableCombinationsAreBadInput) {
-  EXPECT_THROW((void)read("[\"bag\", \"stone\"]", "kind = \"soft-solid\"\n", true), BadInput);
-  EXPECT_THROW((void)read("[\"bag\", \"stone\"]", "kind = \"soft-solid\"\nwhich_soft = \"rigid\"\n", true), BadInput);
-  EXPECT_THROW((void)read("[\"bag\", \"stone\"]", "kind = \"soft-soft\"\n", true), BadInput)
+  EXPECT_THROW((void)read("[\"soft\", \"stone\"]", "kind = \"soft-solid\"\n", true), InputError);
+  EXPECT_THROW((void)read("[\"soft\", \"stone\"]", "kind = \"soft-solid\"\nwhich_soft = \"rigid\"\n", true),
+               InputError);
+  EXPECT_THROW((void)read("[\"soft\", \"stone\"]", "kind = \"soft-soft\"\n", true), InputError)
       << "the card has no such law";
   const std::string solid_wall =
-      "[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, -0.05]\nnormal = [0.0, 0.0, 1.0]\nmaterial = \"bag\"\n";
-  EXPECT_THROW((void)read("[\"bag\", \"stone\"]", "kind = \"soft-solid\"\nwhich_soft = \"bag\"\n", true, solid_wall),
-               BadInput);
+      "[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, -0.05]\nnormal = [0.0, 0.0, 1.0]\nmaterial = \"soft\"\n";
+  EXPECT_THROW((void)read("[\"soft\", \"stone\"]", "kind = \"soft-solid\"\nwhich_soft = \"soft\"\n", true, solid_wall),
+               InputError);
 }
 
 /// Pairs of a soft and a solid ball far from each other, either one first in turn.
@@ -99,7 +100,7 @@ System3 pairs_apart(const System3& pair, int count) {
 
 /// From 2000 grains on they are put in another order: pairs of which the second body has become the first.
 TEST_F(ParticlesLawCard, ForceOfAPairDoesNotDependOnHowManyThereAre) {
-  ParticlesScene scene = read("[\"bag\", \"stone\"]", "kind = \"soft-solid\"\nwhich_soft = \"bag\"\n", true);
+  ParticlesScene scene = read("[\"soft\", \"stone\"]", "kind = \"soft-solid\"\nwhich_soft = \"soft\"\n", true);
   scene.time.steps = 3;
   scene.record = false;
   const double expected =

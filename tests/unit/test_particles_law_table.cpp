@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/contact/crowd_from_table.h"
-#include "common/contact/crowd_table_file.h"
+#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/multi_contact_table_file.h"
 #include "common/core/error.h"
 #include "common/dynamics/contact_watch.h"
 #include "common/dynamics/force_pass.h"
@@ -16,7 +16,7 @@
 #include "common/io/text_file.h"
 #include "microsim/particles/particles_run.h"
 #include "tests/support/small_packing.h"
-#include "tests/support/synthetic_crowd.h"
+#include "tests/support/synthetic_multi_contact.h"
 #include "tests/support/temporary_directory.h"
 
 namespace {
@@ -54,7 +54,7 @@ class ParticlesLawTable : public ::testing::Test {
   }
   /// `choice` goes into every contact of soft particles.
   static std::string contacts(const std::string& choice) {
-    std::string text = "kind = \"particles\"\n[material.bag]\ndensity = 1500.0\n[material.stone]\ndensity = 2500.0\n";
+    std::string text = "kind = \"particles\"\n[material.soft]\ndensity = 1500.0\n[material.stone]\ndensity = 2500.0\n";
     for (const char* pair : {"\"stone\", \"stone\"", "\"stone\", \"rigid\""})
       text += "[[contact]]\npair = [" + std::string(pair) +
               "]\nlaw = \"linear-spring\"\nmu = 0.3\nrestitution = 0.5\nnormal_stiffness = 1e4\n"
@@ -63,9 +63,9 @@ class ParticlesLawTable : public ::testing::Test {
       text += "[[contact]]\npair = [" + std::string(pair) + "]\nlaw = \"law-card\"\nE = \"0.5 MPa\"\nkind = " + kind +
               "\n" + choice;
     };
-    soft("\"bag\", \"stone\"", "\"soft-solid\"\nwhich_soft = \"bag\"");
-    soft("\"rigid\", \"bag\"", "\"soft-wall\"\nwhich_soft = \"bag\"");
-    soft("\"bag\", \"bag\"", "\"soft-soft\"");
+    soft("\"soft\", \"stone\"", "\"soft-solid\"\nwhich_soft = \"soft\"");
+    soft("\"rigid\", \"soft\"", "\"soft-wall\"\nwhich_soft = \"soft\"");
+    soft("\"soft\", \"soft\"", "\"soft-soft\"");
     return text;
   }
   ParticlesScene read(const std::string& text) {
@@ -75,20 +75,20 @@ class ParticlesLawTable : public ::testing::Test {
   static std::string squeezed(bool soft_first) {
     std::string text = plane({{-0.9 * kRadius, 0.0, 0.0}}, {{1.0, 0.0, 0.0}}) +
                        plane({{0.85 * kRadius, 0.0, 0.0}}, {{-1.0, 0.0, 0.0}});
-    const std::string bag = ball("bag", kRadius, {});
+    const std::string soft = ball("soft", kRadius, {});
     const std::string others = ball("stone", kRadius, {{0.0, 1.9 * kRadius, 0.0}}) +
                                ball("stone", 0.5 * kRadius, {{0.0, 0.0, -1.42 * kRadius}}) +
-                               ball("bag", 0.8 * kRadius, {{0.0, -1.68 * kRadius, 0.0}});
-    return text + (soft_first ? bag + others : others + bag) + "[time]\nend = 1e-4\n";
+                               ball("soft", 0.8 * kRadius, {{0.0, -1.68 * kRadius, 0.0}});
+    return text + (soft_first ? soft + others : others + soft) + "[time]\nend = 1e-4\n";
   }
   /// Forces on the neighbours in the order of squeezed(), over E R^2, as the fits predict them.
-  static std::vector<double> predicted(const LawTableEntry& entry, Crowd form) {
-    const std::vector<CrowdPartner> partners{{PartnerKind::plane, 0.0, {{-1.0, 0.0, 0.0}}},
-                                             {PartnerKind::plane, 0.0, {{1.0, 0.0, 0.0}}},
-                                             {PartnerKind::solid, 1.0, {{0.0, 1.0, 0.0}}},
-                                             {PartnerKind::solid, 0.5, {{0.0, 0.0, -1.0}}},
-                                             {PartnerKind::soft, 0.8, {{0.0, -1.0, 0.0}}}};
-    return crowd_forces(crowd_model(*entry.find(form)), partners, {0.1, 0.15, 0.1, 0.08, 0.12});
+  static std::vector<double> predicted(const LawTableEntry& entry, LawForm form) {
+    const std::vector<MultiContactPartner> partners{{PartnerKind::plane, 0.0, {{-1.0, 0.0, 0.0}}},
+                                                    {PartnerKind::plane, 0.0, {{1.0, 0.0, 0.0}}},
+                                                    {PartnerKind::solid, 1.0, {{0.0, 1.0, 0.0}}},
+                                                    {PartnerKind::solid, 0.5, {{0.0, 0.0, -1.0}}},
+                                                    {PartnerKind::soft, 0.8, {{0.0, -1.0, 0.0}}}};
+    return multi_contact_forces(multi_contact_model(*entry.find(form)), partners, {0.1, 0.15, 0.1, 0.08, 0.12});
   }
   static void expect_forces(ParticlesScene scene, const std::vector<double>& wanted, double factor) {
     force_pass(scene.system, 0.0);
@@ -112,7 +112,7 @@ class ParticlesLawTable : public ::testing::Test {
     try {
       (void)read(text);
       ADD_FAILURE() << "accepted";
-    } catch (const BadInput& e) {
+    } catch (const InputError& e) {
       for (const std::string& word : words)
         EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << word << " not in: " << e.what();
     }
@@ -127,7 +127,7 @@ class ParticlesLawTable : public ::testing::Test {
 
 /// The soft neighbour is too small for the planes: it touches the particle in the middle alone, as the model has it.
 TEST_F(ParticlesLawTable, SeveralContactsAtOnceHaveTheForcesOfTheModel) {
-  for (const auto& [form, name] : words<Crowd>)
+  for (const auto& [form, name] : enum_names<LawForm>)
     for (const bool soft_first : {true, false}) {
       const std::string text =
           contacts("file = \"one.toml\"\nform = \"" + std::string(name) + "\"\n") + squeezed(soft_first);
@@ -140,11 +140,11 @@ TEST_F(ParticlesLawTable, TheEntryIsThatOfTheSolidFraction) {
   std::string remark;
   const LawTableEntry between = entry_at(table, 0.69, RangePolicy::reject, remark);
   const auto at = [&](const std::string& choice) {
-    return read(contacts("file = \"table.toml\"\nform = \"bag\"\n" + choice) + squeezed(true));
+    return read(contacts("file = \"table.toml\"\nform = \"isotropic\"\n" + choice) + squeezed(true));
   };
-  expect_forces(at("solid_fraction = 0.69\n"), predicted(between, Crowd::bag), 1.0);
-  expect_forces(at("solid_fraction = 0.72\n"), predicted(table.entries[1], Crowd::bag), 1.0);
-  expect_forces(at("solid_fraction = 0.9\nrange = \"clamp\"\n"), predicted(table.entries[1], Crowd::bag), 1.0);
+  expect_forces(at("solid_fraction = 0.69\n"), predicted(between, LawForm::isotropic), 1.0);
+  expect_forces(at("solid_fraction = 0.72\n"), predicted(table.entries[1], LawForm::isotropic), 1.0);
+  expect_forces(at("solid_fraction = 0.9\nrange = \"clamp\"\n"), predicted(table.entries[1], LawForm::isotropic), 1.0);
   EXPECT_TRUE(at("solid_fraction = 0.69\n").remarks.empty());
   const auto remarks = at("solid_fraction = 0.9\nrange = \"clamp\"\n").remarks;
   ASSERT_FALSE(remarks.empty());
@@ -156,9 +156,9 @@ TEST_F(ParticlesLawTable, TheEntryIsThatOfTheSolidFraction) {
 
 /// Planes, solid and soft neighbours slide differently, unless the contact says its own friction.
 TEST_F(ParticlesLawTable, FrictionIsThatOfTheKindOfNeighbour) {
-  const ParticlesScene scene = read(contacts("file = \"one.toml\"\nform = \"bag\"\n") + squeezed(true));
+  const ParticlesScene scene = read(contacts("file = \"one.toml\"\nform = \"isotropic\"\n") + squeezed(true));
   const auto law = [](const ParticlesScene& of, std::int32_t a, std::int32_t b) {
-    return std::get<SoftCrowd<Crowd::bag, false>>(of.system.laws.law(of.system.laws.index(a, b)));
+    return std::get<SoftMultiContact<LawForm::isotropic, false>>(of.system.laws.law(of.system.laws.index(a, b)));
   };
   constexpr std::int32_t kBag = 0, kStone = 1, kRigid = 2;
   EXPECT_DOUBLE_EQ(law(scene, kBag, kRigid).friction, 0.25);
@@ -168,7 +168,7 @@ TEST_F(ParticlesLawTable, FrictionIsThatOfTheKindOfNeighbour) {
   EXPECT_DOUBLE_EQ(law(scene, kBag, kRigid).kt_ratio, 0.3);
   EXPECT_TRUE(law(scene, kStone, kBag).j_is_soft);
   EXPECT_FALSE(law(scene, kStone, kBag).i_is_soft);
-  const ParticlesScene own = read(contacts("file = \"one.toml\"\nform = \"bag\"\nmu = 0.1\n") + squeezed(true));
+  const ParticlesScene own = read(contacts("file = \"one.toml\"\nform = \"isotropic\"\nmu = 0.1\n") + squeezed(true));
   EXPECT_DOUBLE_EQ(law(own, kBag, kRigid).friction, 0.1);
   EXPECT_DOUBLE_EQ(law(own, kBag, kBag).friction, 0.1);
 }
@@ -181,33 +181,33 @@ TEST_F(ParticlesLawTable, WhatDoesNotAddUpIsRefused) {
     const auto at = text.rfind(from);
     return text.replace(at, from.size(), to);
   };
-  expect_refused(last("file = \"one.toml\"\n", "file = \"one.toml\"\nform = \"bag\"\n"),
-                 {"add up", "'bag'", "form bag"});
+  expect_refused(last("file = \"one.toml\"\n", "file = \"one.toml\"\nform = \"isotropic\"\n"),
+                 {"add up", "'soft'", "form isotropic"});
   expect_refused(last("E = \"0.5 MPa\"", "E = \"0.6 MPa\""), {"add up", "E = 600000"});
   expect_refused(last("file = \"one.toml\"\n", "file = \"one.toml\"\nunloading = true\n"),
                  {"add up", "with unloading"});
   expect_refused(with(good, "kind = \"soft-wall\"", "kind = \"soft-solid\""), {"wall", "soft-wall"});
   expect_refused(with(good, "kind = \"soft-solid\"", "kind = \"soft-wall\""), {"walls", "soft-solid"});
-  expect_refused(with(good, "which_soft = \"bag\"", "which_soft = \"rigid\""), {"which_soft", "one of the pair"});
-  expect_refused(with(good, "which_soft = \"bag\"\n", "which_soft = \"bag\"\ndamping = 0.1\n"),
+  expect_refused(with(good, "which_soft = \"soft\"", "which_soft = \"rigid\""), {"which_soft", "one of the pair"});
+  expect_refused(with(good, "which_soft = \"soft\"\n", "which_soft = \"soft\"\ndamping = 0.1\n"),
                  {"damping", "law card"});
-  expect_refused(with(good, "which_soft = \"bag\"\n", "which_soft = \"bag\"\nkt = \"secant\"\n"), {"kt", "law card"});
-  const auto at = good.find("[[contact]]\npair = [\"rigid\", \"bag\"]");
+  expect_refused(with(good, "which_soft = \"soft\"\n", "which_soft = \"soft\"\nkt = \"secant\"\n"), {"kt", "law card"});
+  const auto at = good.find("[[contact]]\npair = [\"rigid\", \"soft\"]");
   const auto end = good.find("[[contact]]", at + 1);
   expect_refused(good.substr(0, at) +
-                     "[[contact]]\npair = [\"rigid\", \"bag\"]\nlaw = \"linear-spring\"\nmu = 0.3\nrestitution = 0.5\n"
+                     "[[contact]]\npair = [\"rigid\", \"soft\"]\nlaw = \"linear-spring\"\nmu = 0.3\nrestitution = 0.5\n"
                      "normal_stiffness = 1e4\ntangential_stiffness = 1e4\n" +
                      good.substr(end),
-                 {"adds up all contacts", "linear-spring of rigid and bag"});
+                 {"adds up all contacts", "linear-spring of rigid and soft"});
   // Friction may differ from contact to contact.
   EXPECT_NO_THROW((void)read(last("file = \"one.toml\"\n", "file = \"one.toml\"\nmu = 0.0\n")));
 }
 
 TEST_F(ParticlesLawTable, UseBeyondTheMeasurementIsCountedOrRefused) {
   const auto outcome = [&](const std::string& beyond) {
-    const std::string text = contacts("file = \"one.toml\"\nform = \"bag\"\nbeyond = \"" + beyond + "\"\n") +
+    const std::string text = contacts("file = \"one.toml\"\nform = \"isotropic\"\nbeyond = \"" + beyond + "\"\n") +
                              plane({{-0.6 * kRadius, 0.0, 0.0}}, {{1.0, 0.0, 0.0}}) +
-                             plane({{0.6 * kRadius, 0.0, 0.0}}, {{-1.0, 0.0, 0.0}}) + ball("bag", kRadius, {}) +
+                             plane({{0.6 * kRadius, 0.0, 0.0}}, {{-1.0, 0.0, 0.0}}) + ball("soft", kRadius, {}) +
                              "[time]\nend = 1e-4\n";
     return run_particles(read(text), {});
   };
@@ -226,7 +226,7 @@ std::string crowded_lattice() {
   for (int n = 0; n < 3375; ++n) {
     const Vec3 x{{static_cast<double>(n % 15), static_cast<double>(n / 15 % 15), static_cast<double>(n / 225)}};
     const double shake = 0.02 * std::sin(12.9898 * n);
-    text += ball(n % 3 == 0 ? "stone" : "bag", kRadius, (x * 1.86 + Vec3{{shake, -shake, 0.5 * shake}}) * kRadius);
+    text += ball(n % 3 == 0 ? "stone" : "soft", kRadius, (x * 1.86 + Vec3{{shake, -shake, 0.5 * shake}}) * kRadius);
   }
   return text +
          "[cell]\nsize = [0.558, 0.558, 0.558]\nperiodic = [true, true, true]\n"
@@ -278,7 +278,7 @@ TEST_F(ParticlesLawTable, ACheckpointBelongsToTheNumbersOfItsLaw) {
   try {
     (void)run_particles(scene, control);
     EXPECT_EQ(said.find("continuing"), std::string::npos) << said;
-  } catch (const BadInput&) {
+  } catch (const InputError&) {
   }
 }
 
@@ -289,7 +289,7 @@ TEST_F(ParticlesLawTable, TheFileSaysWhichParticlesAreSoft) {
   const h5::Group root = h5::open_file(directory_.file("run.h5"));
   const auto soft = root.open("bodies").integers("material_is_soft");
   ASSERT_EQ(soft.size(), 3U);
-  EXPECT_EQ(soft, (std::vector<std::int64_t>{1, 0, 0})) << "bag, stone, rigid";
+  EXPECT_EQ(soft, (std::vector<std::int64_t>{1, 0, 0})) << "soft, stone, rigid";
 }
 
 }  // namespace

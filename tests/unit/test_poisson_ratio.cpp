@@ -36,7 +36,7 @@ std::string refused(const KindScene& kind, const std::string& key, const std::st
   try {
     const Scene scene = Scene::load(files.out("scene.toml"), {key + "=" + value});
     kind_of(scene).read(scene);
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     return e.what();
   }
   return "";

@@ -49,7 +49,7 @@ TEST(PowderStart, NoDiskIsWithinReachOfAnother) {
       for (int k = 0; k < 2; ++k) apart[k] -= edge * std::round(apart[k] / edge);
       EXPECT_GT(norm(apart), s.particles.sphere[i].r + s.particles.sphere[j].r + 1e-3);
     }
-  EXPECT_THROW((void)make_powder(small(0.80), 1, 0), BadInput);
+  EXPECT_THROW((void)make_powder(small(0.80), 1, 0), InputError);
 }
 
 /// V0 belongs to each component [CP 3.3], 0.3 a/T0 for 9.48 V*: |v| has a root mean square of sqrt 2 V0.

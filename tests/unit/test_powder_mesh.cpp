@@ -39,7 +39,7 @@ TEST(PowderMesh, AreaIsThatOfTheDisksWhereverTheyAre) {
   EXPECT_GE(mesh.nx, 400);
   EXPECT_GE(mesh.ny, 300);
   EXPECT_NEAR(solid_area(mesh), kPi * (0.25 + 0.16), 2e-3);
-  EXPECT_THROW((void)powder_mesh(Disks{}, {{4.0, 0.0}}), BadInput);
+  EXPECT_THROW((void)powder_mesh(Disks{}, {{4.0, 0.0}}), InputError);
 }
 
 TEST(PowderMesh, ADiskWiderThanThePeriodFillsItsRows) {
@@ -158,8 +158,8 @@ TEST(PowderScattering, BinsRiseAndBadOnesAreRefused) {
   EXPECT_DOUBLE_EQ(edges[0], 0.075);
   EXPECT_DOUBLE_EQ(edges[1], 0.225);
   EXPECT_GE(edges.back(), 100.0);
-  EXPECT_THROW((void)scattering_bins(0.0, 1.0), BadInput);
-  EXPECT_THROW((void)scattering_bins(1.0, 0.5), BadInput);
+  EXPECT_THROW((void)scattering_bins(0.0, 1.0), InputError);
+  EXPECT_THROW((void)scattering_bins(1.0, 0.5), InputError);
 }
 
 /// Solid where the disks are void and the other way round.

@@ -87,9 +87,9 @@ TEST(PowderStructure, TableAnalysisIsReadAndChecked) {
   EXPECT_EQ(o.mesh, 50.0);
   EXPECT_EQ(o.fit_k_max, 2.5);
   for (const char* idle : {"scattering = false\nfit_k_max = 2.5\n", "scattering = false\nholes = false\nmesh = 50\n"})
-    EXPECT_THROW((void)read(idle), BadInput) << idle;
-  EXPECT_THROW((void)read("mesh = 2\n"), BadInput);
-  EXPECT_THROW((void)read("meshes = 50\n"), BadInput);
+    EXPECT_THROW((void)read(idle), InputError) << idle;
+  EXPECT_THROW((void)read("mesh = 2\n"), InputError);
+  EXPECT_THROW((void)read("meshes = 50\n"), InputError);
 }
 
 TEST(PowderSpecIo, EveryMemberComesBack) {

@@ -86,7 +86,7 @@ TEST(PressedBox, AxesWithoutStressStand) {
 TEST(PressedBox, AxesAlikeKeepTheShapeOfTheBox) {
   OneGrain one(Vec3{{0.1 * kRadius, 0.11 * kRadius, 0.12 * kRadius}});
   const Vec3 before = one.size();
-  BoxControl control{.by_stress = {true, true, true}, .stress = {{10.0, 10.0, 10.0}}, .alike = true};
+  BoxControl control{.by_stress = {true, true, true}, .stress = {{10.0, 10.0, 10.0}}, .isotropic = true};
   control.tolerance = 1e-6;
   ASSERT_EQ(one.press(control).end, RelaxationEnd::converged);
   const Vec3 after = one.size();

@@ -348,34 +348,34 @@ TEST(RadicalCells, AreTheSameBitsForAnyNumberOfThreads) {
 TEST(RadicalCells, RefuseWhatHasNoCellsAndSayWhy) {
   const Cell<3> cell = sheared_cell({{2.0, 2.0, 2.0}}, 0.0, 0.0, 0.0);
   const Sphere<3> a{Vec3{{0.5, 0.5, 0.5}}, 0.2};
-  test::expect_refused<BadInput>([&] { radical_cells({}, cell); }, "no sites");
-  test::expect_refused<BadInput>([&] { radical_cells({a, a}, cell); }, "sites 0 and 1 are at the same place");
+  test::expect_refused<InputError>([&] { radical_cells({}, cell); }, "no sites");
+  test::expect_refused<InputError>([&] { radical_cells({a, a}, cell); }, "sites 0 and 1 are at the same place");
   // The same place by way of the boundary.
-  test::expect_refused<BadInput>(
+  test::expect_refused<InputError>(
       [&] {
         radical_cells({{Vec3{{0.0, 1.0, 1.0}}, 0.1}, {Vec3{{2.0, 1.0, 1.0}}, 0.3}}, cell);
       },
       "at the same place");
-  test::expect_refused<BadInput>(
+  test::expect_refused<InputError>(
       [&] {
         radical_cells({a, {Vec3{{2.5, 0.0, 0.0}}, 0.1}}, cell);
       },
       "site 1 lies outside");
-  test::expect_refused<BadInput>(
+  test::expect_refused<InputError>(
       [&] {
         radical_cells({{Vec3{{0.5, 0.5, -0.5}}, 0.1}}, PlaneBox{{}, {{1.0, 1.0, 1.0}}});
       },
       "outside the box along axis 2");
-  test::expect_refused<BadInput>([&] { radical_cells({{Vec3{{0.5, NAN, 0.5}}, 0.1}}, cell); }, "numbers");
-  test::expect_refused<BadInput>([&] { radical_cells({{Vec3{{0.5, 0.5, 0.5}}, -0.1}}, cell); }, "radii");
-  test::expect_refused<BadInput>(
+  test::expect_refused<InputError>([&] { radical_cells({{Vec3{{0.5, NAN, 0.5}}, 0.1}}, cell); }, "numbers");
+  test::expect_refused<InputError>([&] { radical_cells({{Vec3{{0.5, 0.5, 0.5}}, -0.1}}, cell); }, "radii");
+  test::expect_refused<InputError>(
       [&] {
         radical_cells({a}, box_cell<3>({{1.0, 1.0, 1.0}}, {true, true, false}));
       },
       "every axis");
-  test::expect_refused<BadInput>([&] { radical_cells({a}, PlaneBox{{}, {{1.0, 0.0, 1.0}}}); }, "volume");
+  test::expect_refused<InputError>([&] { radical_cells({a}, PlaneBox{{}, {{1.0, 0.0, 1.0}}}); }, "volume");
   // Sheared by more than a period.
-  test::expect_refused<NotUsable>(
+  test::expect_refused<UnusableResult>(
       [&] {
         radical_cells({{Vec3{}, 0.1}}, sheared_cell({{1.0, 1.0, 1.0}}, 2.4, 0.0, 0.0));
       },

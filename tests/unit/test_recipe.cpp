@@ -73,7 +73,7 @@ RecipeScene read_recipe(const std::string& more, const std::string& grains = "co
 std::string refusal(const std::string& more, const std::string& grains = "count = 600\nratio = 6") {
   try {
     (void)read_recipe(more, grains);
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     return e.what();
   }
   return "";

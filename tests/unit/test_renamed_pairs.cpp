@@ -37,27 +37,28 @@ SoftContact contact_law(bool partner_is_soft) {
   return law;
 }
 
-template <Crowd kCrowd, bool kUnloading, bool kRolling>
-SoftCrowd<kCrowd, kUnloading, kRolling> crowd_law(bool partner_is_soft) {
-  SoftCrowd<kCrowd, kUnloading, kRolling> law;
+template <LawForm kLawForm, bool kUnloading, bool kRolling>
+SoftMultiContact<kLawForm, kUnloading, kRolling> multi_contact_law(bool partner_is_soft) {
+  SoftMultiContact<kLawForm, kUnloading, kRolling> law;
   law.form.pressure = {0.8, 2.0, 0.001};
-  if (kCrowd == Crowd::directional) law.form.coupling = {0.8, 0.15, 0.1};
+  if (kLawForm == LawForm::directional) law.form.coupling = {0.8, 0.15, 0.1};
   law.partner.log_weight = MonotoneCurve({std::log(0.25), 0.0, std::log(4.0)}, {-0.9, -0.5, -0.1});
   if (!partner_is_soft) law.partner.exponent = MonotoneCurve({std::log(0.25), 0.0, std::log(4.0)}, {1.3, 1.2, 1.1});
   law.partner.common_exponent = 1.2;
   law.modulus = kModulus;
   law.friction = 0.4;
   law.kt_ratio = 0.5;
-  law.retreat = 1.7;
+  law.unloading = 1.7;
   law.rolling = 0.1;
   law.rolling_friction = 0.1;
   law.j_is_soft = partner_is_soft;
   return law;
 }
 
-template <Crowd kCrowd, bool kUnloading, bool kRolling = false>
-Pairing crowd_pairing(const char* name, const AnyLaw& solid) {
-  return {name, solid, crowd_law<kCrowd, kUnloading, kRolling>(false), crowd_law<kCrowd, kUnloading, kRolling>(true)};
+template <LawForm kLawForm, bool kUnloading, bool kRolling = false>
+Pairing multi_contact_pairing(const char* name, const AnyLaw& solid) {
+  return {name, solid, multi_contact_law<kLawForm, kUnloading, kRolling>(false),
+          multi_contact_law<kLawForm, kUnloading, kRolling>(true)};
 }
 
 AnyLaw hertz(bool rescaled) {
@@ -74,10 +75,10 @@ std::vector<Pairing> pairings(std::integral_constant<int, 3>) {
   spring.damping = 0.1;
   return {{"hertz", hertz(false), hertz(true), spring},
           {"soft contact", hertz(true), contact_law(false), contact_law(true)},
-          crowd_pairing<Crowd::pair, true>("crowd: pair", hertz(false)),
-          crowd_pairing<Crowd::bag, false>("crowd: bag", hertz(false)),
-          crowd_pairing<Crowd::directional, true>("crowd: directional", spring),
-          crowd_pairing<Crowd::bag, false, true>("crowd: bag that rolls", hertz(false))};
+          multi_contact_pairing<LawForm::pair, true>("multi-contact: pair", hertz(false)),
+          multi_contact_pairing<LawForm::isotropic, false>("multi-contact: isotropic", hertz(false)),
+          multi_contact_pairing<LawForm::directional, true>("multi-contact: directional", spring),
+          multi_contact_pairing<LawForm::isotropic, false, true>("multi-contact: isotropic that rolls", hertz(false))};
 }
 
 std::vector<Pairing> pairings(std::integral_constant<int, 2>) {
@@ -88,7 +89,7 @@ std::vector<Pairing> pairings(std::integral_constant<int, 2>) {
 
 /// Overlapping grains of unequal radii, soft and solid in turn, with walls; they move and spin.
 template <int D>
-System<D> crowd(const Pairing& laws) {
+System<D> multi_contact(const Pairing& laws) {
   System<D> s;
   s.materials = {glass(), glass(), glass()};
   s.laws = LawSet(3);
@@ -184,7 +185,7 @@ void expect_in_order(const System<D>& s, const std::string& when) {
 template <int D>
 void changes_nothing(const Pairing& laws) {
   constexpr double kStep = 1e-4;
-  System<D> plain = crowd<D>(laws);
+  System<D> plain = multi_contact<D>(laws);
   System<D> renamed = plain;
   VelocityVerlet<D> first(kStep);
   VelocityVerlet<D> second(kStep);
@@ -236,7 +237,7 @@ TEST(RenamedPairs, WhatHasRolledInSpaceIsSeenFromTheOtherSide) {
   System<3> s;
   s.materials = {glass()};
   s.laws = LawSet(1);
-  s.laws.set(0, 0, crowd_law<Crowd::pair, false, true>(true));
+  s.laws.set(0, 0, multi_contact_law<LawForm::pair, false, true>(true));
   add_grain(s.particles, test_sphere<3>({{0.0, 0.0, 0.0}}, 0.1, 2500.0));
   add_grain(s.particles, test_sphere<3>({{0.15, 0.0, 0.0}}, 0.1, 2500.0));
   s.particles.spin[0] = Vec3{{0.0, 1e-3, 2e-3}};

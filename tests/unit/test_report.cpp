@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/contact/crowd_from_table.h"
-#include "common/contact/crowd_table_file.h"
+#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/multi_contact_table_file.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/io/text_file.h"
@@ -16,7 +16,7 @@
 #include "pipelines/report/run_data.h"
 #include "pipelines/run/run_context.h"
 #include "tests/support/markup_check.h"
-#include "tests/support/synthetic_crowd.h"
+#include "tests/support/synthetic_multi_contact.h"
 #include "tests/support/synthetic_run.h"
 
 namespace softgrain {
@@ -122,26 +122,28 @@ TEST(ErrorCosts, LawAndRelaxationAgainstTheirReferences) {
 }
 
 /// A shell that moves may leave every neighbour: nothing was loaded then, and there is nothing to draw.
-TEST_F(Report, ACrowdThatNeverTouchedIsLeftOut) {
-  const CrowdModel model = crowd_model(synthetic::crowd_law(Crowd::pair));
-  CrowdMeasurements data =
-      synthetic::crowd_measurements(model,
-                                    {synthetic::crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.3),
-                                     synthetic::crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.2)},
-                                    {});
+TEST_F(Report, AMultiContactThatNeverTouchedIsLeftOut) {
+  const MultiContactModel model = multi_contact_model(synthetic::multi_contact_law(LawForm::pair));
+  MultiContactMeasurements data = synthetic::multi_contact_measurements(
+      model,
+      {synthetic::multi_contact_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.3),
+       synthetic::multi_contact_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.2)},
+      {});
   data.configurations[1].centre_free = true;
-  for (CrowdRun& run : data.runs)
+  for (MultiContactRun& run : data.runs)
     if (run.configuration == 1)
-      for (CrowdPoint& p : run.points)
+      for (MultiContactPoint& p : run.points)
         for (double& x : p.overlap) x = -0.01;
   LawTableEntry entry = synthetic::law_entry();
   entry.solid_fraction = 0.0;
   for (const PackingInfo& p : data.packings)
     entry.solid_fraction += p.solid_fraction / static_cast<double>(data.packings.size());
-  save_crowd(data, path("crowd.h5"));
+  save_multi_contact(data, path("multi_contact.h5"));
   save_law_table({1, {entry}}, path("law_table.toml"));
   const std::string html = written();
-  EXPECT_TRUE(has_text(html, "crowd-planes"));
+  EXPECT_TRUE(has_text(html, "multi-contact-planes"));
+  fs::rename(path("multi_contact.h5"), path("crowd.h5"));  // as earlier versions named it
+  EXPECT_TRUE(has_text(written(), "multi-contact-planes"));
 }
 
 TEST_F(Report, TextsOfOthersAreEscaped) {
@@ -208,10 +210,10 @@ TEST_F(Report, OnePackingAndNoRadiiAreEnough) {
 }
 
 TEST_F(Report, NothingToReportIsFileTrouble) {
-  EXPECT_THROW(write_report(directory_.string()), FileTrouble);
-  EXPECT_THROW(write_report(path("absent")), FileTrouble);
+  EXPECT_THROW(write_report(directory_.string()), IoError);
+  EXPECT_THROW(write_report(path("absent")), IoError);
   write_text_atomic(path("summary.json"), "{ half");
-  EXPECT_THROW(write_report(directory_.string()), FileTrouble);
+  EXPECT_THROW(write_report(directory_.string()), IoError);
 }
 
 TEST_F(Report, TheCommandLeavesTheSummaryOfTheRunAlone) {
@@ -224,7 +226,7 @@ TEST_F(Report, TheCommandLeavesTheSummaryOfTheRunAlone) {
   EXPECT_TRUE(has_text(::testing::internal::GetCapturedStdout(), "report.html"));
   EXPECT_EQ(read_text(path("summary.json")), kSummary);
   options.inputs.clear();
-  EXPECT_THROW(command_report(options), BadInput);
+  EXPECT_THROW(command_report(options), InputError);
 }
 
 TEST_F(Report, TheCompareCommandWritesASummary) {
@@ -239,12 +241,12 @@ TEST_F(Report, TheCompareCommandWritesASummary) {
   const auto summary = nlohmann::json::parse(read_text(path("out/summary.json")));
   EXPECT_EQ(summary["macro"][0]["axial_difference"]["mean"].get<double>(), 0.0);
   options.inputs[1] = path("absent");
-  EXPECT_THROW(command_compare(options), FileTrouble);
+  EXPECT_THROW(command_compare(options), IoError);
   write_text_atomic(path("notes.txt"), "x");
   options.inputs[1] = path("notes.txt");
-  EXPECT_THROW(command_compare(options), BadInput);
+  EXPECT_THROW(command_compare(options), InputError);
   options.inputs.clear();
-  EXPECT_THROW(command_compare(options), BadInput);
+  EXPECT_THROW(command_compare(options), InputError);
 }
 
 TEST(ReferenceCurves, PublishedLawAndItsScaling) {

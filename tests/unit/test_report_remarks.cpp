@@ -13,7 +13,7 @@
 #include "pipelines/report/sections.h"
 #include "pipelines/results/summary.h"
 #include "tests/support/markup_check.h"
-#include "tests/support/synthetic_crowd.h"
+#include "tests/support/synthetic_multi_contact.h"
 #include "tests/support/synthetic_run.h"
 
 namespace softgrain {
@@ -25,7 +25,7 @@ std::string all_of(const std::vector<std::string>& lines) {
   return text;
 }
 
-std::vector<MacroCurve> curves_with(Crowd form) {
+std::vector<MacroCurve> curves_with(LawForm form) {
   std::vector<MacroCurve> curves = synthetic::macro();
   for (MacroCurve& c : curves)
     if (c.engine == "law") c.law = {form, 0.7, 5e5, 0.3, 0.3, "numbers"};
@@ -36,7 +36,7 @@ TEST(PairLawRemark, GivesWhatWasMeasuredForTheCommittedTable) {
   const LawTable table = load_law_table(SOFTGRAIN_SOURCE_DIR "/results/law_table/law_table.toml");
   std::vector<double> missed;
   double among_soft = 0.0;
-  for (const ConfigurationError& e : main_entry(table).find(Crowd::pair)->errors) {
+  for (const ConfigurationError& e : main_entry(table).find(LawForm::pair)->errors) {
     if (e.name.starts_with("one-")) continue;
     if (e.name.ends_with("-pressed"))
       among_soft = std::max(among_soft, 1.0 / e.end_ratio);
@@ -51,9 +51,9 @@ TEST(PairLawRemark, GivesWhatWasMeasuredForTheCommittedTable) {
 }
 
 TEST(MacroRemarks, ThePairLawIsRemarkedOnWhereItWasUsed) {
-  EXPECT_TRUE(has_text(all_of(macro_remarks(curves_with(Crowd::pair))), pair_law_remark()));
-  EXPECT_TRUE(has_text(all_of(macro_remarks(curves_with(Crowd::pair))), "stands in for the friction limit"));
-  for (const Crowd form : {Crowd::bag, Crowd::directional}) {
+  EXPECT_TRUE(has_text(all_of(macro_remarks(curves_with(LawForm::pair))), pair_law_remark()));
+  EXPECT_TRUE(has_text(all_of(macro_remarks(curves_with(LawForm::pair))), "is taken as the friction limit"));
+  for (const LawForm form : {LawForm::isotropic, LawForm::directional}) {
     const std::string said = all_of(macro_remarks(curves_with(form)));
     EXPECT_FALSE(has_text(said, "one contact")) << to_string(form) << ": " << said;
     EXPECT_FALSE(has_text(said, "against a plane")) << to_string(form) << ": " << said;
@@ -63,15 +63,15 @@ TEST(MacroRemarks, ThePairLawIsRemarkedOnWhereItWasUsed) {
 TEST(ReportRemarks, ThePairLawIsRemarkedOnWhereItWasUsed) {
   report::RunData run;
   run.summary = nlohmann::json::object();
-  run.macro = curves_with(Crowd::pair);
+  run.macro = curves_with(LawForm::pair);
   EXPECT_TRUE(has_text(report::notes_section(run), "2.2 to 12 times"));
-  run.macro = curves_with(Crowd::directional);
+  run.macro = curves_with(LawForm::directional);
   EXPECT_EQ(report::notes_section(run), "");
 }
 
 TEST(ReportMacro, NamesTheLawOfItsCurves) {
   report::RunData run;
-  run.macro = curves_with(Crowd::directional);
+  run.macro = curves_with(LawForm::directional);
   EXPECT_TRUE(has_text(report::macro_section(run), "directional law at solid fraction 0.7000"));
   EXPECT_TRUE(has_text(report::macro_section(run), "mu = 0.3, taken with E = 500000 Pa; numbers numbers"));
   run.macro = synthetic::macro();
@@ -107,12 +107,12 @@ TEST(ReportLawTable, SaysWhatWasNotMeasured) {
   EXPECT_TRUE(has_text(measured, "unloading is 1.50 times as steep as loading"));
   EXPECT_FALSE(has_text(measured, "not measured"));
   LawTableEntry& entry = run.law_table->entries[0];
-  entry.retreat_measured = false;
+  entry.unloading_measured = false;
   entry.slide_solid = {synthetic::unknown(0.25), synthetic::unknown(0.35), false};
   const std::string missing = report::law_table_section(run);
   EXPECT_TRUE(has_text(missing, "unloading was not measured"));
   EXPECT_FALSE(has_text(missing, "as steep as loading"));
-  EXPECT_TRUE(has_text(missing, "not measured against solid spheres (0.35, 0.25 stand in)"));
+  EXPECT_TRUE(has_text(missing, "not measured against solid spheres (0.35, 0.25 taken instead)"));
 }
 
 }  // namespace

@@ -145,13 +145,13 @@ TEST(ResponsePrediction, LargerSpansTakeNoPartInTheirPrediction) {
 TEST(ResponsePrediction, RefusesCurvesOfOtherPointsAndUnknownGroups) {
   const Made made = make({.scatter = 1e-4}, 1);
   const StateFit fit = fitted(made, 1);
-  EXPECT_THROW((void)predict_response(fit, {}, 12.0, {}), BadInput);
+  EXPECT_THROW((void)predict_response(fit, {}, 12.0, {}), InputError);
   auto other = made.responses;
   other[1].volume[4] *= 0.99;
-  EXPECT_THROW((void)predict_response(fit, other, 12.0, {}), BadInput);
+  EXPECT_THROW((void)predict_response(fit, other, 12.0, {}), InputError);
   other = made.responses;
   other[1].group = "none such";
-  EXPECT_THROW((void)predict_response(fit, other, 12.0, {}), BadInput);
+  EXPECT_THROW((void)predict_response(fit, other, 12.0, {}), InputError);
 }
 
 TEST(FittedOnset, IsThatOfAnExactCurve) {
@@ -163,7 +163,7 @@ TEST(FittedOnset, IsThatOfAnExactCurve) {
     }
     EXPECT_NEAR(fitted_onset(form, kModulus, kExponent, c), 0.66, 1e-12);
   }
-  EXPECT_THROW((void)fitted_onset(StateForm::porosity, kModulus, kExponent, {}), BadInput);
+  EXPECT_THROW((void)fitted_onset(StateForm::porosity, kModulus, kExponent, {}), InputError);
 }
 
 }  // namespace

@@ -56,9 +56,9 @@ TEST(RodPacking, WiderSpansAreDenserAndWiderGapsLooser) {
 }
 
 TEST(RodPacking, RefusesWhatIsNoPacking) {
-  EXPECT_THROW((void)rod_packing({}, 1.0), BadInput);
-  EXPECT_THROW((void)rod_packing({1.0}, 0.0), BadInput);
-  EXPECT_THROW((void)chords_of(Grading::list({1.0}), 1), BadInput);
+  EXPECT_THROW((void)rod_packing({}, 1.0), InputError);
+  EXPECT_THROW((void)rod_packing({1.0}, 0.0), InputError);
+  EXPECT_THROW((void)chords_of(Grading::list({1.0}), 1), InputError);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "common/contact/soft_crowd.h"
+#include "common/contact/soft_multi_contact.h"
 #include "common/core/random.h"
 #include "common/dynamics/force_pass.h"
 #include "common/neighbours/verlet_list.h"
@@ -14,7 +14,7 @@
 namespace softgrain {
 namespace {
 
-using RollingLaw = SoftCrowd<Crowd::pair, false, true>;
+using RollingLaw = SoftMultiContact<LawForm::pair, false, true>;
 constexpr double kSoftModulus = 5e5;
 constexpr double kRollingStiffness = 0.005;
 constexpr double kRollingLimit = 0.13;

@@ -51,7 +51,7 @@ TEST(RunPlan, NamesAreUnique) {
 std::string complaint(const Texts& over, const std::string& seeds, const Texts& set = {}) {
   try {
     (void)make_plan(over, seeds, set);
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     return e.what();
   }
   return "";
@@ -101,7 +101,7 @@ TEST(FlatScene, NamesKeysAsSetDoesAndWritesEqualNumbersAlike) {
   EXPECT_EQ(a, (std::map<std::string, std::string>{
                    {"seed", "1"}, {"macro.mu", "0.3"}, {"macro.list", "[1, 2]"}, {"contact.0.mu", "0.5"}}));
   EXPECT_EQ(flat_scene("mu = 3e-1\n", "s"), flat_scene("mu = 0.3\n", "s"));
-  EXPECT_THROW((void)flat_scene("mu = = 3\n", "s"), BadInput);
+  EXPECT_THROW((void)flat_scene("mu = = 3\n", "s"), InputError);
 }
 
 }  // namespace

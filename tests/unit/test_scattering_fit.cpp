@@ -183,7 +183,7 @@ TEST(ScatteringFit, BadDataAreReported) {
   EXPECT_NE(reason(rising), "");
   ScatteringFitOptions backwards;
   backwards.k_low = 4.0;
-  EXPECT_THROW((void)fit_scattering({flat}, backwards), BadInput);
+  EXPECT_THROW((void)fit_scattering({flat}, backwards), InputError);
 }
 
 /// Disks of l = 0.6 at the solid fraction of the truth; what the amplitude is follows from dF, xi and l.
@@ -268,7 +268,7 @@ TEST(ScatteringFit, IndependentDisksScatterByTheirAreas) {
   EXPECT_DOUBLE_EQ(independent_intensity({1.0, 1.0}, 4.0), 2.0 * std::pow(0.25 * kPi, 2) / 4.0);
   ScatteringFitOptions wrong = tied();
   wrong.lower_length_max = 0.1;
-  EXPECT_THROW((void)fit_scattering({synthetic(kTruth, 1)}, wrong), BadInput);
+  EXPECT_THROW((void)fit_scattering({synthetic(kTruth, 1)}, wrong), InputError);
 }
 
 TEST(ScatteringFit, LengthsOutsideTheCellOrTheDisksAreReported) {

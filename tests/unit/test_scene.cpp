@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "common/core/error.h"
+#include "common/core/law_range.h"
 #include "common/io/scene.h"
 
 namespace softgrain {
@@ -32,12 +33,12 @@ Scene parse(const std::string& text, const std::vector<std::string>& overrides =
   return Scene::parse(text, "scene.toml", overrides);
 }
 
-/// The message of the BadInput that `action` throws; empty when it throws none.
+/// The message of the InputError that `action` throws; empty when it throws none.
 template <class Action>
 std::string message_of(Action action) {
   try {
     action();
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     return e.what();
   }
   return "";
@@ -130,7 +131,7 @@ TEST(Scene, WrongTypesAreRefused) {
 
 /// The message of a scene that is read with all its mistakes.
 template <class Reader>
-std::string mistakes_of(const Scene& scene, Reader reader) {
+std::string errors_of(const Scene& scene, Reader reader) {
   return message_of([&] {
     (void)scene.read([&](const SceneTable& root) {
       reader(root);
@@ -139,64 +140,64 @@ std::string mistakes_of(const Scene& scene, Reader reader) {
   });
 }
 
-TEST(SceneMistakes, ComeInTheOrderOfTheFileWithTheCommandLineLast) {
+TEST(SceneErrors, ComeInTheOrderOfTheFileWithTheCommandLineLast) {
   const Scene scene = parse("a = -1\n[b]\nc = 2.5\nzz = 1\n", {"d=x"});
-  EXPECT_EQ(mistakes_of(scene,
-                        [](const SceneTable& root) {
-                          (void)root.count("d", 0, 9);
-                          (void)root.table("b").count("c", 0, 9);
-                          EXPECT_EQ(root.number("a", Unit::none, Range::positive(), 4.0), 4.0) << "the fallback";
-                          EXPECT_FALSE(root.sound());
-                        }),
+  EXPECT_EQ(errors_of(scene,
+                      [](const SceneTable& root) {
+                        (void)root.count("d", 0, 9);
+                        (void)root.table("b").count("c", 0, 9);
+                        EXPECT_EQ(root.number("a", Unit::none, Range::positive(), 4.0), 4.0) << "the fallback";
+                        EXPECT_FALSE(!root.has_errors());
+                      }),
             "scene.toml:1: a = -1: must be above 0\n"
             "scene.toml:3: c = 2.5: must be a whole number from 0 to 9\n"
             "scene.toml:4: unknown key 'zz' in [b]; known keys are c\n"
             "scene.toml (--set d): d = \"x\": must be a whole number from 0 to 9");
 }
 
-TEST(SceneMistakes, ThatFollowFromOthersAreNotTold) {
+TEST(SceneErrors, ThatFollowFromOthersAreNotTold) {
   const Scene scene = parse("[a]\nform = \"rond\"\nradius = 2\nlow = 9\n");
-  EXPECT_EQ(mistakes_of(scene,
-                        [](const SceneTable& root) {
-                          const SceneTable a = root.table("a");
-                          EXPECT_EQ(a.choice("form", {"flat", "round"}), "flat");
-                          (void)a.number("width", Unit::none);  // missing, but a round one has a radius instead
-                          a.mistake("low", "must be below high");
-                          root.check([&] { a.reject("low", "must be below high"); });
-                          const SceneTable b = root.table("b");
-                          (void)b.number("x", Unit::none);
-                          (void)b.table("c").text("y");
-                        }),
+  EXPECT_EQ(errors_of(scene,
+                      [](const SceneTable& root) {
+                        const SceneTable a = root.table("a");
+                        EXPECT_EQ(a.choice("form", {"flat", "round"}), "flat");
+                        (void)a.number("width", Unit::none);  // missing, but a round one has a radius instead
+                        a.add_error("low", "must be below high");
+                        root.check([&] { a.throw_error("low", "must be below high"); });
+                        const SceneTable b = root.table("b");
+                        (void)b.number("x", Unit::none);
+                        (void)b.table("c").text("y");
+                      }),
             "scene.toml:1: missing table [b]\n"
             "scene.toml:2: form = \"rond\": must be \"flat\" or \"round\"; nearest is \"round\"");
 }
 
-TEST(SceneMistakes, OfAPartEndNoMoreThanIt) {
+TEST(SceneErrors, OfAPartEndNoMoreThanIt) {
   const Scene scene = parse("[a]\nx = 1\ny = 2\n[b]\nz = -1\n");
-  EXPECT_EQ(mistakes_of(scene,
-                        [](const SceneTable& root) {
-                          const SceneTable a = root.table("a");
-                          a.part([&] {
-                            (void)a.has("x");
-                            a.reject("x", "does not fit");
-                          });
-                          (void)root.table("b").number("z", Unit::none, Range::positive());
-                        }),
+  EXPECT_EQ(errors_of(scene,
+                      [](const SceneTable& root) {
+                        const SceneTable a = root.table("a");
+                        a.section([&] {
+                          (void)a.has("x");
+                          a.throw_error("x", "does not fit");
+                        });
+                        (void)root.table("b").number("z", Unit::none, Range::positive());
+                      }),
             "scene.toml:2: x = 1: does not fit\nscene.toml:5: z = -1: must be above 0")
       << "of a part that was left nothing is unknown";
 }
 
-TEST(SceneMistakes, AMisspeltKeyIsToldOnce) {
+TEST(SceneErrors, AMisspeltKeyIsToldOnce) {
   const Scene scene = parse("raddius = 1.0\n");
-  EXPECT_EQ(mistakes_of(scene, [](const SceneTable& root) { (void)root.number("radius", Unit::length); }),
+  EXPECT_EQ(errors_of(scene, [](const SceneTable& root) { (void)root.number("radius", Unit::length); }),
             "scene.toml:1: missing key 'radius' at the top level; did 'raddius' at scene.toml:1 mean it?");
 }
 
-TEST(SceneMistakes, AreTwentyAtMost) {
+TEST(SceneErrors, AreTwentyAtMost) {
   std::string many = "a = [-1]\nb = [";
   for (int k = 0; k < 24; ++k) many += "-1,\n";
   const Scene scene = parse(many + "]\n");
-  const std::string message = mistakes_of(scene, [](const SceneTable& root) {
+  const std::string message = errors_of(scene, [](const SceneTable& root) {
     EXPECT_EQ(root.numbers("a", Unit::none, Range::positive()), std::vector<double>{1.0});
     EXPECT_EQ(root.numbers("b", Unit::none, Range::positive()).size(), 24U);
   });
@@ -204,13 +205,13 @@ TEST(SceneMistakes, AreTwentyAtMost) {
   EXPECT_TRUE(message.ends_with("\nscene.toml: 5 more")) << message;
 }
 
-TEST(SceneMistakes, ASceneWithoutAnyIsReadAndTroubleStaysTrouble) {
+TEST(SceneErrors, ASceneWithoutAnyIsReadAndTroubleStaysTrouble) {
   EXPECT_EQ(parse("a = 3\n").read([](const SceneTable& root) { return root.count("a", 0, 9); }), 3);
   const auto trouble = [](const SceneTable& root) -> int {
     (void)root.count("a", 0, 9);
-    throw FileTrouble("states.h5: no such file");
+    throw IoError("states.h5: no such file");
   };
-  EXPECT_THROW((void)parse("a = 3\n").read(trouble), FileTrouble);
+  EXPECT_THROW((void)parse("a = 3\n").read(trouble), IoError);
   EXPECT_THROW((void)parse("a = 30\n").read(trouble), BadScene);
 }
 
@@ -270,17 +271,18 @@ TEST(Scene, TextWithOverridesReadsBackTheSame) {
 TEST(Scene, RejectAndWhereSpeakInTheStandardForm) {
   const Scene scene = parse("a = 1\nb = 2.5\n");
   EXPECT_EQ(scene.root().where("b"), "scene.toml:2");
-  EXPECT_EQ(message_of([&] { scene.root().reject("b", "must be below a"); }), "scene.toml:2: b = 2.5: must be below a");
+  EXPECT_EQ(message_of([&] { scene.root().throw_error("b", "must be below a"); }),
+            "scene.toml:2: b = 2.5: must be below a");
 }
 
 TEST(Scene, MissingFileIsFileTrouble) {
   try {
     (void)Scene::load("/nowhere/scene.toml");
     FAIL() << "no error";
-  } catch (const FileTrouble& e) {
+  } catch (const IoError& e) {
     EXPECT_STREQ(e.what(), "/nowhere/scene.toml: no such file");
   }
-  EXPECT_THROW((void)Scene::load("/tmp"), FileTrouble);
+  EXPECT_THROW((void)Scene::load("/tmp"), IoError);
 }
 
 TEST(Scene, PathsAreRelativeToTheScene) {
@@ -329,6 +331,18 @@ TEST(SceneVariant, LeavesTheOthersAndTheSceneAlone) {
   EXPECT_FALSE(a.root().has("walls"));
   EXPECT_EQ(scene.root().tables("variant").size(), 2U);
   EXPECT_NE(message_of([&] { (void)scene.variant(2, {}); }), "");
+}
+
+TEST(OldNames, AreReadUnderTheirPresentOnes) {
+  const Scene scene = parse("[crowd]\npoints = -3\n[calibrate.crowd]\nbest = \"bag\"\n", {"crowd.packings=5"});
+  const SceneTable table = scene.root().table("multi_contact");
+  EXPECT_EQ(message_of([&] { (void)table.count("points", 0, 9); }),
+            "scene.toml:2: points = -3: must be a whole number from 0 to 9");
+  EXPECT_EQ(table.count("packings", 0, 9), 5) << "--set too";
+  EXPECT_EQ(scene.root().table("calibrate").table("multi_contact").choice("best", {"pair", "isotropic"}), "isotropic");
+  EXPECT_EQ(message_of([&] { (void)parse("[crowd]\n[multi_contact]\n"); }),
+            "scene.toml:1: crowd is an earlier name of multi_contact; leave one of them out");
+  EXPECT_EQ(parse_enum<LawForm>("bag"), LawForm::isotropic);
 }
 
 TEST(NearestWord, FindsTyposAndStaysSilentOtherwise) {

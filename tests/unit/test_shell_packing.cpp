@@ -220,7 +220,7 @@ TEST(ShellPacking, AnEmptyPackingIsBadInput) {
   spec.polydispersity = 1.001;
   spec.beta = 1.01;
   spec.trials = 1;
-  EXPECT_THROW((void)generate_shell_packing(spec, 5, 0), BadInput);
+  EXPECT_THROW((void)generate_shell_packing(spec, 5, 0), InputError);
 }
 
 /// A single grain grows to the shell.

@@ -116,9 +116,9 @@ TEST(SizeDistribution, ExponentDoesNotDependOnTheUnit) {
 }
 
 TEST(SizeDistribution, TooFewOrEqualRadiiAreRefused) {
-  EXPECT_THROW((void)fit_exponent({}), BadInput);
-  EXPECT_THROW((void)fit_exponent({1.0, 2.0}), BadInput);
-  EXPECT_THROW((void)fit_exponent({1.0, 1.0, 1.0}), BadInput);
+  EXPECT_THROW((void)fit_exponent({}), InputError);
+  EXPECT_THROW((void)fit_exponent({1.0, 2.0}), InputError);
+  EXPECT_THROW((void)fit_exponent({1.0, 1.0, 1.0}), InputError);
 }
 
 }  // namespace

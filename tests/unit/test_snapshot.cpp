@@ -145,13 +145,13 @@ TEST(Snapshot, DamagedContactsAreFound) {
     return h5::open_file(directory.file(name)).open("c");
   };
   EXPECT_EQ(read_snapshot_contacts(written("good.h5", shot.contacts), {4, 5}, Snapshot{}).size(), 4U);
-  EXPECT_THROW((void)read_snapshot_contacts(written("a.h5", shot.contacts), {4, 4}, Snapshot{}), FileTrouble);
+  EXPECT_THROW((void)read_snapshot_contacts(written("a.h5", shot.contacts), {4, 4}, Snapshot{}), IoError);
   auto negative = shot.contacts;
   negative[0].i = -1;
-  EXPECT_THROW((void)read_snapshot_contacts(written("b.h5", negative), {4, 5}, Snapshot{}), FileTrouble);
+  EXPECT_THROW((void)read_snapshot_contacts(written("b.h5", negative), {4, 5}, Snapshot{}), IoError);
   auto lost = shot.contacts;
   lost[1].force[2] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW((void)read_snapshot_contacts(written("c.h5", lost), {4, 5}, Snapshot{}), FileTrouble);
+  EXPECT_THROW((void)read_snapshot_contacts(written("c.h5", lost), {4, 5}, Snapshot{}), IoError);
 }
 
 TEST(Snapshot, KeptPointsAreSpreadAndEndWithTheLast) {

@@ -86,13 +86,13 @@ TEST(SoftContactFromCard, UnusableLawsAreRefused) {
     return make_soft_contact(card, kind, 1e5, 0.3, 0.0, false);
   };
   for (const LawStatus status : {LawStatus::no_threshold_crossing, LawStatus::not_run})
-    EXPECT_THROW((void)make(card_with(PairKind::soft_solid, status), PairKind::soft_solid), BadInput)
+    EXPECT_THROW((void)make(card_with(PairKind::soft_solid, status), PairKind::soft_solid), InputError)
         << to_string(status);
   EXPECT_NO_THROW((void)make(card_with(PairKind::soft_solid, LawStatus::underdetermined), PairKind::soft_solid));
-  EXPECT_THROW((void)make(card_with(PairKind::soft_solid, LawStatus::good), PairKind::soft_soft), BadInput);
+  EXPECT_THROW((void)make(card_with(PairKind::soft_solid, LawStatus::good), PairKind::soft_soft), InputError);
   LawCard broken = card_with(PairKind::soft_solid, LawStatus::good);
   broken.pairs[0].normal.b.value = std::nan("");
-  EXPECT_THROW((void)make(broken, PairKind::soft_solid), BadInput);
+  EXPECT_THROW((void)make(broken, PairKind::soft_solid), InputError);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ using namespace softgrain::test;
 
 /// Grains of many sizes in a sheared periodic cell, in the order of their places on a lattice, largest anywhere.
 template <int D>
-System<D> sheared_crowd() {
+System<D> sheared_multi_contact() {
   System<D> s = hertz_system<D>(0.4, 0.7, true);
   Vec<D> size;
   std::array<bool, D> periodic{};
@@ -47,7 +47,7 @@ void expect_close(const System<D>& a, const System<D>& b) {
 
 template <int D>
 void reorder_while_running() {
-  System<D> plain = sheared_crowd<D>();
+  System<D> plain = sheared_multi_contact<D>();
   System<D> ordered = plain;
   VelocityVerlet<D> first(2e-5);
   VelocityVerlet<D> second(2e-5);
@@ -84,7 +84,7 @@ TEST(SpatialOrder, HistoriesAndMotionGoOn) {
 /// Numbers that no integer holds, and such as are none, in a run that has diverged.
 template <int D>
 void order_wild_places(bool periodic) {
-  System<D> s = sheared_crowd<D>();
+  System<D> s = sheared_multi_contact<D>();
   s.cell.periodic.fill(periodic);
   std::size_t u = 0;
   for (const double place : {1e18, 1e300, -1.7e308, 1.7e308, HUGE_VAL, std::nan("")})
@@ -103,7 +103,7 @@ TEST(SpatialOrder, WildPlacesHaveAnOrderToo) {
 }
 
 TEST(SpatialOrder, SmallOnesFirstAndNeighboursClose) {
-  const System3 s = sheared_crowd<3>();
+  const System3 s = sheared_multi_contact<3>();
   System3 t = s;
   reorder_grains(t, spatial_order(t));
   const auto mean_jump = [](const System3& system) {
@@ -120,7 +120,7 @@ TEST(SpatialOrder, SmallOnesFirstAndNeighboursClose) {
 }
 
 TEST(VelocityVerlet, ManyStepsAtOnceAreTheSameBits) {
-  System3 single = sheared_crowd<3>();
+  System3 single = sheared_multi_contact<3>();
   System3 many = single;
   VelocityVerlet<3> first(2e-5);
   VelocityVerlet<3> second(2e-5);

@@ -42,7 +42,7 @@ TEST(Stages, EveryKindDrivesItsAxes) {
   expect_axis(one("kind = \"oedometric\"\nstress = \"2 kPa\"").axis[2], true, 2000.0);
   const MacroStage isotropic = one("kind = \"isotropic\"\nstress = 500");
   for (const AxisDrive& axis : isotropic.axis) expect_axis(axis, true, 500.0);
-  EXPECT_TRUE(isotropic.alike);
+  EXPECT_TRUE(isotropic.isotropic);
   const MacroStage shear = one("kind = \"shear\"\nstrain = 0.02\nsteps = 3");
   expect_axis(shear.axis[0], false, -0.02);
   expect_axis(shear.axis[1], false, 0.0);
@@ -55,7 +55,7 @@ TEST(Stages, EveryKindDrivesItsAxes) {
   expect_axis(one("kind = \"triaxial\"\nstrain = 0.05\nlateral_stress = 300").axis[1], true, 300.0);
   const MacroStage consolidation = one("kind = \"consolidation\"\nstress = [100, 200, 300]");
   for (int k = 0; k < 3; ++k) expect_axis(consolidation.axis[static_cast<std::size_t>(k)], true, 100.0 * (k + 1));
-  EXPECT_FALSE(consolidation.alike);
+  EXPECT_FALSE(consolidation.isotropic);
   const MacroStage axes = one("kind = \"axes\"\nstrain_x = -0.01\nstress_z = \"1 kPa\"");
   expect_axis(axes.axis[0], false, -0.01);
   expect_axis(axes.axis[1], false, 0.0);
@@ -132,13 +132,13 @@ TEST(Stages, WhatContradictsIsNamed) {
     try {
       (void)read(text);
       ADD_FAILURE() << "accepted: " << text;
-    } catch (const BadInput& e) {
+    } catch (const InputError& e) {
       EXPECT_NE(std::string(e.what()).find(expected), std::string::npos) << text << "\n" << e.what();
       EXPECT_NE(std::string(e.what()).find("scene.toml:"), std::string::npos) << e.what();
     }
   }
-  EXPECT_THROW((void)read(load, "test = \"shear\""), BadInput);
-  EXPECT_THROW((void)read(load, "strain = 0.1"), BadInput);
+  EXPECT_THROW((void)read(load, "test = \"shear\""), InputError);
+  EXPECT_THROW((void)read(load, "strain = 0.1"), InputError);
 }
 
 /// Increments of a stage take the box to its nominal strain, and stresses go a straight way.
@@ -164,9 +164,9 @@ TEST(Stages, SayBetweenWhichStressesTheirModulusIs) {
       two);
   for (const std::size_t k : {1U, 2U}) EXPECT_EQ(cycles.stages.at(k).record.modulus_stress, expected) << k;
   for (const char* wrong : {"modulus_stress = [2e3, 1e3]", "modulus_stress = [1e3]", "modulus_stress = [-1.0, 1e3]"})
-    EXPECT_THROW((void)one(std::string("kind = \"oedometric\"\nstrain = 0.1\n") + wrong), BadInput) << wrong;
+    EXPECT_THROW((void)one(std::string("kind = \"oedometric\"\nstrain = 0.1\n") + wrong), InputError) << wrong;
   EXPECT_THROW((void)read("[[stage]]\nkind = \"oedometric\"\nstrain = 0.1\n[[stage]]\nkind = \"hold\"\n" + two),
-               BadInput);
+               InputError);
 }
 
 }  // namespace

@@ -97,7 +97,7 @@ TEST(Statistics, JackknifeOfARatio) {
   // with a constant reference the jackknife error is the standard error of the mean, over the reference
   const Values a{1.0, 2.0, 6.0};
   EXPECT_NEAR(paired_ratio(a, Values{2, 2, 2}).error, 0.5 * mean_error(a).error, 1e-14);
-  EXPECT_THROW(paired_ratio(a, Values{1, 2}), BadInput);
+  EXPECT_THROW(paired_ratio(a, Values{1, 2}), InputError);
 }
 
 }  // namespace

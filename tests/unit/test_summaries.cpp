@@ -84,7 +84,7 @@ PowderVariantsSummary variants() {
 MacroRunSummary macro() {
   MacroRunSummary s;
   s.head = head();
-  s.law = RunLaw{{Crowd::pair, 0.7, 5e5, 0.3, {}, "hash"}, "law.toml"};
+  s.law = RunLaw{{LawForm::pair, 0.7, 5e5, 0.3, {}, "hash"}, "law.toml"};
   s.runs.macro = EngineSummary{};
   s.runs.comparison = ComparisonSummary{};
   s.runs.comparison->samples.resize(1);

@@ -163,8 +163,19 @@ TEST(Markup, TheCheckFindsWhatIsWrong) {
 TEST(Html, EscapesAndDropsControlCharacters) { EXPECT_EQ(escape("<&>\"'\x01"), "&lt;&amp;&gt;&quot;&#39;"); }
 
 TEST(Html, ASectionWithoutBodyLeavesNoTrace) {
-  EXPECT_EQ(section("id", "Heading", ""), "");
+  EXPECT_EQ(section("id", "Heading", "what to see", ""), "");
   EXPECT_EQ(figure_row({}), "");
+}
+
+TEST(Html, SectionsBeginWithWhatToSeeAndFoldTheirTables) {
+  HtmlTable table({"stage", "engine", "modulus", "error"});
+  table.row({"oedometric", "law", "8.4", "1.5"});
+  const std::string html = section("id", "Heading", "What to see.", table.html());
+  EXPECT_NE(html.find("<p class=\"what\">What to see.</p>"), std::string::npos) << html;
+  EXPECT_NE(html.find("<details class=\"table\"><summary>Table of stage, engine, modulus and 1 more column, 1 row"),
+            std::string::npos)
+      << html;
+  EXPECT_EQ(unbalanced_tags(html), "");
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ TEST(SystemIo, AStateOfOtherDimensionOrLengthIsRefused) {
   }
   const h5::Group group = h5::open_file(directory.file("state.h5")).open("state");
   System<2> flat = shell_and_plane_system<2>(0.4, 0.7, false);
-  EXPECT_THROW(read_system(group, flat), FileTrouble);
+  EXPECT_THROW(read_system(group, flat), IoError);
 }
 
 /// Whatever follows shells outwards would go round for ever.
@@ -89,10 +89,10 @@ TEST(SystemIo, AShellThatLiesInItselfIsDamage) {
   const auto shell = static_cast<std::size_t>(s.particles.grains);
   EXPECT_NO_THROW(saved_and_read(s));
   s.particles.shell[shell] = s.particles.grains;
-  EXPECT_THROW(saved_and_read(s), FileTrouble);
+  EXPECT_THROW(saved_and_read(s), IoError);
   s.particles.shell[shell] = -1;
   s.particles.shell[0] = 0;
-  EXPECT_THROW(saved_and_read(s), FileTrouble) << "a grain is no shell";
+  EXPECT_THROW(saved_and_read(s), IoError) << "a grain is no shell";
 }
 
 void write_number(const std::string& path, const std::string& scene, double number) {
@@ -126,7 +126,7 @@ TEST(Checkpoint, NewestFirstPreviousWhenDamagedNothingWithout) {
   EXPECT_EQ(read_number(*open_checkpoint(path, "scene", note)), 1.25);
   EXPECT_NE(note.find("previous"), std::string::npos) << note;
   damage(path + ".previous", 1.25);
-  EXPECT_THROW((void)open_checkpoint(path, "scene", note), FileTrouble);
+  EXPECT_THROW((void)open_checkpoint(path, "scene", note), IoError);
 }
 
 TEST(Checkpoint, TruncatedFileFallsBack) {
@@ -144,7 +144,7 @@ TEST(Checkpoint, BelongsToItsScene) {
   const std::string path = directory.file("checkpoint.h5");
   write_number(path, "scene", 1.25);
   std::string note;
-  EXPECT_THROW((void)open_checkpoint(path, "another scene", note), BadInput);
+  EXPECT_THROW((void)open_checkpoint(path, "another scene", note), InputError);
 }
 
 TEST(Checkpoint, RemovedWithItsPrevious) {

@@ -41,20 +41,20 @@ TEST_F(TextFile, RoundTripReplacesAndLeavesNoTemporary) {
 
 TEST_F(TextFile, FailedWriteLeavesTheOldStateAndNoTemporary) {
   fs::create_directories(path("taken/inner"));
-  EXPECT_THROW(write_text_atomic(path("taken"), "text"), FileTrouble);
+  EXPECT_THROW(write_text_atomic(path("taken"), "text"), IoError);
   EXPECT_TRUE(fs::is_directory(path("taken/inner")));
   EXPECT_EQ(files(), 1U);
-  EXPECT_THROW(write_text_atomic(path("absent/a.txt"), "text"), FileTrouble);
+  EXPECT_THROW(write_text_atomic(path("absent/a.txt"), "text"), IoError);
 }
 
 TEST_F(TextFile, ReadingNamesTheFile) {
   try {
     (void)read_text(path("absent.txt"));
     FAIL() << "no error";
-  } catch (const FileTrouble& e) {
+  } catch (const IoError& e) {
     EXPECT_EQ(std::string(e.what()), path("absent.txt") + ": no such file");
   }
-  EXPECT_THROW((void)read_text(path("")), FileTrouble);
+  EXPECT_THROW((void)read_text(path("")), IoError);
 }
 
 TEST_F(TextFile, WritableDirectoryIsMadeWithParentsAndLeftEmpty) {
@@ -65,9 +65,9 @@ TEST_F(TextFile, WritableDirectoryIsMadeWithParentsAndLeftEmpty) {
 
 TEST_F(TextFile, UnwritableDirectoriesAreFileTrouble) {
   write_text_atomic(path("file"), "text");
-  EXPECT_THROW(require_writable_directory(path("file")), FileTrouble);
-  EXPECT_THROW(require_writable_directory(path("file/below")), FileTrouble);
-  EXPECT_THROW(require_writable_directory("/proc/softgrain"), FileTrouble);
+  EXPECT_THROW(require_writable_directory(path("file")), IoError);
+  EXPECT_THROW(require_writable_directory(path("file/below")), IoError);
+  EXPECT_THROW(require_writable_directory("/proc/softgrain"), IoError);
 }
 
 TEST(Interrupt, FlagIsSetAndCleared) {

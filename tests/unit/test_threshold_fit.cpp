@@ -227,22 +227,22 @@ TEST(ThresholdFit, UnconvergedPointsAreLeftOutAndCounted) {
 TEST(ThresholdFit, RelaxationsAreNotMixed) {
   auto data = synthetic({});
   data.runs[0].relaxation = "published";
-  EXPECT_THROW(fit_pair_law(data, PairKind::soft_solid), BadInput);
+  EXPECT_THROW(fit_pair_law(data, PairKind::soft_solid), InputError);
   FitOptions options = few_replicates();
   options.relaxation = "damped";
   EXPECT_EQ(fit_pair_law(data, PairKind::soft_solid, options).law.packings, 7);
   options.relaxation = "other";
-  EXPECT_THROW(fit_pair_law(data, PairKind::soft_solid, options), BadInput);
+  EXPECT_THROW(fit_pair_law(data, PairKind::soft_solid, options), InputError);
 }
 
 TEST(ThresholdFit, BadOptionsAreRefused) {
   FitOptions options;
   options.scatter_floor = 0.0;
-  EXPECT_THROW(fit_pair_law(synthetic({}), PairKind::soft_solid, options), BadInput);
+  EXPECT_THROW(fit_pair_law(synthetic({}), PairKind::soft_solid, options), InputError);
   options = {};
   options.delta_low = 0.3;
   options.delta_high = 0.2;
-  EXPECT_THROW(fit_pair_law(synthetic({}), PairKind::soft_solid, options), BadInput);
+  EXPECT_THROW(fit_pair_law(synthetic({}), PairKind::soft_solid, options), InputError);
 }
 
 TEST(ThresholdFit, EveryOptionChangesTheAnswer) {
@@ -337,7 +337,7 @@ TEST(ThresholdFit, CalibrateCoversEveryPairKindPresent) {
   EXPECT_EQ(card.pairs[0].status, LawStatus::good);
   EXPECT_EQ(card.pairs[1].status, LawStatus::no_threshold_crossing);
   EXPECT_EQ(card.relaxation, "damped");
-  EXPECT_THROW(calibrate(Measurements{}), BadInput);
+  EXPECT_THROW(calibrate(Measurements{}), InputError);
 }
 
 FitOptions settings_of(const std::string& text) {
@@ -355,8 +355,8 @@ TEST(FitSettings, AnglesHaveTheirUnitInTheirNameAndAreReadWithoutItToo) {
   EXPECT_EQ(earlier.initial_angle_deg, 0.2);
   EXPECT_EQ(earlier.secant_angle_deg, 3.0);
   EXPECT_EQ(settings_of("").initial_angle_deg, FitOptions{}.initial_angle_deg);
-  EXPECT_THROW(settings_of("initial_angle = 0.1\ninitial_angle_deg = 0.1"), BadInput);
-  EXPECT_THROW(settings_of("secant_angle_deg = 0.0"), BadInput);
+  EXPECT_THROW(settings_of("initial_angle = 0.1\ninitial_angle_deg = 0.1"), InputError);
+  EXPECT_THROW(settings_of("secant_angle_deg = 0.0"), InputError);
 }
 
 }  // namespace

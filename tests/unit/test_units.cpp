@@ -80,18 +80,18 @@ TEST(Units, FactorsThatAreNoPowersOfTen) {
 TEST(Units, WhatIsNoQuantityIsRefused) {
   for (const char* text :
        {"", "mm", "nan", "inf", "-inf mm", "1e400", "1e-400", "1,5 mm", "16 mm 3", "0x10", "--3", "1e99999999999 m"})
-    EXPECT_THROW((void)parse_quantity(text, Unit::length), BadInput) << text;
+    EXPECT_THROW((void)parse_quantity(text, Unit::length), InputError) << text;
 }
 
 TEST(Units, WrongUnitNamesTheKnownOnes) {
   try {
     (void)parse_quantity("16 Pa", Unit::length);
     FAIL() << "no error";
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     EXPECT_STREQ(e.what(), "unknown unit 'Pa', known are m, km, cm, mm, um, µm, nm");
   }
-  EXPECT_THROW((void)parse_quantity("3 mm", Unit::none), BadInput);
-  EXPECT_THROW((void)parse_quantity("3 M", Unit::length), BadInput);
+  EXPECT_THROW((void)parse_quantity("3 mm", Unit::none), InputError);
+  EXPECT_THROW((void)parse_quantity("3 M", Unit::length), InputError);
 }
 
 }  // namespace

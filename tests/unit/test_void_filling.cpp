@@ -205,11 +205,11 @@ TEST(VoidFilling, ACellIsFilledAcrossItsFaces) {
 TEST(VoidFilling, BadArgumentsAreNamed) {
   const auto domain = VoidDomain::box({{0.0, 0.0, 0.0}}, {{1.0, 1.0, 1.0}});
   VoidFillingOptions options;
-  EXPECT_THROW(fill_voids({}, domain, options), BadInput);
+  EXPECT_THROW(fill_voids({}, domain, options), InputError);
   options.r_min = 0.2;
   options.r_max = 0.1;
-  EXPECT_THROW(fill_voids({}, domain, options), BadInput);
-  EXPECT_THROW(fill_voids({}, VoidDomain::box({}, {}), {0.1, 0.01}), BadInput);
+  EXPECT_THROW(fill_voids({}, domain, options), InputError);
+  EXPECT_THROW(fill_voids({}, VoidDomain::box({}, {}), {0.1, 0.01}), InputError);
 }
 
 TEST(VoidFilling, HundredsOfSpheresTakeNoTime) {

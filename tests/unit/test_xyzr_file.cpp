@@ -21,7 +21,7 @@ TEST(XyzrFile, PlusSignsAreRead) {
   EXPECT_EQ(file.radius[0], 1e-3);
   for (const char* wrong : {"+-0.01", "++1", "+"}) {
     write_text_atomic(path, std::string("1 1 1 1\n") + wrong + " 0 0 1\n");
-    EXPECT_THROW((void)read_xyzr(path), BadInput) << wrong;
+    EXPECT_THROW((void)read_xyzr(path), InputError) << wrong;
   }
 }
 

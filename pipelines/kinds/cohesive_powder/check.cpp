@@ -36,11 +36,11 @@ double expected_overlap(const PowderSetup& setup) {
 /// Small, soft samples that are assembled the same way.
 struct PowderTrial {
   double disks = 0.0;
-  double pass_seconds = 0.0;   ///< of one core
-  std::vector<double> time{};  ///< that each phase took [T0], the mean
+  double pass_seconds = 0.0;   ///< core seconds per loop pass
+  std::vector<double> time{};  ///< mean duration of each phase [T0]
 };
 
-/// As far as it comes in a moment.
+/// Assembles a sample as far as a short time budget allows.
 PowderState assemble_in_a_moment(const PowderSpec& spec, const std::vector<PowderPhase>& phases,
                                  const PowderSetup& setup, std::uint64_t sample) {
   constexpr double kBudget = 0.8;
@@ -55,7 +55,7 @@ PowderState assemble_in_a_moment(const PowderSpec& spec, const std::vector<Powde
   try {
     (void)run_powder(state, spec, phases, options, control);
   } catch (const TrialOver&) {
-  } catch (const NotUsable&) {  // the run will say so
+  } catch (const UnusableResult&) {  // the run will say so
   }
   return state;
 }

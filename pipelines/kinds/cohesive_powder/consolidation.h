@@ -10,9 +10,10 @@
 
 namespace softgrain {
 
-using PowderStages = std::vector<PowderStage>;  ///< of one sample
+using PowderStages = std::vector<PowderStage>;  ///< stages of one sample
 
-/// Of the pressures that rise, over samples that reached them all; empty where there are fewer than two.
+/// Consolidation fit over the rising pressures, for samples that reached all pressures. Empty where fewer than two
+/// pressures rise.
 std::optional<ConsolidationFit> consolidation_of(const std::vector<PowderStages>& samples);
 
 /// "lambda = 0.118(4) for P* from 0.05 to 1.6, ..."; one line.

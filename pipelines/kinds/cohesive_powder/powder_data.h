@@ -32,8 +32,8 @@ struct FittedCurve {
 
 struct PowderSample {
   bool usable = false;
-  PowderSnapshot packing;                  ///< at the end
-  std::vector<ContactRecord<2>> contacts;  ///< of it, computed again from the stored state and its laws
+  PowderSnapshot packing;                  ///< packing at the end
+  std::vector<ContactRecord<2>> contacts;  ///< contacts of `packing`, computed again from the stored state and its laws
   std::vector<PowderMoment> course;
   std::vector<PowderStage> stages;
   std::vector<PowderSnapshot> snapshots;
@@ -47,7 +47,7 @@ struct PowderRun {
   bool cohesive = true;
 };
 
-/// Throws FileTrouble.
+/// Throws IoError.
 PowderRun load_powder(const std::string& path);
 
 }  // namespace softgrain

@@ -8,7 +8,7 @@ namespace softgrain {
 KindResults powder_results();
 
 /// powder.h5: pictures of the assembly without contacts, then the state that it ended in, with them. Throws
-/// FileTrouble.
+/// IoError.
 void visit_powder(const std::string& path, SnapshotChoice choice, const VisitSnapshot& visit);
 
 namespace report {

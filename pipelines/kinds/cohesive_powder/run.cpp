@@ -36,14 +36,14 @@ double imposed_pressure(const std::vector<PowderPhase>& phases, const PowderStat
   return phases[std::min(static_cast<std::size_t>(state.phase), phases.size() - 1)].pressure;
 }
 
-/// The sample of this number of an earlier run. Throws BadInput when that run was of other disks.
+/// The sample of this number of an earlier run. Throws InputError when that run was of other disks.
 void take_state(const PowderSetup& setup, std::int64_t number, PowderState& state) {
   const std::lock_guard lock(h5::library_mutex());
   const h5::Group file = h5::open_file(setup.states);
   const std::string sample = fmt::format("sample_{}", number);
-  if (!file.has("spec") || !file.has(sample)) throw BadInput(fmt::format("{}: has no {}", setup.states, sample));
+  if (!file.has("spec") || !file.has(sample)) throw InputError(fmt::format("{}: has no {}", setup.states, sample));
   if (!(read_powder_spec(file.open("spec")) == setup.spec))
-    throw BadInput(setup.states + ": holds samples of other [disks], [contact] or [assembly] than the scene");
+    throw InputError(setup.states + ": holds samples of other [disks], [contact] or [assembly] than the scene");
   read_powder_state(file.open(sample), state);
 }
 
@@ -105,7 +105,7 @@ void add_statistics(const std::vector<Sample>& samples, PowderSummary& summary) 
   summary.histograms = histograms_json(forces);
 }
 
-/// Which samples count in the mean.
+/// Whether each sample counts in the mean.
 std::vector<bool> usable_samples(const std::vector<Sample>& samples) {
   std::vector<bool> usable;
   for (const Sample& s : samples) usable.push_back(s.result.usable);
@@ -152,12 +152,12 @@ void add_samples(const std::vector<Sample>& samples, const PowderStructures& str
     if (k < structures.samples.size()) add_structure(summary.samples.back(), structures.samples[k]);
     summary.seconds.push_back(samples[k].state.system.cost.seconds);
     if (!samples[k].result.usable)
-      summary.head.reject(fmt::format("sample {} is not at rest: {}", k, samples[k].result.reason));
+      summary.head.mark_unusable(fmt::format("sample {} is not at rest: {}", k, samples[k].result.reason));
   }
   for (const std::string& remark : structure_remarks(structures)) summary.head.remarks.push_back(remark);
 }
 
-/// Of several pressures; returns the line about them for people.
+/// Adds the consolidation fit of samples under several pressures; returns the line about it for people.
 std::string add_consolidation(const std::vector<Sample>& samples, PowderSummary& summary) {
   std::vector<PowderStages> stages;
   for (const Sample& s : samples) stages.push_back(s.state.stages);
@@ -199,9 +199,9 @@ ExitStatus run_powder_ensemble(const PowderSetup& setup, const Run& run) {
   summary.head.files = {{"powder.h5", run.path("powder.h5")}, {"report", run.path("report.html")}};
   summary.head.sizes = summaries_of(drawn_sizes(setup, run.seed));
   add_samples(samples, structures, summary);
-  std::string people = add_means(setup, samples, structures, summary);
-  people += add_consolidation(samples, summary);
-  return run.finish(json_of(summary), people + "data: " + run.path("powder.h5") + "\n");
+  std::string console = add_means(setup, samples, structures, summary);
+  console += add_consolidation(samples, summary);
+  return run.finish(json_of(summary), console + "data: " + run.path("powder.h5") + "\n");
 }
 
 namespace {

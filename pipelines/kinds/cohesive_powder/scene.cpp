@@ -34,7 +34,7 @@ void read_contact(const SceneTable& t, PowderSpec& spec) {
   spec.rolling_stiffness = t.number("rolling_stiffness", Unit::none, Range::positive(), spec.rolling_stiffness);
   spec.rolling_friction = t.number("rolling_friction", Unit::none, Range::not_negative(), spec.rolling_friction);
   for (const char* key : {"rolling_stiffness", "rolling_friction"})
-    if (!spec.rolling && t.has(key)) t.mistake(key, "goes with rolling = true: nothing resists rolling here");
+    if (!spec.rolling && t.has(key)) t.add_error(key, "goes with rolling = true: nothing resists rolling here");
 }
 
 /// L/a of the start.
@@ -44,9 +44,9 @@ double start_edge(const PowderSpec& spec) {
   return std::sqrt(area / spec.solid_fraction);
 }
 
-/// Keys of before, whose numbers meant something else. `sound`: so are the other tables.
-void refuse_old_keys(const SceneTable& t, const PowderSpec& spec, bool sound) {
-  const double length = sound && t.sound() ? start_edge(spec) : 0.0;
+/// Keys of before, whose numbers meant something else. `valid`: the other tables have no errors.
+void refuse_old_keys(const SceneTable& t, const PowderSpec& spec, bool valid) {
+  const double length = valid && !t.has_errors() ? start_edge(spec) : 0.0;
   const auto refuse = [&](const char* key, const char* meant, const char* now, const char* means, bool grows) {
     if (!t.has(key)) return;
     const double old = t.number(key, Unit::none, Range::not_negative(), 0.0);
@@ -55,7 +55,7 @@ void refuse_old_keys(const SceneTable& t, const PowderSpec& spec, bool sound) {
       text +=
           fmt::format(": {} would be {} = {} (L/a = {} at the start)", report::format_number(old, 4), now,
                       report::format_number(grows ? old * length : old / length, 3), report::format_number(length, 3));
-    t.mistake(key, text);
+    t.add_error(key, text);
   };
   refuse("cell_mass", "the inertia of the cell over (sum of m)/(L/a)", "cell_inertia", "over the sum of m", false);
   refuse("strain_rate_cap", "a largest strain rate, over 1/T0", "edge_speed_cap", "the largest |dL/dt| in a/T0", true);
@@ -66,39 +66,39 @@ void read_protocol(const SceneTable& t, PowderSetup& setup) {
   const bool aggregates = p.method == 2;
   p.edge_speed_cap = t.number("edge_speed_cap", Unit::none, Range::not_negative(), aggregates ? 0.05 : 0.0);
   for (const char* key : {"aggregation_kappa", "stiffening_time"})
-    if (!aggregates && t.has(key)) t.mistake(key, "only method 2 has disks that aggregate first");
+    if (!aggregates && t.has(key)) t.add_error(key, "only method 2 has disks that aggregate first");
   if (!aggregates) return;
   p.aggregation_kappa = t.number("aggregation_kappa", Unit::none, Range::not_negative(), 0.0);
   if (p.aggregation_kappa == 0.0 && t.has("stiffening_time"))
-    t.mistake("stiffening_time", "nothing stiffens without an aggregation_kappa");
+    t.add_error("stiffening_time", "nothing stiffens without an aggregation_kappa");
   if (p.aggregation_kappa > 0.0)
     p.stiffening_time = t.number("stiffening_time", Unit::none, Range::positive(), p.stiffening_time);
 }
 
-/// Of `pressures`: up to a largest one and, where it is not the last, down from there.
+/// Reads `pressures`: they rise to a largest one and, where that is not the last, fall from there.
 void read_pressures(const SceneTable& t, PowderSetup& setup) {
   if (!t.has("pressures")) return;
-  if (t.has("pressure")) t.mistake("pressure", "\"pressures\" says them all: leave one of the two out");
+  if (t.has("pressure")) t.add_error("pressure", "\"pressures\" says them all: leave one of the two out");
   const std::vector<double> p = t.numbers("pressures", Unit::none, Range::positive());
   if (p.empty()) {
-    t.mistake("pressures", "needs at least one pressure");
+    t.add_error("pressures", "needs at least one pressure");
     return;
   }
   const auto top = std::max_element(p.begin(), p.end());
   const bool up = std::adjacent_find(p.begin(), top, std::greater_equal<>()) == top;
   const bool down = std::adjacent_find(top, p.end(), std::less_equal<>()) == p.end();
   if (!up || !down)
-    t.mistake("pressures",
-              "must rise to a largest one and may fall from there, each but once: consolidation and its "
-              "unloading");
+    t.add_error("pressures",
+                "must rise to a largest one and may fall from there, each but once: consolidation and its "
+                "unloading");
   setup.protocol.pressures = p;
   setup.spec.pressure = p.back();
 }
 
 /// Whether the cell can close at the speed that it is allowed, in the time and in a day.
-void check_cap(const SceneTable& t, const PowderSetup& setup, bool sound) {
+void check_cap(const SceneTable& t, const PowderSetup& setup, bool valid) {
   const double cap = setup.protocol.edge_speed_cap;
-  if (!sound || !t.sound() || !(cap > 0.0) || !(setup.largest_stress() > 0.0)) return;
+  if (!valid || t.has_errors() || !(cap > 0.0) || !(setup.largest_stress() > 0.0)) return;
   constexpr double kDense = 0.85;        // no pack of disks is denser
   constexpr double kPairSeconds = 2e-8;  // of one core, and 2 pairs per disk
   constexpr double kDay = 86400.0;
@@ -106,35 +106,35 @@ void check_cap(const SceneTable& t, const PowderSetup& setup, bool sound) {
   const double time = way / cap;
   const double seconds = time / setup.time_step() * 2.0 * static_cast<double>(setup.spec.disks) * kPairSeconds;
   if (time > setup.options.time_max)
-    t.mistake("edge_speed_cap",
-              fmt::format("the cell would need {} T0 to close by {} a, a phase ends after time_max = {}: allow at "
-                          "least {} a/T0, or more time",
-                          report::format_number(time, 3), report::format_number(way, 3),
-                          report::format_number(setup.options.time_max, 4),
-                          report::format_number(way / setup.options.time_max, 2)));
+    t.add_error("edge_speed_cap",
+                fmt::format("the cell would need {} T0 to close by {} a, a phase ends after time_max = {}: allow at "
+                            "least {} a/T0, or more time",
+                            report::format_number(time, 3), report::format_number(way, 3),
+                            report::format_number(setup.options.time_max, 4),
+                            report::format_number(way / setup.options.time_max, 2)));
   else if (seconds > kDay)
-    t.mistake("edge_speed_cap",
-              fmt::format("the cell would need about {} days of one core to close: allow at least "
-                          "{} a/T0",
-                          report::format_number(seconds / kDay, 2), report::format_number(cap * seconds / kDay, 2)));
+    t.add_error("edge_speed_cap",
+                fmt::format("the cell would need about {} days of one core to close: allow at least "
+                            "{} a/T0",
+                            report::format_number(seconds / kDay, 2), report::format_number(cap * seconds / kDay, 2)));
 }
 
-/// `sound`: so is [contact].
-void read_assembly(const SceneTable& t, PowderSetup& setup, bool sound) {
+/// `valid`: [contact] has no errors.
+void read_assembly(const SceneTable& t, PowderSetup& setup, bool valid) {
   setup.protocol.method = static_cast<int>(t.count("method", 1, 2, 1));
   for (const char* key : {"pressure", "pressures"})
-    if (sound && !setup.spec.cohesive && t.has(key))
-      t.mistake(key, "without cohesion P a is the unit of force: the stiffness kappa = K_N/P says how hard it is");
-  if (sound && !setup.spec.cohesive && setup.protocol.method == 2)
-    t.mistake("method", "disks without cohesion do not aggregate");
+    if (valid && !setup.spec.cohesive && t.has(key))
+      t.add_error(key, "without cohesion P a is the unit of force: the stiffness kappa = K_N/P says how hard it is");
+  if (valid && !setup.spec.cohesive && setup.protocol.method == 2)
+    t.add_error("method", "disks without cohesion do not aggregate");
   setup.spec.pressure = t.number("pressure", Unit::none, Range::not_negative(), setup.spec.pressure);
   read_pressures(t, setup);
-  if (sound && setup.protocol.method == 1 && setup.spec.cohesive && setup.spec.pressure == 0.0)
-    t.mistake("pressure", "method 1 starts at rest: without pressure nothing moves");
+  if (valid && setup.protocol.method == 1 && setup.spec.cohesive && setup.spec.pressure == 0.0)
+    t.add_error("pressure", "method 1 starts at rest: without pressure nothing moves");
   setup.spec.start_speed =
       setup.protocol.method == 2 ? t.number("start_speed", Unit::none, Range::positive(), 9.48) : 0.0;
-  if (!t.sound()) (void)t.has("start_speed");
-  refuse_old_keys(t, setup.spec, sound);
+  if (t.has_errors()) (void)t.has("start_speed");
+  refuse_old_keys(t, setup.spec, valid);
   read_protocol(t, setup);
   setup.options.cell_inertia = t.number("cell_inertia", Unit::none, Range::positive(), setup.options.cell_inertia);
   setup.options.step = t.number("step", Unit::none, Range::closed(1e-6, 0.5), setup.options.step);
@@ -144,7 +144,7 @@ void read_assembly(const SceneTable& t, PowderSetup& setup, bool sound) {
   setup.options.settle_after = t.number("settle_after", Unit::none, Range::not_negative(), setup.options.settle_after);
   setup.options.time_max = t.number("time_max", Unit::none, Range::positive(), setup.options.time_max);
   setup.options.record_every = t.number("record_every", Unit::none, Range::positive(), setup.options.record_every);
-  check_cap(t, setup, sound);
+  check_cap(t, setup, valid);
 }
 
 void read_structure(const SceneTable& t, PowderStructureOptions& o) {
@@ -153,9 +153,9 @@ void read_structure(const SceneTable& t, PowderStructureOptions& o) {
   o.mesh = t.number("mesh", Unit::none, Range{5.0, 1000.0, false, false}, o.mesh);
   o.fit_k_max = t.number("fit_k_max", Unit::none, Range{0.0, 100.0, true, false}, o.fit_k_max);
   if (!o.scattering && t.has("fit_k_max"))
-    t.mistake("fit_k_max", "goes with scattering = true: nothing is fitted here");
+    t.add_error("fit_k_max", "goes with scattering = true: nothing is fitted here");
   if (!o.scattering && !o.holes && t.has("mesh"))
-    t.mistake("mesh", "goes with scattering or holes, which are found on the mesh");
+    t.add_error("mesh", "goes with scattering or holes, which are found on the mesh");
 }
 
 }  // namespace
@@ -191,13 +191,13 @@ PowderSetup read_powder(const Scene& scene) {
     read_disks(root.table_or_empty("disks"), setup.spec);
     const SceneTable contact = root.table_or_empty("contact");
     read_contact(contact, setup.spec);
-    read_assembly(root.table_or_empty("assembly"), setup, contact.sound());
+    read_assembly(root.table_or_empty("assembly"), setup, !contact.has_errors());
     const SceneTable analysis = root.table_or_empty("analysis");
     setup.rigidity = analysis.flag("rigidity", setup.rigidity);
     setup.states = analysis.has("states") ? scene.resolve(analysis.text("states")) : "";
     read_structure(analysis, setup.structure);
     // What is not there shows before any work.
-    if (analysis.sound() && !setup.states.empty()) (void)h5::open_file(setup.states);
+    if (!analysis.has_errors() && !setup.states.empty()) (void)h5::open_file(setup.states);
     return setup;
   });
 }

@@ -27,7 +27,7 @@ struct PowderSetup {
   bool rigidity = true;  ///< whether the rigidity matrix is factorised at the end
 
   [[nodiscard]] std::vector<PowderPhase> phases() const { return powder_phases(spec, protocol); }
-  /// Of the smallest disk that may be drawn [T0].
+  /// Time step of the smallest disk that may be drawn [T0].
   [[nodiscard]] double time_step() const { return options.step * spec.diameter_min / std::sqrt(spec.stiffness); }
   /// Largest stress that any phase imposes.
   [[nodiscard]] double largest_stress() const;
@@ -40,14 +40,14 @@ std::string powder_text(const PowderSetup& setup);
 /// Disks whose sizes a distribution says.
 std::vector<DrawnSizes> drawn_sizes(const PowderSetup& setup, std::uint64_t seed);
 
-/// Reads the scene to the last key. Throws BadInput; FileTrouble when there are no `states` to be read.
+/// Reads the scene to the last key. Throws InputError; IoError when there are no `states` to be read.
 PowderSetup read_powder(const Scene& scene);
 
 /// Runs all samples; writes powder.h5 (final states and the course of each assembly) and summary.json. Status
 /// not_usable when a sample did not come to rest: the summary says which criterion was unmet.
 ExitStatus run_powder_ensemble(const PowderSetup& setup, const Run& run);
 
-/// The same from a scene, or each of its variants.
+/// Scene kind "cohesive-powder": runs the ensemble of a scene, or of each of its variants.
 SceneKind cohesive_powder_kind();
 
 /// What follows from such a scene: phases, time step, steps at most, overlaps, time from a short trial.

@@ -202,7 +202,7 @@ std::string tables(const RunData& run) {
          common_fit(summary.scattering);
 }
 
-/// At most kSnapshots of them, the first and the last among them.
+/// Selects at most kSnapshots snapshots, the first and the last included.
 std::vector<const PowderSnapshot*> chosen(const std::vector<PowderSnapshot>& all) {
   std::vector<const PowderSnapshot*> out;
   const std::size_t n = std::min(all.size(), kSnapshots);
@@ -250,12 +250,20 @@ std::string powder_section(const RunData& run) {
   const std::string scattering = scattering_figure(powder);
   std::vector<PowderStages> stages;
   for (const PowderSample& s : powder.samples) stages.push_back(s.stages);
-  return section("powder", "Packings", packings(powder) + snapshots(powder)) +
-         section("powder-course", "Assembly", course_figures(powder)) +
-         section("powder-consolidation", "Consolidation", consolidation_figures(stages)) +
-         section("powder-forces", "Forces", force_figures(powder)) +
-         section("powder-scattering", "Scattered intensity", scattering.empty() ? "" : figure_row({scattering})) +
-         section("powder-samples", "Samples", tables(run));
+  return section("powder", "Packings", "Solid fraction and contacts of the packings, and pictures of their particles.",
+                 packings(powder) + snapshots(powder)) +
+         section("powder-course", "Assembly",
+                 "How solid fraction, kinetic energy and contacts develop during the assembly.",
+                 course_figures(powder)) +
+         section("powder-consolidation", "Consolidation", "Solid fraction against pressure, on loading and unloading.",
+                 consolidation_figures(stages)) +
+         section("powder-forces", "Forces", "Distributions of normal and tangential contact forces.",
+                 force_figures(powder)) +
+         section("powder-scattering", "Scattered intensity",
+                 "Scattered intensity over the wave number: its slope gives the fractal dimension, its knee the "
+                 "correlation length.",
+                 scattering.empty() ? "" : figure_row({scattering})) +
+         section("powder-samples", "Samples", "Numbers of every sample.", tables(run));
 }
 
 }  // namespace softgrain::report

@@ -21,7 +21,7 @@ std::string ours(const VariantEntry& entry, const std::string& quantity) {
   return format_with_error(entry.ours(quantity).mean, entry.ours(quantity).error);
 }
 
-/// As printed: a published value without an error keeps its own digits.
+/// Published value as printed: a value without an error keeps its own digits.
 std::string theirs(const VariantEntry& entry, const std::string& quantity) {
   return format_with_error(entry.theirs(quantity).value, entry.theirs(quantity).error);
 }
@@ -178,7 +178,7 @@ std::string powder_variants_section(const RunData& run) {
   std::vector<std::string> figures;
   for (const char* quantity : {"Phi", "z"})
     if (std::string drawn = comparison_figure(entries, quantity); !drawn.empty()) figures.push_back(std::move(drawn));
-  return section("powder-variants", "Variants",
+  return section("powder-variants", "Variants", "Each variant beside the published values.",
                  tables(entries) + (figures.empty() ? "" : figure_row(figures)) + links(entries));
 }
 

@@ -27,10 +27,10 @@ struct PowderStructure {
   std::optional<ScatteringCurve> curve;
   ScatteringFit fit;
   std::optional<PowderHoles> holes;
-  Vec<2> lengths{};              ///< of the cell [a]
-  double solid_fraction = 0.0;   ///< of the disks
-  double independent = 0.0;      ///< independent_intensity of its disks [a^2]
-  double smallest_radius = 0.0;  ///< of its disks [a]
+  Vec<2> lengths{};              ///< edge lengths of the cell [a]
+  double solid_fraction = 0.0;   ///< solid fraction of the disks
+  double independent = 0.0;      ///< independent_intensity of the disks [a^2]
+  double smallest_radius = 0.0;  ///< smallest radius of the disks [a]
   std::int64_t nx = 0;
   std::int64_t ny = 0;
 };
@@ -40,11 +40,11 @@ struct PowderStructures {
   std::vector<PowderStructure> samples;
   std::optional<ScatteringCurve> mean_curve;
   ScatteringFit fit;                        ///< common parameters of all usable samples
-  std::vector<ScatteringFit> other_ranges;  ///< the same with the upper end of k at 2/3 and 4/3: how much it matters
+  std::vector<ScatteringFit> other_ranges;  ///< common fits with fit_k_max times 2/3 and 4/3: how much it matters
 };
 
 /// One sample after the other (the transform of 1400 disks takes 150 MB). `usable[s]`: whether sample s counts in the
-/// mean. Throws BadInput, NotUsable.
+/// mean. Throws InputError, UnusableResult.
 PowderStructures powder_structures(const std::vector<const System<2>*>& samples, const std::vector<bool>& usable,
                                    const PowderStructureOptions& options);
 

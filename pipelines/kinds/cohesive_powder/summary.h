@@ -90,7 +90,7 @@ void fields(auto&& visit, Of<PowderHoles> auto& s) {
   visit("percolating", s.percolating);
 }
 
-/// Without numbers where there was no fit.
+/// Fit of I(k); its numbers are left out where there was no fit.
 void fields(auto&& visit, Of<ScatteringFit> auto& s) {
   constexpr bool kWrites = std::is_const_v<std::remove_reference_t<decltype(s)>>;
   visit("usable", s.usable);
@@ -134,7 +134,7 @@ struct PackSummary {
   std::int64_t contact_evaluations = 0;
   double fraction = 0.0;
   std::array<double, 2> stress{};
-  std::vector<PowderStage> stages;  ///< of several pressures
+  std::vector<PowderStage> stages;  ///< stages of a sample under several pressures
   PowderContacts contacts;
   PowderAnalysis analysis;  ///< its scalars
   std::optional<std::array<std::int64_t, 2>> mesh;
@@ -192,12 +192,12 @@ struct PowderSummary {
   SummaryHead head;
   std::string kind;
   std::vector<PackSummary> samples;
-  std::vector<double> seconds;  ///< of each sample
+  std::vector<double> seconds;  ///< seconds of each sample
   nlohmann::json statistics;    ///< mean, deviation and number of every scalar over the samples at rest
   nlohmann::json histograms;
   nlohmann::json mean;
   std::optional<EnsembleFit> scattering;
-  std::optional<ConsolidationFit> consolidation;  ///< of the pressures that rise
+  std::optional<ConsolidationFit> consolidation;  ///< fit over the rising pressures
 };
 
 void fields(auto&& visit, Of<PowderSummary> auto& s) {
@@ -212,7 +212,7 @@ void fields(auto&& visit, Of<PowderSummary> auto& s) {
   visit("consolidation", s.consolidation, kLeftOut);
 }
 
-/// Over the samples at rest of a variant.
+/// Mean of a quantity over the samples at rest of a variant.
 struct QuantityMean {
   double mean = kNaN;
   double deviation = kNaN;
@@ -254,7 +254,7 @@ struct VariantEntry {
   std::string title;
   RunStatus status = RunStatus::not_run;
   std::string reason;
-  std::string commit;  ///< of the build that ran it
+  std::string commit;  ///< commit of the build that ran it
   std::int64_t disks = 0;
   std::int64_t samples = 0;
   std::size_t usable_samples = 0;

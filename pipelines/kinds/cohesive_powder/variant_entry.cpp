@@ -103,7 +103,7 @@ void add_mean(VariantEntry& entry, const char* name, const std::vector<double>& 
   if (m.n > 0) entry.values[name] = {m.mean, m.deviation, m.n, m.error};
 }
 
-/// Over the samples at rest.
+/// Adds the means over the samples at rest.
 void add_values(VariantEntry& entry, const PowderSummary& powder) {
   std::vector<const PackSummary*> usable;
   std::vector<double> seconds;

@@ -17,7 +17,7 @@ struct VariantRun {
 /// Names of the quantities of an entry, in the order of the table.
 const std::vector<const char*>& powder_quantities();
 
-/// Those that may be published: all but what a run costs.
+/// Names of the quantities that may be published: all but the cost of a run.
 std::vector<const char*> powder_comparable();
 
 /// "values" has mean, deviation, standard error and number of samples of every quantity over the samples at rest;

@@ -28,7 +28,7 @@ std::vector<std::string> compared(const std::vector<VariantEntry>& entries) {
   return out;
 }
 
-/// In full precision; empty where there is none.
+/// A number in full precision; empty where it is not finite.
 std::string exact(double x) { return std::isfinite(x) ? nlohmann::json(x).dump() : ""; }
 
 std::string rounded(double x, const char* format) {
@@ -88,7 +88,7 @@ TextTable powder_data_table(const std::vector<VariantEntry>& entries) {
   return table;
 }
 
-TextTable powder_people_table(const std::vector<VariantEntry>& entries) {
+TextTable powder_console_table(const std::vector<VariantEntry>& entries) {
   TextTable table{{"variant", "status", "at rest"}, {}};
   const std::vector<std::string> published = compared(entries);
   for (const std::string& name : published)

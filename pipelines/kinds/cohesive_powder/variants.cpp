@@ -25,7 +25,7 @@ std::vector<PublishedValue> read_published(const SceneTable& t) {
   for (const std::string quantity : powder_comparable()) {
     const std::string error = quantity + "_error";
     if (!t.has(quantity)) {
-      if (t.has(error)) t.mistake(error, "without the value " + quantity);
+      if (t.has(error)) t.add_error(error, "without the value " + quantity);
       continue;
     }
     out.push_back({quantity, t.number(quantity, Unit::none, Range::any()), std::nullopt});
@@ -38,7 +38,7 @@ std::vector<PublishedValue> read_published(const SceneTable& t) {
 void read_own(const SceneTable& t, PowderVariant& variant) {
   variant.name = read_variant_name(t);
   if (std::find(kTakenNames.begin(), kTakenNames.end(), variant.name) != kTakenNames.end())
-    t.mistake("name", "is that of a file or folder beside the variants");
+    t.add_error("name", "is that of a file or folder beside the variants");
   variant.published = read_published(t.table_or_empty("published"));
   for (const char* key : kReplacing) (void)t.has(key);
 }
@@ -47,9 +47,9 @@ void read_as_scene(PowderVariant& variant) {
   try {
     variant.setup = read_powder(variant.scene);
   } catch (const BadScene& e) {
-    std::vector<SceneMistake> mistakes = e.mistakes();
-    for (SceneMistake& m : mistakes) m.of = fmt::format(" (in the variant \"{}\")", variant.name);
-    throw BadScene(e.file(), mistakes);
+    std::vector<SceneError> errors = e.errors();
+    for (SceneError& m : errors) m.of = fmt::format(" (in the variant \"{}\")", variant.name);
+    throw BadScene(e.file(), errors);
   }
 }
 
@@ -57,7 +57,7 @@ void read_as_scene(PowderVariant& variant) {
 std::vector<std::string> read_only(const SceneTable& root) {
   if (root.is_text("only")) return {root.text("only")};
   std::vector<std::string> names = root.texts("only");
-  if (names.empty()) root.mistake("only", "at least one name is needed");
+  if (names.empty()) root.add_error("only", "at least one name is needed");
   return names;
 }
 
@@ -75,9 +75,9 @@ void pick(const SceneTable& root, std::vector<PowderVariant>& variants) {
       continue;
     }
     const std::string near = nearest_word(name, known);
-    root.mistake("only", fmt::format("there is no variant \"{}\"; {}", name,
-                                     near.empty() ? fmt::format("variants are {}", fmt::join(known, ", "))
-                                                  : fmt::format("nearest is \"{}\"", near)));
+    root.add_error("only", fmt::format("there is no variant \"{}\"; {}", name,
+                                       near.empty() ? fmt::format("variants are {}", fmt::join(known, ", "))
+                                                    : fmt::format("nearest is \"{}\"", near)));
   }
 }
 
@@ -88,13 +88,13 @@ bool has_powder_variants(const Scene& scene) { return scene.root().has("variant"
 std::vector<PowderVariant> read_powder_variants(const Scene& scene) {
   return scene.read([&](const SceneTable& root) {
     const std::vector<SceneTable> tables = root.tables("variant");
-    if (tables.empty()) root.reject("variant", "at least one is needed");
+    if (tables.empty()) root.throw_error("variant", "at least one is needed");
     std::vector<PowderVariant> variants;
     std::set<std::string> names;
     for (const SceneTable& table : tables) {
       variants.push_back({.scene = scene.variant(variants.size(), {"only", "name", "published"})});
       read_own(table, variants.back());
-      if (!names.insert(variants.back().name).second) table.mistake("name", "is used twice");
+      if (!names.insert(variants.back().name).second) table.add_error("name", "is used twice");
       table.check([&] { read_as_scene(variants.back()); });
     }
     for (const std::string& key : root.keys()) (void)root.has(key);  // those of the scene are theirs too

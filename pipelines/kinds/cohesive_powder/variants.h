@@ -18,16 +18,16 @@ struct PublishedValue {
 };
 
 struct PowderVariant {
-  Scene scene;            ///< as it would stand in a file of its own
-  std::string name = {};  ///< also of its directory
-  bool picked = true;     ///< by `only`; without it all are
+  Scene scene;            ///< scene of the variant, as it would stand in a file of its own
+  std::string name = {};  ///< name of the variant and of its directory
+  bool picked = true;     ///< whether `only` names it; without that key all are picked
   PowderSetup setup = {};
   std::vector<PublishedValue> published = {};
 };
 
 [[nodiscard]] bool has_powder_variants(const Scene& scene);
 
-/// Reads every variant to its last key. Throws BadInput.
+/// Reads every variant to its last key. Throws InputError.
 std::vector<PowderVariant> read_powder_variants(const Scene& scene);
 
 }  // namespace softgrain

@@ -39,7 +39,7 @@ void run_variant(const PowderVariant& variant, const RunContext& context) {
   try {
     run_powder_ensemble(variant.setup,
                         Run(context.part(variant.name), variant.scene, variant.setup.seed, powder_text(variant.setup)));
-  } catch (const NotUsable& e) {
+  } catch (const UnusableResult& e) {
     context.say(fmt::format("{}: {}", variant.name, e.what()));
   }
 }
@@ -59,10 +59,10 @@ VariantEntry entry_of(const PowderVariant& variant, const RunContext& context) {
   return powder_variant_entry(variant, ended ? &*ended : nullptr);
 }
 
-/// After each variant, so that what is there can be looked at while the others run.
+/// Writes the tables after each variant, so that they can be looked at while the others run.
 void write_tables(const std::vector<VariantEntry>& entries, const RunContext& context) {
   write_text_atomic(context.path("table.csv"), as_csv(powder_data_table(entries)));
-  write_text_atomic(context.path("table.md"), as_markdown(powder_people_table(entries)));
+  write_text_atomic(context.path("table.md"), as_markdown(powder_console_table(entries)));
 }
 
 /// Samples that do not rest, and results that another build of the program left.
@@ -84,13 +84,13 @@ ExitStatus run_powder_variants(const Scene& scene, const CommonOptions& options)
   const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string());
   PowderVariantsSummary summary;
   std::vector<VariantEntry>& entries = summary.variants;
-  std::string people;
+  std::string console;
   bool usable = true;
   for (const PowderVariant& variant : variants) {
     entries.push_back(entry_of(variant, context));
     const std::string line = powder_variant_line(entries.back());
     if (variant.picked) context.say(line.substr(0, line.size() - 1));
-    people += line;
+    console += line;
     usable = usable && (!variant.picked || entries.back().status == RunStatus::good);
     write_tables(entries, context);
   }
@@ -103,7 +103,7 @@ ExitStatus run_powder_variants(const Scene& scene, const CommonOptions& options)
                    {"table for people", context.path("table.md")},
                    {"report", context.path("report.html")}}};
   context.finish(json_of(summary), context.provenance(scene, seed),
-                 people + "tables: " + context.path("table.md") + ", " + context.path("table.csv") +
+                 console + "tables: " + context.path("table.md") + ", " + context.path("table.csv") +
                      "; report: " + context.path("report.html"));
   write_report(context.directory());
   return usable ? ExitStatus::good : ExitStatus::not_usable;

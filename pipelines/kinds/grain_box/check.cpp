@@ -19,7 +19,7 @@ namespace {
 struct PackTrial {
   double grains = 0.0;
   double generation = 0.0;
-  double increment = 0.0;  ///< of the loading
+  double increment = 0.0;  ///< core seconds of an increment of the loading
 };
 
 PackTrial try_pack(const GrainBoxSpec& spec, std::uint64_t seed) {
@@ -69,7 +69,7 @@ class PackTrials {
 
  private:
   std::uint64_t seed_;
-  std::map<std::pair<bool, LeastWorkMethod>, PackTrial> trials_;  ///< with friction or not, and how
+  std::map<std::pair<bool, LeastWorkMethod>, PackTrial> trials_;  ///< key: whether there is friction, solver method
 };
 
 void warn_of_pack(const GrainBoxSpec& spec, const GrainBoxForecast& f, Findings& out) {

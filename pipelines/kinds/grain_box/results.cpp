@@ -45,7 +45,7 @@ std::vector<HeadLine> lines_of(const RunData& run) {
   return lines;
 }
 
-/// Of the last state of the loading.
+/// Values of the last state of the loading.
 std::vector<RunValue> values_of(const RunData& run) {
   std::vector<RunValue> out;
   const auto* boxes = run.file("grain_box.h5", load_grain_boxes);

@@ -7,7 +7,7 @@ namespace softgrain {
 
 KindResults grain_box_results();
 
-/// grain_box.h5: the last state of every pack, one series each, whatever the choice. Throws FileTrouble.
+/// grain_box.h5: the last state of every pack, one series each, whatever the choice. Throws IoError.
 void visit_grain_boxes(const std::string& path, SnapshotChoice choice, const VisitSnapshot& visit);
 
 namespace report {

@@ -44,7 +44,7 @@ std::vector<GrainBoxResult> run_packs(const GrainBoxSetup& setup, const Run& run
   return results;
 }
 
-std::string people_text(const std::vector<GrainBoxResult>& results) {
+std::string console_summary(const std::vector<GrainBoxResult>& results) {
   std::string text;
   for (const GrainBoxResult& r : results) {
     const auto points = r.points_of(BoxPhase::loading);
@@ -75,7 +75,7 @@ ExitStatus run_grain_box_scene(const Scene& scene, const CommonOptions& options)
   summary["remarks"] = grain_box_remarks(results);
   if (setup.packs.front().material.sizes) summary["sizes"] = json_of(summaries_of(drawn_sizes(setup, run.seed)));
   summary["files"] = {{"record", run.path("grain_box.h5")}, {"report", run.path("report.html")}};
-  return run.finish(std::move(summary), people_text(results));
+  return run.finish(std::move(summary), console_summary(results));
 }
 
 }  // namespace

@@ -37,14 +37,14 @@ void read_material(const SceneTable& t, GrainBoxMaterial& m) {
   m.sizes = read_sizes(t, "sizes", {"radius_min", "radius_max"});
   m.radius_min = t.number("radius_min", Unit::length, Range::positive(), m.radius_min);
   m.radius_max = t.number("radius_max", Unit::length, Range::positive(), m.radius_max);
-  if (m.radius_max < m.radius_min) t.mistake("radius_max", "must not be below radius_min");
+  if (m.radius_max < m.radius_min) t.add_error("radius_max", "must not be below radius_min");
   if (m.sizes) {
     m.radius_min = m.sizes->smallest();
     m.radius_max = m.sizes->largest();
   }
   if (m.radius_max > 20.0 * m.radius_min)
-    t.mistake(m.sizes ? "sizes" : "radius_max", m.sizes ? "the largest size must be at most 20 times the smallest"
-                                                        : "must be at most 20 times radius_min");
+    t.add_error(m.sizes ? "sizes" : "radius_max", m.sizes ? "the largest size must be at most 20 times the smallest"
+                                                          : "must be at most 20 times radius_min");
   m.youngs_modulus = t.number("E", Unit::pressure, Range::positive(), m.youngs_modulus);
   m.youngs_modulus_scatter = t.number("E_sd", Unit::none, kScatter, m.youngs_modulus_scatter);
   m.poisson_ratio = t.number("nu", Unit::none, kPoissonRange, m.poisson_ratio);
@@ -63,7 +63,7 @@ void read_box(const SceneTable& t, GrainBoxSpec& spec) {
   spec.aspect = t.vector3("aspect", Unit::none, spec.aspect);
   for (int k = 0; k < 3; ++k)
     if (!(spec.aspect[k] > 0.0 && spec.aspect[k] <= 1e6))
-      t.mistake("aspect", "the box is not closed: all three sides must be above 0 (and at most 1e6)");
+      t.add_error("aspect", "the box is not closed: all three sides must be above 0 (and at most 1e6)");
   spec.solid_fraction = t.number("solid_fraction", Unit::none, Range::closed(0.01, 0.36), spec.solid_fraction);
 }
 
@@ -112,16 +112,16 @@ void read_solver(const SceneTable& t, LeastWorkOptions& o) {
 /// `increment`, or `increments` with the strain that every stage but the last covers.
 void read_increments(const SceneTable& t, GrainBoxLoading& l) {
   if (t.has("increment")) {
-    if (t.has("increments")) t.mistake("increments", "give increment or increments, not both");
+    if (t.has("increments")) t.add_error("increments", "give increment or increments, not both");
     l.increments = {t.number("increment", Unit::none, kIncrement)};
     l.stage_strains.clear();
   } else if (t.has("increments")) {
     l.increments = t.numbers("increments", Unit::none, kIncrement);
     l.stage_strains = t.numbers("stage_strains", Unit::none, Range{0.0, 0.5, true, false}, {});
-    if (l.increments.empty()) t.mistake("increments", "at least one value is needed");
+    if (l.increments.empty()) t.add_error("increments", "at least one value is needed");
     if (l.stage_strains.size() + 1 != l.increments.size())
-      t.mistake("increments", fmt::format("{} stages need {} stage_strains (the last stage goes on to the end)",
-                                          l.increments.size(), l.increments.size() - 1));
+      t.add_error("increments", fmt::format("{} stages need {} stage_strains (the last stage goes on to the end)",
+                                            l.increments.size(), l.increments.size() - 1));
   }
 }
 
@@ -140,7 +140,7 @@ void read_triaxial(const SceneTable& t, GrainBoxLoading& l) {
   const int axis = read_axis(t, 2);
   l.strain_rate = along(axis, 1.0, 0.0);
   if (t.has("lateral_stress") == t.has("lateral_strain_rate"))
-    t.mistake("test", "a triaxial test needs either lateral_stress or lateral_strain_rate");
+    t.add_error("test", "a triaxial test needs either lateral_stress or lateral_strain_rate");
   if (t.has("lateral_strain_rate")) {
     l.strain_rate = along(axis, 1.0, t.number("lateral_strain_rate", Unit::none, Range::closed(-10.0, 10.0)));
     return;
@@ -154,24 +154,24 @@ void read_polyaxial(const SceneTable& t, GrainBoxLoading& l) {
   l.strain_rate = t.vector3("strain_rates", Unit::none);
   double fastest = 0.0;
   for (int k = 0; k < 3; ++k) {
-    if (std::abs(l.strain_rate[k]) > 1e3) t.mistake("strain_rates", "each must be from -1000 to 1000");
+    if (std::abs(l.strain_rate[k]) > 1e3) t.add_error("strain_rates", "each must be from -1000 to 1000");
     fastest = std::max(fastest, std::abs(l.strain_rate[k]));
   }
   if (t.has("control")) {
     const std::vector<std::string> control = t.texts("control");
-    if (control.size() != 3) t.reject("control", "must have three words, \"strain\" or \"stress\"");
+    if (control.size() != 3) t.throw_error("control", "must have three words, \"strain\" or \"stress\"");
     l.stress = t.vector3("stresses", Unit::pressure);
     fastest = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
       if (control[k] != "strain" && control[k] != "stress")
-        t.mistake("control", "'" + control[k] + "': must be \"strain\" or \"stress\"");
+        t.add_error("control", "'" + control[k] + "': must be \"strain\" or \"stress\"");
       l.control[k] = control[k] == "stress" ? AxisControl::stress : AxisControl::strain;
       if (l.control[k] == AxisControl::stress && !(l.stress.v[k] > 0.0))
-        t.mistake("stresses", fmt::format("the stress of {} must be above 0: grains cannot be pulled", "xyz"[k]));
+        t.add_error("stresses", fmt::format("the stress of {} must be above 0: grains cannot be pulled", "xyz"[k]));
       if (l.control[k] == AxisControl::strain) fastest = std::max(fastest, std::abs(l.strain_rate.v[k]));
     }
   }
-  if (!(fastest > 0.0)) t.mistake("strain_rates", "at least one axis must be strained");
+  if (!(fastest > 0.0)) t.add_error("strain_rates", "at least one axis must be strained");
 }
 
 void read_loading(const SceneTable& t, GrainBoxLoading& l) {
@@ -186,7 +186,7 @@ void read_loading(const SceneTable& t, GrainBoxLoading& l) {
   l.stress_tolerance = t.number("stress_tolerance", Unit::none, Range{0.0, 0.1, true, false}, l.stress_tolerance);
   const bool by_stress = std::find(l.control.begin(), l.control.end(), AxisControl::stress) != l.control.end();
   if (!by_stress && t.has("stress_tolerance"))
-    t.mistake("stress_tolerance", "goes with a side that goes by stress (lateral_stress, or control): none does");
+    t.add_error("stress_tolerance", "goes with a side that goes by stress (lateral_stress, or control): none does");
   l.max_halvings = static_cast<int>(t.count("max_halvings", 0, 12, l.max_halvings));
 }
 
@@ -194,7 +194,7 @@ std::array<double, 2> read_range(const SceneTable& t, const std::string& key, co
   const std::vector<double> v =
       t.numbers(key, Unit::pressure, Range::positive(), std::vector<double>(fallback.begin(), fallback.end()));
   if (v.size() == 2 && v[0] < v[1]) return {v[0], v[1]};
-  t.mistake(key, "must be two ascending stresses");
+  t.add_error(key, "must be two ascending stresses");
   return fallback;
 }
 
@@ -204,16 +204,16 @@ void read_fit(const SceneTable& t, GrainBoxFit& fit) {
 }
 
 /// What no single key shows. `t` is the table to blame: [loading], or the variant.
-void require_sense(const SceneTable& t, const GrainBoxSpec& spec) {
+void validate_combination(const SceneTable& t, const GrainBoxSpec& spec) {
   const GrainBoxLoading& l = spec.loading;
   if (!std::isfinite(l.end_stress) && !std::isfinite(l.end_strain))
-    t.mistake("end_stress", "the loading has no end: give end_stress or end_strain");
+    t.add_error("end_stress", "the loading has no end: give end_stress or end_strain");
   if (spec.generation.pressure >= l.end_stress)
-    t.mistake("end_stress",
-              fmt::format("must be above the generation pressure of {:.4g} Pa", spec.generation.pressure));
+    t.add_error("end_stress",
+                fmt::format("must be above the generation pressure of {:.4g} Pa", spec.generation.pressure));
   const GrainBoxForecast f = forecast(spec);
   if (f.overlap_ratio > 0.5)
-    t.mistake(
+    t.add_error(
         "end_stress",
         fmt::format("grains would overlap by about {:.2f} of their radius at the largest stress: beyond what contacts "
                     "of small strain describe (0.5)",
@@ -222,7 +222,7 @@ void require_sense(const SceneTable& t, const GrainBoxSpec& spec) {
       std::max(*std::max_element(l.increments.begin(), l.increments.end()), spec.generation.increment);
   const double most = spec.material.radius_min / f.box_length;
   if (largest >= most)
-    t.mistake(
+    t.add_error(
         t.has("increments") ? "increments" : "increment",
         fmt::format("a wall would move more than the smallest grain's radius at once; must be below {:.3g}", most));
 }
@@ -232,15 +232,15 @@ void require_memory(const SceneTable& t, const GrainBoxSpec& spec) {
   const double available = available_memory();
   const double needed = forecast(spec).bytes;
   if (!(available > 0.0) || needed <= available) return;
-  t.mistake(
+  t.add_error(
       "grains",
       fmt::format("a pack of {} grains needs about {:.3g} GB of memory, {:.3g} GB are free; allowed: up to {:.0f}",
                   spec.grains, needed / 1e9, available / 1e9,
                   std::floor(static_cast<double>(spec.grains) * available / needed)));
 }
 
-/// `sound`: so is the scene around it.
-GrainBoxSpec read_variant(const SceneTable& t, GrainBoxSpec spec, bool walls_follow, bool sound) {
+/// `valid`: the scene around it has no errors.
+GrainBoxSpec read_variant(const SceneTable& t, GrainBoxSpec spec, bool walls_follow, bool valid) {
   spec.name = read_variant_name(t);
   spec.grains = t.count("grains", 8, 10000000, spec.grains);
   spec.friction = read_friction(t, "mu", spec.friction);
@@ -254,12 +254,13 @@ GrainBoxSpec read_variant(const SceneTable& t, GrainBoxSpec spec, bool walls_fol
     spec.solver.residual_tolerance =
         t.number("tolerance", Unit::none, Range{0.0, 0.1, true, false}, spec.solver.residual_tolerance);
     if (spec.solver.method == LeastWorkMethod::published)
-      t.mistake("tolerance", "solver.method = \"published\" stops by work_tolerance and force_tolerance; leave it out");
+      t.add_error("tolerance",
+                  "solver.method = \"published\" stops by work_tolerance and force_tolerance; leave it out");
   }
   read_increments(t, spec.loading);
   read_end(t, spec.loading);
-  if (!sound || !t.sound()) return spec;
-  require_sense(t, spec);
+  if (!valid || t.has_errors()) return spec;
+  validate_combination(t, spec);
   require_memory(t, spec);
   return spec;
 }
@@ -321,29 +322,29 @@ GrainBoxSetup read_grain_box(const Scene& scene) {
     read_generation(generation, spec.generation);
     read_solver(root.table_or_empty("solver"), spec.solver);
     const SceneTable loading = root.table("loading");
-    loading.part([&] { read_loading(loading, spec.loading); });
+    loading.section([&] { read_loading(loading, spec.loading); });
     read_fit(root.table_or_empty("fit"), spec.fit);
-    const bool sound = root.sound();
+    const bool valid = !root.has_errors();
     std::set<std::string> names;
     for (const SceneTable& variant : root.tables("variant")) {
-      setup.packs.push_back(read_variant(variant, spec, !walls.has("mu"), sound));
-      if (!names.insert(setup.packs.back().name).second) variant.mistake("name", "is used twice");
+      setup.packs.push_back(read_variant(variant, spec, !walls.has("mu"), valid));
+      if (!names.insert(setup.packs.back().name).second) variant.add_error("name", "is used twice");
     }
     const std::int64_t arrangements = root.count("arrangements", 1, 1000, 1);
     if (setup.packs.empty()) {
-      if (sound) require_sense(loading, spec);
-      if (root.sound()) require_memory(root.table_or_empty("box"), spec);
+      if (valid) validate_combination(loading, spec);
+      if (!root.has_errors()) require_memory(root.table_or_empty("box"), spec);
       setup.packs.push_back(spec);
     }
     if (generation.has("axis") && std::all_of(setup.packs.begin(), setup.packs.end(),
                                               [](const GrainBoxSpec& pack) { return pack.generation.isotropic; }))
-      generation.mistake("axis", "goes with friction_path = \"uniaxial\": all axes are strained alike");
+      generation.add_error("axis", "goes with friction_path = \"uniaxial\": all axes are strained alike");
     press_on(setup.packs);
     setup.packs = repeated(setup.packs, arrangements);
     std::set<std::string> all;
     for (const GrainBoxSpec& pack : setup.packs)
       if (!all.insert(pack.name).second)
-        root.mistake("arrangements", "two packs would be called '" + pack.name + "'; rename a variant");
+        root.add_error("arrangements", "two packs would be called '" + pack.name + "'; rename a variant");
     return setup;
   });
 }

@@ -22,7 +22,7 @@ struct GrainBoxSetup {
 /// Grains whose sizes a distribution says, pack by pack.
 std::vector<DrawnSizes> drawn_sizes(const GrainBoxSetup& setup, std::uint64_t seed);
 
-/// Reads the whole scene. Throws BadInput.
+/// Reads the whole scene. Throws InputError.
 GrainBoxSetup read_grain_box(const Scene& scene);
 
 /// Runs a scene of kind "grain-box"; writes grain_box.h5, summary.json and report.html. Packs run side by side when

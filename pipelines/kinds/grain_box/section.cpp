@@ -284,21 +284,23 @@ std::string grain_box_section(const RunData& run) {
   if (found == nullptr || found->empty()) return "";
   const Packs& packs = *found;
   const std::string view = pack_view(packs.front());
-  return section("grain-boxes", "Packs", generation_table(packs) + end_table(packs) + stress_figures(packs)) +
+  return section("grain-boxes", "Packs",
+                 "Stress, elastic moduli and sliding contacts of every pack during the loading.",
+                 generation_table(packs) + end_table(packs) + stress_figures(packs)) +
          section(
-             "moduli", "Moduli",
+             "moduli", "Moduli", "Bulk and shear modulus against pressure, with the exponents of their growth.",
              modulus_figures(packs) + exponents_table(packs) + moduli_tables(packs) +
                  paragraph(
                      "Mean over the intervals within 10 % of the stress, with the standard error of their scatter.") +
                  arrangements_tables(packs)) +
-         section("pack-view", "Inside",
+         section("pack-view", "Inside", "Grains of a pack and the forces between them.",
                  view.empty()
                      ? ""
                      : figure_row({figure(
                            view,
                            "Grains cut by the middle plane, and the forces between grains within a mean radius of "
                            "it: as wide as the force; red where the contact slides.")})) +
-         section("grain-box-cost", "Cost", effort_table(packs));
+         section("grain-box-cost", "Cost", "Increments, iterations and time of every pack.", effort_table(packs));
 }
 
 }  // namespace softgrain::report

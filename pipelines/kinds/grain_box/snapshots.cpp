@@ -11,7 +11,7 @@ namespace softgrain {
 
 namespace {
 
-/// Of two spheres the plane of the circle in which they meet.
+/// Point of a contact. For two spheres it lies in the plane of the circle in which they meet.
 Vec3 contact_point(const GrainPack& pack, const PackContact& c) {
   const auto i = static_cast<std::size_t>(c.i);
   const double ri = pack.radius[i];

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "pipelines/kinds/hierarchy/scene.h"
-#include "pipelines/kinds/law_table/crowd_check.h"
+#include "pipelines/kinds/law_table/multi_contact_check.h"
 
 namespace softgrain {
 
@@ -21,16 +21,16 @@ double expected_levels(const HierarchySetup& setup) {
 void spend_on_levels(const HierarchySetup& setup, const MeasureTrial& trial, Findings& out) {
   constexpr double kInside = 9.0;         // time of a level over that of the finest, which has nothing inside
   constexpr double kFillingPasses = 8e5;  // filling the voids of one packing takes as long as so many passes over it
-  spend_on_packings(setup.crowd, trial, expected_levels(setup), out);
-  spend_on_crowd(setup.crowd, trial, 1.0, "level 0", out);
+  spend_on_packings(setup.multi_contact, trial, expected_levels(setup), out);
+  spend_on_multi_contact(setup.multi_contact, trial, 1.0, "level 0", out);
   const double further = expected_levels(setup) - 1.0;
   if (further > 0.0) {
-    spend_on_crowd(setup.crowd, trial, further * kInside, "further levels", out);
-    out.spend("filling", kFillingPasses * trial.pass_seconds * static_cast<double>(setup.crowd.packings_max));
+    spend_on_multi_contact(setup.multi_contact, trial, further * kInside, "further levels", out);
+    out.spend("filling", kFillingPasses * trial.pass_seconds * static_cast<double>(setup.multi_contact.packings_max));
   }
 }
 
-/// Of two decades with all their grains: every inner soft particle holds as many as its parent.
+/// Adds the time of the resolved check of two decades: every inner soft particle holds as many grains as its parent.
 void spend_on_resolved(const HierarchySetup& setup, const MeasureTrial& trial, Findings& out) {
   if (setup.check_packings == 0 || setup.check_overlaps.empty()) return;
   constexpr double kHoles = 240.0;   // soft particles that the voids take
@@ -40,26 +40,26 @@ void spend_on_resolved(const HierarchySetup& setup, const MeasureTrial& trial, F
   const double holes = setup.check_inner > 0 ? static_cast<double>(setup.check_inner) : kHoles;
   const double inner =
       setup.fill == LevelFill::voids ? holes : kFilled * soft / (1.0 + soft) / std::pow(setup.inner_radius, 3);
-  CrowdConfiguration plane;
+  MultiContactConfiguration plane;
   plane.partners = {{PartnerKind::plane, 0.0, {{1.0, 0.0, 0.0}}}};
-  plane.stages = {{CrowdMove::load, {setup.check_overlaps.back()}}};
+  plane.stages = {{MultiContactMove::load, {setup.check_overlaps.back()}}};
   // The grains of the smallest inner particles set the step.
   out.spend("resolved check", static_cast<double>(setup.check_packings) * (1.0 + inner) / setup.inner_radius *
-                                  seconds_per_packing(plane, setup.crowd, trial.pass_seconds));
+                                  seconds_per_packing(plane, setup.multi_contact, trial.pass_seconds));
 }
 
 }  // namespace
 
 void check_hierarchy(const Scene& scene, Findings& out) {
   const HierarchySetup setup = read_hierarchy_setup(scene);
-  const auto configurations = static_cast<std::int64_t>(setup.crowd.configurations.size());
+  const auto configurations = static_cast<std::int64_t>(setup.multi_contact.configurations.size());
   out.facts["levels"] = setup.levels;
   out.facts["levels_max"] = setup.iterations;
-  out.facts["runs_per_level_min"] = configurations * setup.crowd.packings_min;
+  out.facts["runs_per_level_min"] = configurations * setup.multi_contact.packings_min;
   out.lines += fmt::format("  {} levels, up to {} on the way to the fixed point, {} to {} runs each\n", setup.levels,
-                           setup.iterations, configurations * setup.crowd.packings_min,
-                           configurations * setup.crowd.packings_max);
-  const MeasureTrial trial = check_crowd(setup.crowd, out);
+                           setup.iterations, configurations * setup.multi_contact.packings_min,
+                           configurations * setup.multi_contact.packings_max);
+  const MeasureTrial trial = check_multi_contact(setup.multi_contact, out);
   spend_on_levels(setup, trial, out);
   spend_on_resolved(setup, trial, out);
 }

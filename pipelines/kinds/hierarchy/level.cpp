@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "common/contact/crowd_from_table.h"
+#include "common/contact/multi_contact_from_table.h"
 #include "common/core/solid_sphere.h"
 #include "common/core/stopwatch.h"
 #include "common/packing/void_filling.h"
@@ -50,26 +50,27 @@ void describe_content(LevelContents& contents, double fraction_inside, Hierarchy
 }
 
 /// Sum over the neighbours of the centre at the last loading point of a run, -1 when it is not there.
-double summed_end_force(const CrowdConfiguration& c, const CrowdRun& run) {
-  const CrowdPoint* last = nullptr;
-  for (const CrowdPoint& p : run.points)
+double summed_end_force(const MultiContactConfiguration& c, const MultiContactRun& run) {
+  const MultiContactPoint* last = nullptr;
+  for (const MultiContactPoint& p : run.points)
     if (p.stage == 0) last = &p;
   if (last == nullptr || !last->converged) return -1.0;
   const auto end = last->normal.begin() + static_cast<std::ptrdiff_t>(c.touching());
   return std::accumulate(last->normal.begin(), end, 0.0);
 }
 
-const std::string& name_of(const CrowdMeasurements& data, const CrowdRun& run) {
+const std::string& name_of(const MultiContactMeasurements& data, const MultiContactRun& run) {
   return data.configurations[static_cast<std::size_t>(run.configuration)].name;
 }
 
 /// Ratio of mean end forces on the packings that both levels have, with its error by linear propagation of the paired
 /// residuals.
-LevelChange change_of(const CrowdMeasurements& data, const CrowdMeasurements& below, std::int64_t configuration) {
-  const CrowdConfiguration& c = data.configurations[static_cast<std::size_t>(configuration)];
+LevelChange change_of(const MultiContactMeasurements& data, const MultiContactMeasurements& below,
+                      std::int64_t configuration) {
+  const MultiContactConfiguration& c = data.configurations[static_cast<std::size_t>(configuration)];
   std::vector<std::pair<double, double>> pairs;
-  for (const CrowdRun& a : data.runs)
-    for (const CrowdRun& b : below.runs)
+  for (const MultiContactRun& a : data.runs)
+    for (const MultiContactRun& b : below.runs)
       if (a.configuration == configuration && name_of(below, b) == c.name && a.packing == b.packing &&
           a.orientation == b.orientation) {
         const double here = summed_end_force(c, a);
@@ -92,32 +93,33 @@ LevelChange change_of(const CrowdMeasurements& data, const CrowdMeasurements& be
   return change;
 }
 
-Cost cost_of(const CrowdMeasurements& data) {
+Cost cost_of(const MultiContactMeasurements& data) {
   Cost cost;
-  for (const CrowdRun& run : data.runs) cost += run.cost;
+  for (const MultiContactRun& run : data.runs) cost += run.cost;
   return cost;
 }
 
 /// What a level's soft particles hold: grains only on the lowest one, soft particles with the law of `below` above.
-CrowdLevel crowd_level(const HierarchySetup& setup, LevelContents& contents, std::int64_t number,
-                       const HierarchyLevel* below) {
-  CrowdLevel crowd;
-  crowd.file = fmt::format("crowd_level_{}.h5", number);
-  if (below == nullptr) return crowd;
-  crowd.fill = [&contents](const ShellPacking& packing, std::int64_t k) { return contents.of(packing, k); };
-  crowd.laws = inner_laws(setup, below->entry);
-  crowd.tag = tag_of(setup, *below);
-  return crowd;
+MultiContactLevel multi_contact_level(const HierarchySetup& setup, LevelContents& contents, std::int64_t number,
+                                      const HierarchyLevel* below) {
+  MultiContactLevel multi_contact;
+  multi_contact.file = fmt::format("multi_contact_level_{}.h5", number);
+  if (below == nullptr) return multi_contact;
+  multi_contact.fill = [&contents](const ShellPacking& packing, std::int64_t k) { return contents.of(packing, k); };
+  multi_contact.laws = inner_laws(setup, below->entry);
+  multi_contact.tag = tag_of(setup, *below);
+  return multi_contact;
 }
 
 /// Planes alone, one and as many as there are: what shows how the law follows that of the level below.
-CrowdSetup planes_of(const CrowdSetup& setup) {
-  CrowdSetup out = setup;
-  const auto planes = [](const CrowdConfiguration& c) {
-    return !c.held_out && std::all_of(c.partners.begin(), c.partners.end(),
-                                      [](const CrowdPartner& p) { return p.kind == PartnerKind::plane && !p.smooth; });
+MultiContactSetup planes_of(const MultiContactSetup& setup) {
+  MultiContactSetup out = setup;
+  const auto planes = [](const MultiContactConfiguration& c) {
+    return !c.held_out && std::all_of(c.partners.begin(), c.partners.end(), [](const MultiContactPartner& p) {
+      return p.kind == PartnerKind::plane && !p.smooth;
+    });
   };
-  std::erase_if(out.configurations, [&](const CrowdConfiguration& c) { return !planes(c); });
+  std::erase_if(out.configurations, [&](const MultiContactConfiguration& c) { return !planes(c); });
   std::stable_sort(out.configurations.begin(), out.configurations.end(),
                    [](const auto& a, const auto& b) { return a.partners.size() < b.partners.size(); });
   if (out.configurations.size() > 2)
@@ -130,13 +132,14 @@ CrowdSetup planes_of(const CrowdSetup& setup) {
 
 /// Relative change of the forces of planes over that of the law below, from the same packings with that law stronger.
 Sensitivity sensitivity_of(const HierarchySetup& setup, LevelContents& contents, const HierarchyLevel& below,
-                           HierarchyLevel& level, const CrowdMeasurements& data, const Run& run) {
+                           HierarchyLevel& level, const MultiContactMeasurements& data, const Run& run) {
   HierarchyLevel stronger = below;
   stronger.entry = scaled_law(below.entry, kStronger);
-  CrowdLevel crowd = crowd_level(setup, contents, level.number, &stronger);
-  crowd.file = fmt::format("crowd_level_{}_sensitivity.h5", level.number);
+  MultiContactLevel multi_contact = multi_contact_level(setup, contents, level.number, &stronger);
+  multi_contact.file = fmt::format("multi_contact_level_{}_sensitivity.h5", level.number);
   std::vector<ShellPacking> pool = contents.packings;
-  const CrowdMeasurements moved = run_crowd_stage(planes_of(setup.crowd), run, level.left_out, pool, &crowd);
+  const MultiContactMeasurements moved =
+      run_multi_contact_stage(planes_of(setup.multi_contact), run, level.left_out, pool, &multi_contact);
   Sensitivity out;
   double weights = 0.0;
   for (std::size_t c = 0; c < moved.configurations.size(); ++c) {
@@ -152,8 +155,8 @@ Sensitivity sensitivity_of(const HierarchySetup& setup, LevelContents& contents,
 }
 
 /// How far the law has moved from one level to the next, and how much of that packings alone would make.
-void compare_with_below(HierarchyLevel& level, const HierarchyLevel& below, const CrowdMeasurements& data,
-                        const CrowdMeasurements& data_below, Crowd form) {
+void compare_with_below(HierarchyLevel& level, const HierarchyLevel& below, const MultiContactMeasurements& data,
+                        const MultiContactMeasurements& data_below, LawForm form) {
   double noise = 0.0;
   for (std::size_t c = 0; c < data.configurations.size(); ++c) {
     level.changes.push_back(change_of(data, data_below, static_cast<std::int64_t>(c)));
@@ -165,7 +168,7 @@ void compare_with_below(HierarchyLevel& level, const HierarchyLevel& below, cons
 
 /// Draws of the law below go into the draws of this one.
 void add_errors_below(const HierarchySetup& setup, LevelContents& contents, const HierarchyLevel& below,
-                      const CrowdMeasurements& data, HierarchyLevel& level, const Run& run) {
+                      const MultiContactMeasurements& data, HierarchyLevel& level, const Run& run) {
   if (setup.replicates == 0) return;
   level.sensitivity = sensitivity_of(setup, contents, below, level, data, run);
   spread(level.entry, strength_draws(below.entry, setup.form, level.sensitivity->value));
@@ -206,7 +209,7 @@ SoftContent LevelContents::of(const ShellPacking& packing, std::int64_t number) 
   }
   SoftContent content{packing, {}, {}};
   if (filling_ && setup_.fill == LevelFill::masses)
-    content = fill_shell(setup_.crowd.spec, *filling_, packing, seed_);
+    content = fill_shell(setup_.multi_contact.spec, *filling_, packing, seed_);
   else if (filling_)
     content = fill_holes(setup_, *filling_, packing);
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -214,29 +217,29 @@ SoftContent LevelContents::of(const ShellPacking& packing, std::int64_t number) 
 }
 
 InnerLaws inner_laws(const HierarchySetup& setup, const LawTableEntry& below) {
-  CrowdChoices choices;
+  MultiContactChoices choices;
   choices.form = setup.form;
-  choices.modulus = setup.crowd.spec.youngs_modulus;
+  choices.modulus = setup.multi_contact.spec.youngs_modulus;
   choices.unloading = setup.unloading;
   choices.rolling = setup.rolling;
-  const CrowdLaws laws = make_crowd_laws(below, choices);
+  const MultiContactLaws laws = make_multi_contact_laws(below, choices);
   return {laws.soft_plane, laws.soft_solid, laws.solid_soft, laws.soft_soft, below.solid_fraction};
 }
 
-double law_distance(const LawTableEntry& law, const LawTableEntry& below, Crowd form) {
-  const CrowdModel here = crowd_model(*law.find(form));
-  const CrowdModel there = crowd_model(*below.find(form));
-  const std::vector<CrowdPartner> cube = six_planes();
+double law_distance(const LawTableEntry& law, const LawTableEntry& below, LawForm form) {
+  const MultiContactModel here = multi_contact_model(*law.find(form));
+  const MultiContactModel there = multi_contact_model(*below.find(form));
+  const std::vector<MultiContactPartner> cube = six_planes();
   double total = 0.0;
   for (const std::size_t planes : {std::size_t{1}, cube.size()}) {
-    const std::vector<CrowdPartner> partners(cube.begin(), cube.begin() + static_cast<std::ptrdiff_t>(planes));
+    const std::vector<MultiContactPartner> partners(cube.begin(), cube.begin() + static_cast<std::ptrdiff_t>(planes));
     const double end = planes == 1 ? below.overlap_max : 2.0 / 3.0 * below.overlap_max;
     double miss = 0.0;
     double all = 0.0;
     for (int k = 1; k <= 30; ++k) {
       const std::vector<double> overlap(planes, end * k / 30.0);
-      const double b = crowd_forces(there, partners, overlap)[0];
-      const double d = crowd_forces(here, partners, overlap)[0] - b;
+      const double b = multi_contact_forces(there, partners, overlap)[0];
+      const double d = multi_contact_forces(here, partners, overlap)[0] - b;
       miss += d * d;
       all += b * b;
     }
@@ -246,18 +249,18 @@ double law_distance(const LawTableEntry& law, const LawTableEntry& below, Crowd 
 }
 
 HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, std::int64_t number,
-                         const HierarchyLevel* below, const CrowdMeasurements* data_below, CrowdMeasurements& data,
-                         const Run& run) {
+                         const HierarchyLevel* below, const MultiContactMeasurements* data_below,
+                         MultiContactMeasurements& data, const Run& run) {
   const Stopwatch watch;
   HierarchyLevel level;
   level.number = number;
   contents.begin_level(below);
-  const CrowdLevel crowd = crowd_level(setup, contents, number, below);
-  data = run_crowd_stage(setup.crowd, run, level.left_out, contents.packings, &crowd);
-  CrowdFitOptions fit;
+  const MultiContactLevel multi_contact = multi_contact_level(setup, contents, number, below);
+  data = run_multi_contact_stage(setup.multi_contact, run, level.left_out, contents.packings, &multi_contact);
+  MultiContactFitOptions fit;
   fit.seed = run.seed;
   fit.replicates = static_cast<int>(setup.replicates);
-  level.entry = fit_crowd_laws(data, fit);
+  level.entry = fit_multi_contact_laws(data, fit);
   describe_content(contents, below != nullptr ? below->entry.solid_fraction : 0.0, level);
   if (below != nullptr) level.grains += level.inner_mean * below->grains;
   level.entry.grains = level.grains;

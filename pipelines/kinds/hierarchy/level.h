@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/crowd_fit.h"
+#include "calibrate/multi_contact_fit.h"
 #include "microsim/filled_shell.h"
 #include "pipelines/kinds/hierarchy/scene.h"
-#include "pipelines/kinds/law_table/crowd_stage.h"
+#include "pipelines/kinds/law_table/multi_contact_stage.h"
 #include "pipelines/run/run.h"
 
 namespace softgrain {
@@ -33,28 +33,28 @@ struct HierarchyLevel {
   LawTableEntry entry;
   double inner_mean = 0.0;    ///< soft particles inside, mean over packings
   double inner_volume = 0.0;  ///< their volume over that of the shell
-  double grain_volume = 0.0;  ///< of its own grains, over that of the shell
+  double grain_volume = 0.0;  ///< volume of its own grains over that of the shell
   double inner_low = 0.0;     ///< radii over Rs
   double inner_high = 0.0;
   std::vector<LevelChange> changes;  ///< against the level below; empty for the finest
-  double distance = 0.0;             ///< of the two laws, see law_distance() (form of the hierarchy)
+  double distance = 0.0;             ///< distance of the two laws in the form of the hierarchy, see law_distance()
   double distance_noise = 0.0;       ///< what packings alone would make of it, from the standard errors of the changes
-  std::optional<Sensitivity> sensitivity;  ///< to the law below, where there is one and error bars are asked for
+  std::optional<Sensitivity> sensitivity;  ///< sensitivity to the law below; empty without one or without error bars
   double own_error = 0.0;                  ///< relative standard error of its forces, from its packings alone
-  double error = 0.0;                      ///< with what the law below adds
+  double error = 0.0;                      ///< relative standard error of its forces, that of the law below included
   std::vector<std::string> left_out;       ///< a sentence for each measurement that broke off
   Cost cost;
   double seconds = 0.0;
-  double grains = 0.0;  ///< that a resolved soft particle of this level would hold
+  double grains = 0.0;  ///< number of grains that a resolved soft particle of this level would hold
 };
 
 /// Packings of grains alone, made once, and what a level makes of each: its content.
 class LevelContents {
  public:
   LevelContents(const HierarchySetup& setup, std::uint64_t seed) : setup_(setup), seed_(seed) {}
-  /// From now on contents hold soft particles of the level below; none: grains alone.
+  /// Starts a level: from now on contents hold soft particles of the level below; null: grains alone.
   void begin_level(const HierarchyLevel* below);
-  /// Of the packing with this number in the pool; safe from several threads.
+  /// Content made of the packing with this number in the pool; safe from several threads.
   SoftContent of(const ShellPacking& packing, std::int64_t number);
 
   std::vector<ShellPacking> packings;  ///< the pool of all levels, once one has made it
@@ -79,10 +79,10 @@ InnerLaws inner_laws(const HierarchySetup& setup, const LawTableEntry& below);
 
 /// Measures and fits level `number` on top of `below` (none for the finest).
 HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, std::int64_t number,
-                         const HierarchyLevel* below, const CrowdMeasurements* data_below, CrowdMeasurements& data,
-                         const Run& run);
+                         const HierarchyLevel* below, const MultiContactMeasurements* data_below,
+                         MultiContactMeasurements& data, const Run& run);
 
 /// Root mean square of the difference of two laws over that of the one below, along one plane and along six planes.
-double law_distance(const LawTableEntry& law, const LawTableEntry& below, Crowd form);
+double law_distance(const LawTableEntry& law, const LawTableEntry& below, LawForm form);
 
 }  // namespace softgrain

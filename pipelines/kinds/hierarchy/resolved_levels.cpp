@@ -7,7 +7,7 @@
 #include "common/core/parallel_tasks.h"
 #include "common/io/progress.h"
 #include "microsim/shell_packing.h"
-#include "pipelines/kinds/law_table/kept_crowd.h"
+#include "pipelines/kinds/law_table/kept_multi_contact.h"
 
 namespace softgrain {
 
@@ -22,11 +22,11 @@ constexpr Engine kEngines[] = {Engine::resolved, Engine::law};
 
 const char* name_of(Engine engine) { return engine == Engine::law ? "law" : "resolved"; }
 
-CrowdConfiguration one_plane(const std::vector<double>& overlaps) {
-  CrowdConfiguration c;
+MultiContactConfiguration one_plane(const std::vector<double>& overlaps) {
+  MultiContactConfiguration c;
   c.name = "check";
   c.partners = {{PartnerKind::plane, 0.0, {{1.0, 0.0, 0.0}}}};
-  c.stages = {{CrowdMove::load, {overlaps.back()}, 0.0}};
+  c.stages = {{MultiContactMove::load, {overlaps.back()}, 0.0}};
   return c;
 }
 
@@ -36,11 +36,12 @@ struct Task {
 };
 
 /// Means and the error of the paired ratio.
-CheckPoint point_of(const std::vector<CrowdRun>& resolved, const std::vector<CrowdRun>& law, std::size_t k) {
+CheckPoint point_of(const std::vector<MultiContactRun>& resolved, const std::vector<MultiContactRun>& law,
+                    std::size_t k) {
   const auto n = static_cast<double>(resolved.size());
   CheckPoint p;
   p.overlap = resolved.front().points[k].overlap[0];
-  const auto force = [k](const CrowdRun& run) { return run.points[k].normal[0]; };
+  const auto force = [k](const MultiContactRun& run) { return run.points[k].normal[0]; };
   for (std::size_t j = 0; j < resolved.size(); ++j) {
     p.resolved += force(resolved[j]) / n;
     p.law += force(law[j]) / n;
@@ -64,8 +65,8 @@ CheckPoint point_of(const std::vector<CrowdRun>& resolved, const std::vector<Cro
 /// One loading and what was inside.
 struct CheckRun {
   Task task;
-  CrowdRun run;
-  double grains = 0.0;  ///< of the resolved system
+  MultiContactRun run;
+  double grains = 0.0;  ///< number of grains in the system
   double inside = 0.0;  ///< inner soft particles
 };
 
@@ -78,23 +79,24 @@ std::vector<CheckRun> check_tasks(std::size_t packings) {
 
 /// Loads the stored run, or measures and stores it. `content` is of level 1.
 void measure(CheckRun& check, const HierarchySetup& setup, const InnerLaws& laws, const SoftContent& content,
-             const CrowdPlan& plan, const Run& run) {
-  CrowdExperiment e = make_crowd(setup.crowd.spec, one_plane(setup.check_overlaps), content, {}, &laws);
+             const MultiContactPlan& plan, const Run& run) {
+  MultiContactExperiment e =
+      make_multi_contact(setup.multi_contact.spec, one_plane(setup.check_overlaps), content, {}, &laws);
   check.grains = static_cast<double>(e.system.particles.grains);
   check.inside = static_cast<double>(content.inner.size());
   const std::string name = fmt::format("check-{}-{}", name_of(check.task.engine), check.task.packing);
   bool known = false;
   run.store.load(name, [&](const h5::Group& g) {
-    check.run = read_crowd_runs(g).at(0);
+    check.run = read_multi_contact_runs(g).at(0);
     known = true;
   });
   if (known) return;
-  check.run = run_kept_crowd(run.store, name, e, plan, setup.crowd.options, {});
-  run.store.save(name, [&](const h5::Group& g) { write_crowd_runs(g, {check.run}); });
+  check.run = run_kept_multi_contact(run.store, name, e, plan, setup.multi_contact.options, {});
+  run.store.save(name, [&](const h5::Group& g) { write_multi_contact_runs(g, {check.run}); });
 }
 
-std::vector<CrowdRun> runs_of(const std::vector<CheckRun>& checks, Engine engine) {
-  std::vector<CrowdRun> runs;
+std::vector<MultiContactRun> runs_of(const std::vector<CheckRun>& checks, Engine engine) {
+  std::vector<MultiContactRun> runs;
   for (const CheckRun& c : checks)
     if (c.task.engine == engine) runs.push_back(c.run);
   return runs;
@@ -113,7 +115,7 @@ CheckResult result_of(const std::vector<CheckRun>& checks, const HierarchySetup&
       result.inner += c.inside / static_cast<double>(setup.check_packings);
     }
     if (c.task.engine == Engine::law) result.law_cost += c.run.cost;
-    for (const CrowdPoint& p : c.run.points) result.converged = result.converged && p.converged;
+    for (const MultiContactPoint& p : c.run.points) result.converged = result.converged && p.converged;
   }
   return result;
 }
@@ -123,17 +125,17 @@ CheckResult result_of(const std::vector<CheckRun>& checks, const HierarchySetup&
 CheckResult check_two_decades(const HierarchySetup& setup, const HierarchyLevel& finest, const Run& run) {
   std::vector<ShellPacking> inner;
   for (std::size_t k = 0; k < kDifferentInner; ++k)
-    inner.push_back(generate_shell_packing(setup.crowd.spec, run.seed, kInnerPackings + k));
+    inner.push_back(generate_shell_packing(setup.multi_contact.spec, run.seed, kInnerPackings + k));
   const InnerLaws laws = inner_laws(setup, finest.entry);
   LevelContents contents(setup, run.seed);
   contents.begin_level(&finest);
-  CrowdPlan plan(1);
+  MultiContactPlan plan(1);
   for (const double x : setup.check_overlaps) plan[0].push_back(x / setup.check_overlaps.back());
   std::vector<CheckRun> checks = check_tasks(static_cast<std::size_t>(setup.check_packings));
   Progress progress("two decades, resolved", static_cast<double>(checks.size()), run.context.quiet());
   parallel_tasks(static_cast<std::int64_t>(checks.size()), [&](std::int64_t t) {
     CheckRun& check = checks[static_cast<std::size_t>(t)];
-    SoftContent content = contents.of(generate_shell_packing(setup.crowd.spec, run.seed, check.task.packing),
+    SoftContent content = contents.of(generate_shell_packing(setup.multi_contact.spec, run.seed, check.task.packing),
                                       static_cast<std::int64_t>(check.task.packing));
     if (setup.check_inner > 0 && content.inner.size() > static_cast<std::size_t>(setup.check_inner))
       content.inner.resize(static_cast<std::size_t>(setup.check_inner));

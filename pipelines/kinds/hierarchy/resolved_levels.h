@@ -9,7 +9,7 @@
 
 namespace softgrain {
 
-/// At one overlap with a plane, means over packings. Forces over E Rs^2.
+/// Forces at one overlap with a plane, means over packings, over E Rs^2.
 struct CheckPoint {
   double overlap = 0.0;
   double law = 0.0;
@@ -17,13 +17,13 @@ struct CheckPoint {
   double resolved = 0.0;
   double resolved_error = 0.0;
   double ratio = 0.0;
-  double ratio_error = 0.0;  ///< of the paired ratio of means
+  double ratio_error = 0.0;  ///< standard error of the paired ratio of means
 };
 
 struct CheckResult {
   std::vector<CheckPoint> points;
   double inner = 0.0;   ///< soft particles inside, mean
-  double grains = 0.0;  ///< of a resolved run, mean
+  double grains = 0.0;  ///< grains of a resolved run, mean
   std::int64_t packings = 0;
   Cost law_cost;
   Cost resolved_cost;

@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <optional>
 
-#include "common/contact/crowd_from_table.h"
-#include "common/contact/crowd_table_file.h"
+#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/multi_contact_table_file.h"
 #include "pipelines/kinds/hierarchy/level_errors.h"
 #include "pipelines/kinds/hierarchy/summary.h"
-#include "pipelines/kinds/law_table/crowd_summary.h"
+#include "pipelines/kinds/law_table/multi_contact_summary.h"
 #include "pipelines/report/run_data.h"
 #include "pipelines/run/run.h"
 #include "pipelines/run/size_summary.h"
@@ -34,21 +34,21 @@ bool at_rest(const HierarchySetup& setup, const HierarchyLevel& level) {
 }
 
 void run_levels(const HierarchySetup& setup, const Run& run, HierarchyRun& result) {
-  CrowdMeasurements below;
+  MultiContactMeasurements below;
   LevelContents contents(setup, run.seed);
   for (std::int64_t k = 0; k < setup.iterations; ++k) {
     if (k >= setup.levels && result.fixed) break;
     run.context.say(k == 0 ? "level 0: grains only" : fmt::format("level {}: on top of the law of level {}", k, k - 1));
-    CrowdMeasurements data;
+    MultiContactMeasurements data;
     const HierarchyLevel* last = result.levels.empty() ? nullptr : &result.levels.back();
     HierarchyLevel level = run_level(setup, contents, k, last, &below, data, run);
-    for (const std::string& r : crowd_remarks(data, setup.crowd.target))
+    for (const std::string& r : multi_contact_remarks(data, setup.multi_contact.target))
       result.remarks.push_back(fmt::format("level {}: {}", k, r));
     for (const std::string& text : level.left_out) result.remarks.push_back(fmt::format("level {}: {}", k, text));
-    const CrowdLaw& law = *level.entry.find(setup.form);
+    const MultiContactLaw& law = *level.entry.find(setup.form);
     save_law_table({1, {level.entry}}, run.path(fmt::format("law_table_level_{}.toml", k)), run.provenance);
     if (law.status == LawStatus::no_threshold_crossing)
-      throw NotUsable(fmt::format("level {}: its law never crosses its threshold ({})", k, law.reason));
+      throw UnusableResult(fmt::format("level {}: its law never crosses its threshold ({})", k, law.reason));
     if (law.status != LawStatus::good) {
       result.usable = false;
       result.remarks.push_back(
@@ -65,27 +65,27 @@ void run_levels(const HierarchySetup& setup, const Run& run, HierarchyRun& resul
 }
 
 /// Forces of one plane and of six, per plane, over overlap.
-LevelCurves curves_of(const HierarchyLevel& level, Crowd form) {
-  const CrowdModel model = crowd_model(*level.entry.find(form));
-  const std::vector<CrowdPartner> cube = six_planes();
+LevelCurves curves_of(const HierarchyLevel& level, LawForm form) {
+  const MultiContactModel model = multi_contact_model(*level.entry.find(form));
+  const std::vector<MultiContactPartner> cube = six_planes();
   LevelCurves out;
   for (int k = 1; k <= 50; ++k) {
     const double x = level.entry.overlap_max * k / 50.0;
     out.overlap.push_back(x);
-    out.one.push_back(crowd_forces(model, {cube[0]}, {x})[0]);
-    out.cube.push_back(crowd_forces(model, cube, std::vector<double>(6, x))[0]);
+    out.one.push_back(multi_contact_forces(model, {cube[0]}, {x})[0]);
+    out.cube.push_back(multi_contact_forces(model, cube, std::vector<double>(6, x))[0]);
   }
   return out;
 }
 
 /// `grains_below`: share of the shell that the grains of the level below take up in theirs.
-LevelSummary summary_of(const HierarchyLevel& level, double grains_below, Crowd form) {
-  const CrowdLaw& law = *level.entry.find(form);
+LevelSummary summary_of(const HierarchyLevel& level, double grains_below, LawForm form) {
+  const MultiContactLaw& law = *level.entry.find(form);
   LevelSummary out;
   out.level = level.number;
   out.law = {law.status, law.error_cross, {}};
-  for (std::size_t k = 0; k < kCrowdParameters.size(); ++k)
-    out.law.parameters[k] = (law.*kCrowdParameters[k].estimate).value;
+  for (std::size_t k = 0; k < kMultiContactParameters.size(); ++k)
+    out.law.parameters[k] = (law.*kMultiContactParameters[k].estimate).value;
   out.resolved_grains = level.grains;
   out.cost = level.cost;
   out.cost.seconds = level.seconds;
@@ -118,7 +118,7 @@ double span(const HierarchySetup& setup, const HierarchyRun& result, std::int64_
   double inner = 0.0;  // mean radius of an inner soft particle over that of its parent
   for (const HierarchyLevel& l : result.levels)
     if (l.number > 0) inner = 0.5 * (l.inner_low + l.inner_high);
-  return setup.crowd.spec.polydispersity * std::pow(1.0 / inner, static_cast<double>(levels - 1));
+  return setup.multi_contact.spec.polydispersity * std::pow(1.0 / inner, static_cast<double>(levels - 1));
 }
 
 std::string fixed_text(const HierarchySetup& setup, const HierarchyRun& result) {
@@ -142,7 +142,8 @@ std::string fixed_text(const HierarchySetup& setup, const HierarchyRun& result) 
 HierarchySummary summarise(const HierarchySetup& setup, const HierarchyRun& result, const Run& run) {
   HierarchySummary s;
   s.head = {result.usable ? RunStatus::good : RunStatus::not_usable, setup.title, result.remarks, {}};
-  for (const char* file : {"crowd_level_0.h5", "law_table.toml", "report.html"}) s.head.files[file] = run.path(file);
+  for (const char* file : {"multi_contact_level_0.h5", "law_table.toml", "report.html"})
+    s.head.files[file] = run.path(file);
   double evaluations = 0.0;
   for (const HierarchyLevel& l : result.levels) {
     const double below = s.levels.empty() ? 0.0 : s.levels.back().grain_percent / 100.0;
@@ -159,7 +160,7 @@ HierarchySummary summarise(const HierarchySetup& setup, const HierarchyRun& resu
   return s;
 }
 
-std::string people_text(const HierarchySetup& setup, const HierarchyRun& result) {
+std::string console_summary(const HierarchySetup& setup, const HierarchyRun& result) {
   std::string text = fixed_text(setup, result) + "\n";
   for (const HierarchyLevel& l : result.levels) {
     if (l.number == 0) continue;
@@ -182,7 +183,7 @@ void check_levels(const HierarchySetup& setup, const Run& run, HierarchyRun& res
   if (setup.check_packings == 0) return;
   try {
     result.check = check_two_decades(setup, result.levels.front(), run);
-  } catch (const NotUsable& e) {  // the levels are kept and said
+  } catch (const UnusableResult& e) {  // the levels are kept and said
     result.usable = false;
     result.remarks.push_back("no resolved check: " + std::string(e.what()));
     return;
@@ -194,7 +195,7 @@ void check_levels(const HierarchySetup& setup, const Run& run, HierarchyRun& res
 
 ExitStatus run_hierarchy(const Scene& scene, const CommonOptions& options) {
   const HierarchySetup setup = read_hierarchy_setup(scene);
-  const Run run(scene, options, "run", setup.crowd.seed, {.text = sizes_text(setup.crowd.spec)});
+  const Run run(scene, options, "run", setup.multi_contact.seed, {.text = sizes_text(setup.multi_contact.spec)});
   HierarchyRun result;
   run.context.guard([&] {
     run_levels(setup, run, result);
@@ -204,7 +205,7 @@ ExitStatus run_hierarchy(const Scene& scene, const CommonOptions& options) {
     result.usable = false;
     result.remarks.emplace_back("the fixed point was not reached: allow more iterations or packings");
   }
-  return run.finish(json_of(summarise(setup, result, run)), people_text(setup, result));
+  return run.finish(json_of(summarise(setup, result, run)), console_summary(setup, result));
 }
 
 std::vector<HeadLine> lines_of(const report::RunData& run) {
@@ -225,7 +226,7 @@ std::vector<RunValue> values_of(const report::RunData& run) {
 NextSteps next_of(const report::RunData& run) {
   return {"Take the law of the last level in a scene: `softgrain macrosim SCENE.toml --law " + run.directory +
               "/law_table.toml`.",
-          "Whether levels differ beyond the scatter of packings: more of them (`--set crowd.packings_max=8`, "
+          "Whether levels differ beyond the scatter of packings: more of them (`--set multi_contact.packings_max=8`, "
           "`softgrain check` "
           "says what that takes)."};
 }

@@ -21,7 +21,7 @@ struct InnerSummary {
 struct LevelLaw {
   LawStatus status = LawStatus::good;
   double error_cross = 0.0;
-  std::array<double, kCrowdParameters.size()> parameters{};  ///< in the order of kCrowdParameters
+  std::array<double, kMultiContactParameters.size()> parameters{};  ///< values in the order of kMultiContactParameters
 };
 
 /// Forces per plane of one plane and of six over the overlap [E Rs^2].
@@ -33,18 +33,18 @@ struct LevelCurves {
 
 struct LevelSummary {
   std::int64_t level = 0;      ///< 0: grains only
-  double grain_percent = 0.0;  ///< of the shell that its own grains take up
-  double solid_percent = 0.0;  ///< and all grains, those inside soft particles too
+  double grain_percent = 0.0;  ///< volume of its own grains over that of the shell [%]
+  double solid_percent = 0.0;  ///< volume of all grains, those in soft particles included, over that of the shell [%]
   std::optional<InnerSummary> inner;
   LevelLaw law;
   double resolved_grains = 0.0;
   Cost cost;  ///< its seconds are those of the wall
   LevelCurves curves;
-  std::optional<double> distance_percent;   ///< to the law of the level below
+  std::optional<double> distance_percent;   ///< distance to the law of the level below
   std::optional<double> noise_percent;      ///< what packings alone make of it
   std::optional<double> error_percent;      ///< standard error of its forces, that of the levels below in it
-  std::optional<double> own_error_percent;  ///< from its own packings
-  std::optional<Sensitivity> sensitivity;   ///< to the law below
+  std::optional<double> own_error_percent;  ///< standard error from its own packings alone
+  std::optional<Sensitivity> sensitivity;   ///< sensitivity to the law below
   std::vector<LevelChange> changes;
 };
 
@@ -87,7 +87,7 @@ void fields(auto&& visit, Of<InnerSummary> auto& s) {
 void fields(auto&& visit, Of<LevelLaw> auto& s) {
   visit("status", s.status);
   visit("error_cross", s.error_cross);
-  for (std::size_t k = 0; k < s.parameters.size(); ++k) visit(kCrowdParameters[k].key, s.parameters[k]);
+  for (std::size_t k = 0; k < s.parameters.size(); ++k) visit(kMultiContactParameters[k].key, s.parameters[k]);
 }
 
 void fields(auto&& visit, Of<LevelCurves> auto& s) {

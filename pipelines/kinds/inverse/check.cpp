@@ -26,7 +26,7 @@ double seconds_per_run(const InverseSetup& setup) {
       const double packings = setup.kind == PairKind::soft_soft ? 2.0 : 1.0;
       sum += packings * trial.packing_seconds +
              measuring_seconds(setup.measure, setup.relaxation, setup.plan, setup.kind, trial.pass_seconds);
-    } catch (const BadInput&) {
+    } catch (const InputError&) {
     }
   }
   return sum / static_cast<double>(kPlaces.size());

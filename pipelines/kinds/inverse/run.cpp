@@ -124,7 +124,7 @@ SearchSummary search_of(const InverseSetup& setup, const InverseResult& r, doubl
           r.cost};
 }
 
-std::string people_text(const InverseSetup& setup, const InverseResult& r, double misfit) {
+std::string console_summary(const InverseSetup& setup, const InverseResult& r, double misfit) {
   std::string text = fmt::format("{} evaluations of {} packings; the soft particle nearest to the target:\n",
                                  r.evaluations.size(), setup.packings);
   const InverseAnswer& a = r.answer;
@@ -158,8 +158,8 @@ ExitStatus run_inverse(const Scene& scene, const CommonOptions& options) {
   summary.head.sizes = summaries_of(shell_sizes(result.confirmed.spec, result.confirmed.packings));
   for (const char* file : {"measurements.h5", "evaluations.csv", "report.html"})
     summary.head.files[file] = run.path(file);
-  std::string people = people_text(setup, result, misfit);
-  return run.finish(json_of(summary), people);
+  std::string console = console_summary(setup, result, misfit);
+  return run.finish(json_of(summary), console);
 }
 
 std::vector<RunValue> values_of(const report::RunData& run) {

@@ -44,14 +44,14 @@ std::vector<SearchParameter> read_search(const SceneTable& t) {
     if (!t.has(k.name)) continue;
     const std::vector<double> ends = t.numbers(k.name, Unit::none, k.range);
     if (ends.size() != 2 || !(ends[0] < ends[1]))
-      t.mistake(k.name, "must be a range of two rising values [low, high]");
+      t.add_error(k.name, "must be a range of two rising values [low, high]");
     else
       out.push_back({k.name, ends[0], ends[1], k.logarithmic && ends[0] > 0.0});
   }
   if (out.empty())
-    t.mistake("beta",
-              "nothing is searched: give the range of at least one of beta, trials, mu, nu, rmax_over_shell, "
-              "exponent, polydispersity, e.g. mu = [0.1, 0.6]");
+    t.add_error("beta",
+                "nothing is searched: give the range of at least one of beta, trials, mu, nu, rmax_over_shell, "
+                "exponent, polydispersity, e.g. mu = [0.1, 0.6]");
   return out;
 }
 
@@ -63,12 +63,11 @@ void refuse_searched(const SceneTable& root, const std::vector<SearchParameter>&
     for (const SceneTable& t : {material, packing}) {
       const std::vector<std::string> keys = t.keys();
       if (std::find(keys.begin(), keys.end(), p.name) != keys.end())
-        t.mistake(p.name, "is searched: its range stands in [search]");
+        t.add_error(p.name, "is searched: its range is in [search]");
     }
   const bool ratio =
       std::any_of(search.begin(), search.end(), [](const auto& p) { return p.name == "rmax_over_shell"; });
-  if (ratio && packing.has("rmax"))
-    packing.mistake("rmax", "rmax_over_shell is searched: its range stands in [search]");
+  if (ratio && packing.has("rmax")) packing.add_error("rmax", "rmax_over_shell is searched: its range is in [search]");
 }
 
 /// The largest packings of the box must be drawable too.
@@ -95,13 +94,13 @@ void read_points(const SceneTable& t, InverseSetup& s) {
   s.target.delta = t.numbers("delta", Unit::none, Range{0.0, 0.9, true, false});
   s.target.force = t.numbers("force", Unit::force);
   const std::size_t n = s.target.delta.size();
-  if (s.target.force.size() != n) t.reject("force", fmt::format("must have as many values as delta ({})", n));
+  if (s.target.force.size() != n) t.throw_error("force", fmt::format("must have as many values as delta ({})", n));
   for (std::size_t k = 1; k < n; ++k)
-    if (s.target.delta[k] <= s.target.delta[k - 1]) t.mistake("delta", "values must ascend");
+    if (s.target.delta[k] <= s.target.delta[k - 1]) t.add_error("delta", "values must ascend");
   s.target.error.assign(n, 0.0);
   if (!t.has("error")) return;
   s.target.error = t.numbers("error", Unit::force, Range::not_negative());
-  if (s.target.error.size() != n) t.reject("error", fmt::format("must have as many values as delta ({})", n));
+  if (s.target.error.size() != n) t.throw_error("error", fmt::format("must have as many values as delta ({})", n));
 }
 
 /// What the file says of the grains is what the scene says, where it is not what is searched.
@@ -114,7 +113,7 @@ void require_same_grains(const SceneTable& t, const SoftParticleSpec& file, cons
     const double said = file.*member;
     const double scene = s.measure.spec.*member;
     if (!searched && is_known(said) && std::abs(said - scene) > 1e-9 * std::abs(said))
-      t.mistake("file", fmt::format("says {} = {:g}, the scene {:g}: leave one of them out", name, said, scene));
+      t.add_error("file", fmt::format("says {} = {:g}, the scene {:g}: leave one of them out", name, said, scene));
   }
 }
 
@@ -140,8 +139,8 @@ void read_file(const Scene& scene, const SceneTable& t, InverseSetup& s) {
       t.number("delta_low", Unit::none, Range{0.0, 0.9, true, false}, std::max(means.delta.front(), 1e-3));
   const double high = t.number("delta_high", Unit::none, Range{0.0, 0.9, true, false}, means.delta.back());
   if (!(high > low) || low > means.delta.back() || high < means.delta.front())
-    t.reject("delta_high",
-             fmt::format("the file has Delta from {:.4g} to {:.4g}", means.delta.front(), means.delta.back()));
+    t.throw_error("delta_high",
+                  fmt::format("the file has Delta from {:.4g} to {:.4g}", means.delta.front(), means.delta.back()));
   s.target.delta.clear();
   std::size_t last = means.delta.size();
   for (std::size_t k = 0; k < points; ++k) {
@@ -160,17 +159,17 @@ void read_file(const Scene& scene, const SceneTable& t, InverseSetup& s) {
 void read_target(const Scene& scene, const SceneTable& t, InverseSetup& s) {
   s.kind = t.choice<PairKind>("contact", PairKind::soft_solid);
   s.target.discrepancy = t.number("discrepancy", Unit::none, Range::closed(0.0, 1.0), s.target.discrepancy);
-  if (t.has("file") && t.has("delta")) t.reject("delta", "give the target as a file or as points, not both");
+  if (t.has("file") && t.has("delta")) t.throw_error("delta", "give the target as a file or as points, not both");
   if (t.has("file"))
     read_file(scene, t, s);
   else
     read_points(t, s);
   const char* key = t.has("file") ? "file" : "force";
-  if (s.target.delta.size() < 3) t.reject(key, "at least three points are needed");
+  if (s.target.delta.size() < 3) t.throw_error(key, "at least three points are needed");
   if (!(*std::max_element(s.target.force.begin(), s.target.force.end()) > 0.0))
-    t.reject(key, "no force of the target is above zero");
+    t.throw_error(key, "no force of the target is above zero");
   if (s.target.discrepancy <= 0.0 && *std::min_element(s.target.error.begin(), s.target.error.end()) <= 0.0)
-    t.reject("discrepancy", "must be above 0 where the target has no errors");
+    t.throw_error("discrepancy", "must be above 0 where the target has no errors");
 }
 
 }  // namespace
@@ -212,16 +211,16 @@ InverseSetup read_inverse(const Scene& scene) {
     s.search = read_search(search);
     for (const char* key : {"exponent", "polydispersity", "rmax_over_shell"})
       if (s.measure.spec.sizes && search.has(key))
-        search.mistake(key, "cannot be searched beside packing.sizes, which says all sizes");
-    search.part([&] {
-      if (root.sound()) require_box(search, s);
+        search.add_error(key, "cannot be searched beside packing.sizes, which says all sizes");
+    search.section([&] {
+      if (!root.has_errors()) require_box(search, s);
     });
     refuse_searched(root, s.search);
     const SceneTable measure = root.table_or_empty("measure");
-    if (measure.sound()) refuse_idle_protocols(measure, {s.relaxation}, false);
+    if (!measure.has_errors()) refuse_idle_protocols(measure, {s.relaxation}, false);
     read_budget(search, s);
     const SceneTable target = root.table("target");
-    target.part([&] { read_target(scene, target, s); });
+    target.section([&] { read_target(scene, target, s); });
     s.plan.deltas = s.target.delta;
     return s;
   });

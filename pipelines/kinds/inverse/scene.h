@@ -18,7 +18,7 @@ struct SearchParameter {
   double high = 0.0;
   bool logarithmic = false;  ///< spread evenly in its logarithm
 
-  /// From [0, 1] and back.
+  /// Value of the parameter at a coordinate in [0, 1], and the coordinate of a value.
   [[nodiscard]] double value(double u) const;
   [[nodiscard]] double coordinate(double value) const;
   /// Puts it into a soft particle; whole numbers are rounded.
@@ -33,9 +33,9 @@ struct InverseSetup {
   PairKind kind = PairKind::soft_solid;
   InverseTarget target;  ///< forces in N
   std::vector<SearchParameter> search;
-  std::int64_t packings = 8;  ///< of each evaluation
+  std::int64_t packings = 8;  ///< packings of each evaluation
   std::int64_t budget = 40;   ///< evaluations
-  std::int64_t design = 20;   ///< of these, spread over the whole box at first
+  std::int64_t design = 20;   ///< number of these evaluations that are spread over the whole box at first
   std::int64_t batch = 6;     ///< evaluations between two looks at the surface
   std::int64_t confirm = 8;   ///< packings of the last evaluation, with other random numbers
   int replicates = 400;
@@ -45,7 +45,7 @@ struct InverseSetup {
 /// The soft particle at a point of the box.
 SoftParticleSpec spec_at(const InverseSetup& setup, const std::vector<double>& u);
 
-/// Throws BadInput: nothing to search, ranges that cannot be drawn, a target without points, more...
+/// Throws InputError: nothing to search, ranges that cannot be drawn, a target without points, more...
 InverseSetup read_inverse(const Scene& scene);
 
 /// Searches, measures once more at the answer with other packings, writes measurements.h5 (of that), evaluations.csv,

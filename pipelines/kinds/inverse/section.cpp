@@ -149,7 +149,9 @@ std::string inverse_section(const RunData& run) {
       "the best); the error beside them is from the curvature of the quadratic "
       "surface at the answer alone. The misfit counts errors of target and mean, and a discrepancy of " +
       format_number(100.0 * search.target.discrepancy, 2) + " % of the force.");
-  return section("inverse", "The soft particle behind a curve", body);
+  return section("inverse", "The soft particle behind a curve",
+                 "The soft particle whose law comes closest to the measured curve, and how well the data determine it.",
+                 body);
 }
 
 }  // namespace softgrain::report

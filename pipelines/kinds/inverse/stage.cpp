@@ -65,8 +65,9 @@ TaskResult measure_one(const InverseSetup& setup, const Task& task, std::uint64_
             : make_soft_soft(spec, first, generate_shell_packing(spec, seed, second_body_index(task.packing)),
                              protocol->damped_contacts());
     measure(state, setup.plan, *protocol);
-  } catch (const NotUsable&) {  // a lost grain at the far end of the box must not end the search: what there is counts
-  } catch (const BadInput&) {   // not a grain found a place
+  } catch (
+      const UnusableResult&) {   // a lost grain at the far end of the box must not end the search: what there is counts
+  } catch (const InputError&) {  // not a grain found a place
   }
   result.normal = state.run.normal;
   result.cost = state.run.normal_cost;

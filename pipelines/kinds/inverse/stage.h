@@ -13,15 +13,15 @@ namespace softgrain {
 struct InverseResult {
   std::vector<InverseEvaluation> evaluations;
   InverseAnswer answer;
-  Measurements confirmed;   ///< at the answer, with packings that the search has not seen
-  InverseEvaluation check;  ///< the same as curves
-  Cost cost;                ///< of everything
+  Measurements confirmed;   ///< measurements at the answer, with packings that the search has not seen
+  InverseEvaluation check;  ///< `confirmed` as curves
+  Cost cost;                ///< total cost
   std::int64_t not_converged = 0;
   std::int64_t points = 0;
 };
 
-/// Runs the search. Finished packings are taken from the store; results depend on no thread count. Throws NotUsable,
-/// Interrupted.
+/// Runs the search. Finished packings are taken from the store; results depend on no thread count. Throws
+/// UnusableResult, Interrupted.
 InverseResult run_inverse_stage(const InverseSetup& setup, const Run& run);
 
 }  // namespace softgrain

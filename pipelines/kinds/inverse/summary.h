@@ -11,7 +11,7 @@ struct FoundParameter {
   std::string name;
   double value = 0.0;
   std::array<double, 2> interval{};  ///< 95 %
-  double standard_error = 0.0;       ///< from the curvature of the surface
+  double standard_error = 0.0;       ///< standard error from the curvature of the surface
   bool closed = false;               ///< the interval ends within the range
   std::array<double, 2> range{};
   bool logarithmic = false;
@@ -45,7 +45,7 @@ struct SearchSummary {
   InverseTarget target;
   SurfaceSummary surface;
   ConfirmedCurve confirmed;
-  std::int64_t packings = 0;  ///< of each evaluation
+  std::int64_t packings = 0;  ///< packings of each evaluation
   int replicates = 0;
   std::vector<EvaluationSummary> evaluations;
   Cost cost;  ///< its seconds are those of cores

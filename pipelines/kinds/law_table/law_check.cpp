@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "common/data/card_text.h"
-#include "common/data/crowd_choice.h"
-#include "common/data/crowd_replicates.h"
 #include "common/data/estimate_words.h"
 #include "common/data/law_band.h"
 #include "common/data/law_remarks.h"
-#include "pipelines/kinds/law_table/crowd_law_fit.h"
+#include "common/data/multi_contact_choice.h"
+#include "common/data/multi_contact_replicates.h"
+#include "pipelines/kinds/law_table/multi_contact_law_fit.h"
 #include "pipelines/law/law_json.h"
 #include "pipelines/law/named_laws.h"
 
@@ -63,13 +63,13 @@ std::string fractions_text(const LawTable& table) {
   return low == high ? fmt::format("{:.3f}", low) : fmt::format("{:.3f} to {:.3f}", low, high);
 }
 
-std::string partners_text(const CrowdLaw& law, PartnerKind kind) {
+std::string partners_text(const MultiContactLaw& law, PartnerKind kind) {
   const std::vector<PartnerRow> rows = law.rows(kind);
   if (rows.empty()) return fmt::format("no {} neighbours", to_string(kind));
   return fmt::format("{} neighbours of ratio {:.3g} to {:.3g}", to_string(kind), rows.front().ratio, rows.back().ratio);
 }
 
-void check_law(const LawTableEntry& entry, const CrowdLaw& law, json& facts, std::string& lines) {
+void check_law(const LawTableEntry& entry, const MultiContactLaw& law, json& facts, std::string& lines) {
   facts["laws"].push_back(verdict_json(law));
   lines += fmt::format("    {}: {}{}, off by {:.1f} % on what it was fitted to, {}, {}; {}, {}\n",
                        form_label(entry, law), to_string(law.status), law.reason.empty() ? "" : " (" + law.reason + ")",
@@ -87,12 +87,12 @@ void check_entry(const LawTableEntry& e, Findings& out) {
       "    {}; {}\n",
       e.solid_fraction, e.solid_fraction_error, e.packings, e.relaxation, e.spec.poisson_ratio, e.spec.friction,
       e.volume_max, e.overlap_max, e.grain_overlap_max, unloading_text(e), slides_text(e));
-  for (const CrowdLaw& law : e.laws) check_law(e, law, facts, out.lines);
+  for (const MultiContactLaw& law : e.laws) check_law(e, law, facts, out.lines);
   out.facts["entries"].push_back(facts);
 }
 
 void warn_of_entry(const LawTableEntry& e, Findings& out) {
-  const CrowdLaw* best = e.find(e.best);
+  const MultiContactLaw* best = e.find(e.best);
   constexpr double kFar = 0.15;
   if (best->status != LawStatus::good)
     out.warn(fmt::format("solid fraction {:.3f}: the law {} is {}{}", e.solid_fraction, form_label(e, *best),
@@ -122,7 +122,7 @@ void check_table(const std::string& path, Findings& out) {
 void check_cell_card(const std::string& path, Findings& out) {
   const CellCard card = read_cell_card(path);
   out.add("kind", "cell law",
-          fmt::format("card of the cell law, {} form, for matter without shells: K = {}, n = {}, E of its grains {}, "
+          fmt::format("card of the cell law, {} form, for material without shells: K = {}, n = {}, E of its grains {}, "
                       "p/E from {:.3g} to {:.3g}, up to {:.3g} times as much fines as coarse grains",
                       to_string(card.form), interval_text(card.modulus), interval_text(card.exponent),
                       is_known(card.youngs_modulus) ? fmt::format("{:.4g} Pa", card.youngs_modulus) : "not said",
@@ -144,10 +144,12 @@ void check_material_card(const std::string& path, Findings& out) {
   const Estimate modulus = read_estimate_text(material.table("K"), Range::positive());
   const Estimate exponent = read_estimate_text(material.table("n"), Range::positive());
   const auto levels = root.tables("level").size();
-  out.add("kind", "material",
-          fmt::format("card of a whole material of {} levels, {} form: begins to bear at a solid fraction of {}, p/E = "
-                      "{:.4g} x^{:.4g}",
-                      levels, material.text("form"), interval_text(onset), modulus.value, exponent.value));
+  out.add(
+      "kind", "material",
+      fmt::format(
+          "card of a whole material of {} levels, {} form: begins to carry pressure at a solid fraction of {}, p/E = "
+          "{:.4g} x^{:.4g}",
+          levels, material.text("form"), interval_text(onset), modulus.value, exponent.value));
   constexpr double kWide = 0.05;
   if (!interval_known(onset.low, onset.high))
     out.warn(

@@ -7,7 +7,7 @@
 
 namespace softgrain {
 
-/// What a card or a table holds, and what to mind when it is used. Throws BadInput, FileTrouble.
+/// What a card or a table holds, and what to mind when it is used. Throws InputError, IoError.
 void check_laws(const std::string& path, Findings& out);
 
 }  // namespace softgrain

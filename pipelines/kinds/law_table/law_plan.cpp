@@ -11,8 +11,8 @@
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
 #include "common/data/card_text.h"
-#include "pipelines/kinds/law_table/crowd_check.h"
-#include "pipelines/kinds/law_table/crowd_plan.h"
+#include "pipelines/kinds/law_table/multi_contact_check.h"
+#include "pipelines/kinds/law_table/multi_contact_plan.h"
 #include "pipelines/kinds/soft_particle/cost.h"
 #include "pipelines/law/law_draws.h"
 
@@ -20,34 +20,34 @@ namespace softgrain {
 
 namespace {
 
-/// Of the overlap at the end of a loading: how far a configuration may be pressed in. One of several stages goes all
-/// its way.
+/// Depths up to which a configuration may be pressed in, over the overlap at the end of its loading. A configuration of
+/// several stages always goes all its way.
 constexpr std::array kDepths{0.5, 0.75, 1.0};
 
 using Curves = std::vector<const MacroCurve*>;
 
-Crowd form_of(const LawTable& table, const std::vector<MacroCurve>& curves, const WantedForm& wanted) {
-  const auto drawn = [&](Crowd form) {
+LawForm form_of(const LawTable& table, const std::vector<MacroCurve>& curves, const WantedForm& wanted) {
+  const auto drawn = [&](LawForm form) {
     return std::any_of(curves.begin(), curves.end(), [&](const MacroCurve& c) {
       return c.usable && !c.drawn_axial.empty() && c.law.form == form && c.law.solid_fraction > 0.0;
     });
   };
-  const Crowd best = main_entry(table).best;
-  for (const Crowd form : {wanted.value_or(best), Crowd::directional, Crowd::bag, Crowd::pair})
+  const LawForm best = main_entry(table).best;
+  for (const LawForm form : {wanted.value_or(best), LawForm::directional, LawForm::isotropic, LawForm::pair})
     if (drawn(form) && (!wanted || form == *wanted)) return form;
-  throw BadInput(
+  throw InputError(
       fmt::format("law plan: no curve of that run has error bars of {} law of a table: run it with macro.bands (or "
                   "macrosim --bands N) and this table",
                   wanted ? "the " + to_string(*wanted) : std::string("any")));
 }
 
-Curves drawn_curves(const std::vector<MacroCurve>& curves, Crowd form) {
+Curves drawn_curves(const std::vector<MacroCurve>& curves, LawForm form) {
   Curves out;
   for (const MacroCurve& c : curves)
     if (c.usable && !c.drawn_axial.empty() && c.law.form == form && c.law.solid_fraction > 0.0) out.push_back(&c);
   for (const MacroCurve* c : out)
     if (c->drawn_axial.size() != out.front()->drawn_axial.size())
-      throw BadInput("law plan: curves of the run have unequal numbers of draws");
+      throw InputError("law plan: curves of the run have unequal numbers of draws");
   return out;
 }
 
@@ -78,7 +78,7 @@ double deviation(const std::vector<std::vector<double>>& rows) {
 /// What the table knows of a configuration.
 class KnownErrors {
  public:
-  KnownErrors(const CrowdLaw& law, int packings) : law_(law), packings_(packings) {
+  KnownErrors(const MultiContactLaw& law, int packings) : law_(law), packings_(packings) {
     std::vector<double> scatters;
     for (const ConfigurationError& e : law.errors)
       if (e.noise > 0.0) scatters.push_back(scatter_of(e));
@@ -89,7 +89,7 @@ class KnownErrors {
       if (e.name == name) return &e;
     return nullptr;
   }
-  /// That the table has of it; `else_` where the table does not know it.
+  /// Packings that the table has of a configuration; `else_` where the table does not know it.
   [[nodiscard]] std::int64_t packings(const ConfigurationError* known, std::int64_t else_) const {
     if (known == nullptr) return else_;
     return known->packings > 0 ? known->packings : packings_;
@@ -99,18 +99,18 @@ class KnownErrors {
   }
 
  private:
-  /// Of single packings.
+  /// Scatter of the force of single packings.
   [[nodiscard]] double scatter_of(const ConfigurationError& e) const {
     return std::sqrt(static_cast<double>(e.packings > 0 ? e.packings : packings_)) * e.noise;
   }
 
-  const CrowdLaw& law_;
+  const MultiContactLaw& law_;
   std::int64_t packings_;
   double usual_ = 0.0;
 };
 
-bool same_loading(const CrowdConfiguration& a, const CrowdConfiguration& b) {
-  const auto same = [](const CrowdPartner& x, const CrowdPartner& y) {
+bool same_loading(const MultiContactConfiguration& a, const MultiContactConfiguration& b) {
+  const auto same = [](const MultiContactPartner& x, const MultiContactPartner& y) {
     return x.kind == y.kind && x.ratio == y.ratio && x.smooth == y.smooth && x.direction == y.direction && x.on == y.on;
   };
   return a.centre_free == b.centre_free && a.stages.front().overlap == b.stages.front().overlap &&
@@ -118,14 +118,14 @@ bool same_loading(const CrowdConfiguration& a, const CrowdConfiguration& b) {
 }
 
 /// Loadings of the scene that a fit of this form takes, each once.
-std::vector<CrowdConfiguration> loadings(const CrowdSetup& setup, const KnownErrors& known) {
-  std::vector<CrowdConfiguration> out;
-  for (const CrowdConfiguration& c : setup.configurations) {
+std::vector<MultiContactConfiguration> loadings(const MultiContactSetup& setup, const KnownErrors& known) {
+  std::vector<MultiContactConfiguration> out;
+  for (const MultiContactConfiguration& c : setup.configurations) {
     const ConfigurationError* error = known.find(c.name);
-    if (c.held_out || (error != nullptr && error->use != CrowdUse::fitted)) continue;
-    CrowdConfiguration load = loading_part(c);
+    if (c.held_out || (error != nullptr && error->use != MultiContactUse::fitted)) continue;
+    MultiContactConfiguration load = loading_part(c);
     load.name = c.name;
-    if (std::none_of(out.begin(), out.end(), [&](const CrowdConfiguration& o) { return same_loading(o, load); }))
+    if (std::none_of(out.begin(), out.end(), [&](const MultiContactConfiguration& o) { return same_loading(o, load); }))
       out.push_back(std::move(load));
   }
   return out;
@@ -137,14 +137,14 @@ struct Candidates {
   std::vector<Measurable> measurables;
 };
 
-Candidates candidates_of(const CrowdSetup& setup, const KnownErrors& known, const LawDraws& law) {
+Candidates candidates_of(const MultiContactSetup& setup, const KnownErrors& known, const LawDraws& law) {
   constexpr double kTrialSeconds = 0.3;
   const double pass = try_soft_particle(setup.spec, setup.seed, kTrialSeconds).pass_seconds;
   Candidates out;
-  for (const CrowdConfiguration& c : loadings(setup, known))
+  for (const MultiContactConfiguration& c : loadings(setup, known))
     for (const double depth : kDepths) {
       if (depth < 1.0 && c.stages.size() > 1) continue;
-      const CrowdConfiguration part = cut_short(c, depth);
+      const MultiContactConfiguration part = cut_short(c, depth);
       const std::vector<double>& overlap = part.stages.back().overlap;
       const ConfigurationError* error = known.find(c.name);
       out.told.push_back({c.name, depth, *std::max_element(overlap.begin(), overlap.end()), known.scatter(error),
@@ -152,10 +152,10 @@ Candidates candidates_of(const CrowdSetup& setup, const KnownErrors& known, cons
                           seconds_per_packing(part, setup, pass), 1.0});
       out.states.push_back({part.partners, overlap});
     }
-  const std::vector<double> best = law.crowd_forces(law.numbers, out.states);
+  const std::vector<double> best = law.multi_contact_forces(law.numbers, out.states);
   for (const PlanCandidate& c : out.told) out.measurables.push_back({{}, c.scatter, c.seconds});
   for (const std::vector<double>& numbers : law.draws) {
-    const std::vector<double> forces = law.crowd_forces(numbers, out.states);
+    const std::vector<double> forces = law.multi_contact_forces(numbers, out.states);
     // Below a hundredth of the force it tells nothing: the logarithm stays bounded.
     for (std::size_t k = 0; k < forces.size(); ++k)
       out.measurables[k].drawn.push_back(std::log(std::max(forces[k], 0.0) + 0.01 * best[k] + 1e-12));
@@ -214,9 +214,9 @@ std::string depth_text(const PlanCandidate& c) { return fmt::format("{:.3f}", c.
 
 }  // namespace
 
-LawPlan plan_law(const LawTable& table, const std::string& table_file, const CrowdSetup& candidates,
+LawPlan plan_law(const LawTable& table, const std::string& table_file, const MultiContactSetup& candidates,
                  const std::vector<MacroCurve>& curves, const LawPlanWish& wish) {
-  const Crowd form = form_of(table, curves, wish.form);
+  const LawForm form = form_of(table, curves, wish.form);
   const Curves drawn = drawn_curves(curves, form);
   LawPlan plan;
   plan.engine = drawn.front()->engine;
@@ -298,7 +298,8 @@ std::string plan_text(const LawPlan& plan) {
 
 std::string plan_scene_text(const LawPlan& plan) {
   std::string text = fmt::format(
-      "# What `softgrain law plan` found for the error bars of {} curves: packings on top of those of [crowd], so "
+      "# What `softgrain law plan` found for the error bars of {} curves: packings on top of those of [multi_contact], "
+      "so "
       "deep.\n",
       plan.curves);
   for (const PlanStep& s : plan.steps) {

@@ -5,21 +5,21 @@
 #include <string>
 #include <vector>
 
-#include "common/data/crowd_law.h"
 #include "common/data/macro_result.h"
-#include "pipelines/kinds/law_table/crowd_scene.h"
+#include "common/data/multi_contact_law.h"
+#include "pipelines/kinds/law_table/multi_contact_scene.h"
 
 namespace softgrain {
 
 /// A configuration of a scene up to an overlap.
 struct PlanCandidate {
   std::string configuration;
-  double depth = 1.0;         ///< over that at the end of its loading
+  double depth = 1.0;         ///< overlap over that at the end of its loading
   double overlap = 0.0;       ///< largest of its neighbours [Rs]
-  double scatter = 0.0;       ///< of the force between packings, a share of it
+  double scatter = 0.0;       ///< relative scatter of the force between packings
   bool measured = false;      ///< its scatter is that of the table; else the median of those there
-  std::int64_t packings = 0;  ///< that the table has of it, or the scene asks for
-  double seconds = 0.0;       ///< of one core, with one packing
+  std::int64_t packings = 0;  ///< packings in the table, or those that the scene asks for
+  double seconds = 0.0;       ///< core seconds with one packing
   double share = 1.0;         ///< width of the band's law part over what it is, after one block of packings more
 };
 
@@ -27,22 +27,22 @@ struct PlanCandidate {
 struct PlanStep {
   std::size_t candidate = 0;
   std::int64_t packings = 0;
-  double seconds = 0.0;  ///< of one core
+  double seconds = 0.0;  ///< core seconds
   double share = 1.0;    ///< after this step and those before
 };
 
 struct LawPlan {
   std::string engine;      ///< whose curves they are
-  std::size_t curves = 0;  ///< with draws
+  std::size_t curves = 0;  ///< number of curves with draws
   std::size_t draws = 0;
   double law_part = 0.0;     ///< standard deviation of the axial stress over its root mean square, of all curves
-  double discrepancy = 0.0;  ///< of the form of law; no number of packings lessens it
+  double discrepancy = 0.0;  ///< error of the form of law, see LawDraws::discrepancy; no number of packings lessens it
   std::int64_t block = 0;
   std::vector<PlanCandidate> candidates;  ///< what helps most per second first
   std::vector<PlanStep> steps;
-  double share = 1.0;         ///< of the law part, after the plan
-  double seconds = 0.0;       ///< of one core, all steps
-  double even_seconds = 0.0;  ///< the same share by packings of all configurations alike; NaN: not to be had so
+  double share = 1.0;         ///< law part after the plan over that before
+  double seconds = 0.0;       ///< core seconds of all steps
+  double even_seconds = 0.0;  ///< core seconds for this share with equal packings per configuration; NaN: out of reach
   std::vector<std::string> remarks;
 };
 
@@ -54,12 +54,12 @@ struct LawPlanWish {
 
 /// Forces of draws and predictions of draws are taken as jointly normal (calibrate/next_measurements.h); a
 /// configuration tells the logarithm of the force on its neighbours at the overlap, off by the scatter of packings.
-/// `curves`: of runs with bands by this table. Throws BadInput: none has draws of one of its laws, or of more than the
-/// table keeps.
-LawPlan plan_law(const LawTable& table, const std::string& table_file, const CrowdSetup& candidates,
+/// `curves`: of runs with bands by this table. Throws InputError: none has draws of one of its laws, or of more than
+/// the table keeps.
+LawPlan plan_law(const LawTable& table, const std::string& table_file, const MultiContactSetup& candidates,
                  const std::vector<MacroCurve>& curves, const LawPlanWish& wish);
 
-/// For people.
+/// The plan as text for people.
 std::string plan_text(const LawPlan& plan);
 
 /// The plan as [[plan]] tables of a law-table scene.

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/data/crowd_choice.h"
+#include "common/data/multi_contact_choice.h"
 #include "pipelines/kinds/law_table/law_check.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/run_data.h"
@@ -17,20 +17,20 @@ namespace {
 
 using namespace report;
 
-void check_crowd_file(const std::string& path, Findings& out) {
-  const CrowdMeasurements data = load_crowd(path);
+void check_multi_contact_file(const std::string& path, Findings& out) {
+  const MultiContactMeasurements data = load_multi_contact(path);
   std::size_t open = 0;
-  for (const CrowdRun& run : data.runs)
+  for (const MultiContactRun& run : data.runs)
     open += static_cast<std::size_t>(
-        std::count_if(run.points.begin(), run.points.end(), [](const CrowdPoint& p) { return !p.converged; }));
-  out.add("kind", "crowd measurements",
-          fmt::format("crowd measurements: {} configurations, {} packings, {} runs", data.configurations.size(),
+        std::count_if(run.points.begin(), run.points.end(), [](const MultiContactPoint& p) { return !p.converged; }));
+  out.add("kind", "multi-contact measurements",
+          fmt::format("multi-contact measurements: {} configurations, {} packings, {} runs", data.configurations.size(),
                       data.packings.size(), data.runs.size()));
   if (open > 0) out.warn(fmt::format("{} recorded points did not converge", open));
 }
 
 std::string table_line(const LawTableEntry& entry) {
-  const CrowdLaw* best = entry.find(entry.best);
+  const MultiContactLaw* best = entry.find(entry.best);
   if (best == nullptr) return "";
   std::string held_out;
   if (std::isfinite(best->error_held_out))
@@ -43,7 +43,7 @@ std::string table_line(const LawTableEntry& entry) {
 std::vector<HeadLine> lines_of(const RunData& run) {
   std::vector<HeadLine> lines;
   if (run.law_table)
-    for (const LawTableEntry& entry : run.law_table->entries) lines.emplace_back("Law", table_line(entry));
+    for (const LawTableEntry& entry : run.law_table->entries) lines.emplace_back("Multi-contact law", table_line(entry));
   return lines;
 }
 
@@ -51,7 +51,7 @@ std::vector<RunValue> values_of(const RunData& run) {
   std::vector<RunValue> out;
   if (!run.law_table) return out;
   for (const LawTableEntry& entry : run.law_table->entries) {
-    const CrowdLaw* best = entry.find(entry.best);
+    const MultiContactLaw* best = entry.find(entry.best);
     if (best == nullptr) continue;
     const std::string of =
         fmt::format(" ({} law at solid fraction {:.3g})", to_string(entry.best), entry.solid_fraction);
@@ -72,12 +72,12 @@ NextSteps next_of(const RunData& run) {
 }  // namespace
 
 KindResults law_table_results() {
-  return {.files = {{.names = "crowd(_(variant|level)_[0-9]+)?\\.h5",
+  return {.files = {{.names = "(multi_contact|crowd)(_(variant|level)_[0-9]+)?\\.h5",
                      .is = [](const h5::Group& root) { return root.has("configurations"); },
-                     .check = check_crowd_file},
+                     .check = check_multi_contact_file},
                     {.names = "law(_table)?\\.toml", .check = check_laws},
                     {.names = "law_table\\.h5|law_table_level_[0-9]+\\.(toml|h5)"}},
-          .sections = {{Place::crowds, law_table_section}},
+          .sections = {{Place::multi_contact, law_table_section}},
           .lines = lines_of,
           .values = values_of,
           .next = next_of};

@@ -1,4 +1,4 @@
-// What measurements of crowds leave behind, and the tables fitted to them.
+// What multi-contact measurements leave behind, and the tables fitted to them.
 #pragma once
 
 #include "pipelines/results/kind_results.h"

@@ -6,10 +6,10 @@
 #include <chrono>
 #include <filesystem>
 
-#include "common/contact/crowd_table_file.h"
-#include "pipelines/kinds/law_table/crowd_plan.h"
-#include "pipelines/kinds/law_table/crowd_stage.h"
-#include "pipelines/kinds/law_table/crowd_summary.h"
+#include "common/contact/multi_contact_table_file.h"
+#include "pipelines/kinds/law_table/multi_contact_plan.h"
+#include "pipelines/kinds/law_table/multi_contact_stage.h"
+#include "pipelines/kinds/law_table/multi_contact_summary.h"
 #include "pipelines/kinds/law_table/results.h"
 #include "pipelines/results/summary.h"
 #include "pipelines/run/run.h"
@@ -21,26 +21,27 @@ namespace {
 
 /// Everything a run leaves behind, for summary and screen.
 struct LawTableRun {
-  CrowdMeasurements data;
-  CrowdLawFit fit;
+  MultiContactMeasurements data;
+  MultiContactLawFit fit;
 };
 
 LawTableRun measure_and_fit(const LawTableSetup& setup, const Run& run) {
   LawTableRun result;
-  CrowdFitOptions fit = setup.fit;
+  MultiContactFitOptions fit = setup.fit;
   fit.seed = run.seed;
   std::vector<ShellPacking> packings;
-  result.data = run_crowd_stage(setup.crowd, run, result.fit.remarks, packings);
-  add_entry(result.fit, result.data, fit, setup.crowd.target);
+  result.data = run_multi_contact_stage(setup.multi_contact, run, result.fit.remarks, packings);
+  add_entry(result.fit, result.data, fit, setup.multi_contact.target);
   result.fit.table.entries.front().main = true;
   for (std::size_t k = 0; k < setup.variants.size(); ++k) {
     const LawTableVariant& v = setup.variants[k];
     run.context.say(fmt::format("variant {}: beta = {}, {} trials", k + 1, v.spec.beta, v.spec.trials));
-    CrowdLevel named;  // nothing inside the soft particles, but a file of its own
-    named.file = fmt::format("crowd_variant_{}.h5", k + 1);
+    MultiContactLevel named;  // nothing inside the soft particles, but a file of its own
+    named.file = fmt::format("multi_contact_variant_{}.h5", k + 1);
     packings.clear();
-    add_entry(result.fit, run_crowd_stage(setup_of(v, setup.crowd), run, result.fit.remarks, packings, &named), fit,
-              setup.crowd.target);
+    add_entry(result.fit,
+              run_multi_contact_stage(setup_of(v, setup.multi_contact), run, result.fit.remarks, packings, &named), fit,
+              setup.multi_contact.target);
   }
   save_law_table(result.fit.table, run.path("law_table.toml"), run.provenance);
   return result;
@@ -50,30 +51,30 @@ nlohmann::json summarise(const LawTableSetup& setup, const LawTableRun& result, 
   nlohmann::json summary;
   summary["status"] = result.fit.usable ? "good" : "not usable";
   summary["title"] = setup.title;
-  summary["crowd"] = crowd_json(result.data, setup.crowd.target);
+  summary["multi_contact"] = multi_contact_json(result.data, setup.multi_contact.target);
   summary["entries"] = entries_json(result.fit.table);
   summary["remarks"] = result.fit.remarks;
-  if (setup.crowd.spec.sizes)
-    summary["sizes"] = json_of(summaries_of(shell_sizes(setup.crowd.spec, result.data.packings)));
-  for (const char* file : {"crowd.h5", "law_table.toml", "law_table.h5", "report.html"})
+  if (setup.multi_contact.spec.sizes)
+    summary["sizes"] = json_of(summaries_of(shell_sizes(setup.multi_contact.spec, result.data.packings)));
+  for (const char* file : {"multi_contact.h5", "law_table.toml", "law_table.h5", "report.html"})
     summary["files"][file] = run.path(file);
   return summary;
 }
 
-std::string people_text(const LawTableRun& result, const Run& run) {
+std::string console_summary(const LawTableRun& result, const Run& run) {
   std::string text =
       fmt::format("{} configurations, {} runs:\n", result.data.configurations.size(), result.data.runs.size());
-  text += crowd_text(result.data);
+  text += multi_contact_text(result.data);
   text += entries_text(result.fit.table);
   return text + "law table: " + run.path("law_table.toml") + "\n";
 }
 
 ExitStatus run_law_table(const Scene& scene, const CommonOptions& options) {
   const LawTableSetup setup = read_law_table(scene);
-  const Run run(scene, options, "run", setup.crowd.seed, {.text = sizes_text(setup.crowd.spec)});
+  const Run run(scene, options, "run", setup.multi_contact.seed, {.text = sizes_text(setup.multi_contact.spec)});
   LawTableRun result;
   run.context.guard([&] { result = measure_and_fit(setup, run); });
-  return run.finish(summarise(setup, result, run), people_text(result, run));
+  return run.finish(summarise(setup, result, run), console_summary(result, run));
 }
 
 }  // namespace

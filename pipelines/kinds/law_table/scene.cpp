@@ -8,30 +8,30 @@ namespace softgrain {
 
 namespace {
 
-/// `sound`: so is the base.
-LawTableVariant read_variant(const SceneTable& t, const CrowdSetup& base, bool sound) {
+/// `valid`: the base has no errors.
+LawTableVariant read_variant(const SceneTable& t, const MultiContactSetup& base, bool valid) {
   LawTableVariant v{base.spec, {}};
   v.spec.beta = t.number("beta", Unit::none, Range::positive(), v.spec.beta);
   v.spec.trials = t.count("trials", 1, 1000000000000, v.spec.trials);
-  if (sound) require_drawable(t, v.spec);
+  if (valid) require_drawable(t, v.spec);
   if (t.has("packings")) v.packings = t.count("packings", 2, base.packings_max);
-  if (sound && v.spec.beta == base.spec.beta && v.spec.trials == base.spec.trials)
-    t.mistake("beta", "a variant needs another beta or another number of trials than [packing]");
+  if (valid && v.spec.beta == base.spec.beta && v.spec.trials == base.spec.trials)
+    t.add_error("beta", "a variant needs another beta or another number of trials than [packing]");
   return v;
 }
 
 }  // namespace
 
-CrowdSetup setup_of(const LawTableVariant& variant, const CrowdSetup& main) {
-  CrowdSetup setup = main;
+MultiContactSetup setup_of(const LawTableVariant& variant, const MultiContactSetup& main) {
+  MultiContactSetup setup = main;
   setup.spec = variant.spec;
   if (!variant.packings) return setup;
   setup.packings_min = setup.packings_max = *variant.packings;
   setup.packings.clear();
   setup.plan.clear();
-  std::erase_if(setup.configurations, [&](const CrowdConfiguration& c) {
+  std::erase_if(setup.configurations, [&](const MultiContactConfiguration& c) {
     const auto softs = std::count_if(c.partners.begin(), c.partners.end(),
-                                     [](const CrowdPartner& p) { return p.kind == PartnerKind::soft; });
+                                     [](const MultiContactPartner& p) { return p.kind == PartnerKind::soft; });
     return c.held_out || softs >= setup.packings_max;
   });
   return setup;
@@ -41,16 +41,17 @@ LawTableSetup read_law_table(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     (void)root.choice("kind", {"law-table"});
     const SceneTable calibrate = root.table_or_empty("calibrate");
-    LawTableSetup out{root.text("title", ""), read_crowd_setup(root), {}, read_crowd_fit(calibrate)};
-    read_plan(root, out.crowd);
-    const SceneTable crowd = root.table_or_empty("crowd");
-    const bool sound = crowd.sound() && root.table_or_empty("packing").sound();
+    LawTableSetup out{root.text("title", ""), read_multi_contact_setup(root), {}, read_multi_contact_fit(calibrate)};
+    read_plan(root, out.multi_contact);
+    const SceneTable multi_contact = root.table_or_empty("multi_contact");
+    const bool valid = !multi_contact.has_errors() && !root.table_or_empty("packing").has_errors();
     for (const SceneTable& t : root.tables("variant")) {
-      out.variants.push_back(read_variant(t, out.crowd, sound));
-      if (calibrate.sound() && out.variants.back().packings.value_or(out.crowd.packings_max) < out.fit.min_packings)
-        t.mistake("packings", "fewer than calibrate.min_packings: there would be no fit");
+      out.variants.push_back(read_variant(t, out.multi_contact, valid));
+      if (!calibrate.has_errors() &&
+          out.variants.back().packings.value_or(out.multi_contact.packings_max) < out.fit.min_packings)
+        t.add_error("packings", "fewer than calibrate.min_packings: there would be no fit");
     }
-    require_law_of_crowds(root, out.crowd, calibrate, out.fit);
+    require_law_of_multi_contact(root, out.multi_contact, calibrate, out.fit);
     return out;
   });
 }

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/crowd_form_fit.h"
-#include "calibrate/crowd_states.h"
-#include "common/contact/crowd_from_table.h"
-#include "common/data/crowd_choice.h"
+#include "calibrate/multi_contact_form_fit.h"
+#include "calibrate/multi_contact_states.h"
+#include "common/contact/multi_contact_from_table.h"
 #include "common/data/law_remarks.h"
+#include "common/data/multi_contact_choice.h"
 #include "pipelines/kinds/law_table/results.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
@@ -31,11 +31,11 @@ constexpr Group kGroups[] = {{"planes", "Planes, used in the fit", PartnerKind::
                              {"softs-out", "Soft neighbours, predicted", PartnerKind::soft, true}};
 
 /// Plain loading only: other paths to the same overlaps would be drawn on top of each other.
-bool belongs(const CrowdStates& c, const Group& g) {
+bool belongs(const MultiContactStates& c, const Group& g) {
   const auto& stages = c.configuration->stages;
-  const auto loads =
-      std::count_if(stages.begin(), stages.end(), [](const CrowdStage& s) { return s.move == CrowdMove::load; });
-  const CrowdUse wanted = g.held_out ? CrowdUse::predicted : CrowdUse::fitted;
+  const auto loads = std::count_if(stages.begin(), stages.end(),
+                                   [](const MultiContactStage& s) { return s.move == MultiContactMove::load; });
+  const MultiContactUse wanted = g.held_out ? MultiContactUse::predicted : MultiContactUse::fitted;
   return c.all_of(g.kind) && c.use == wanted && loads == 1 && c.states.size() > 1 && !loading_states(c).empty();
 }
 
@@ -45,10 +45,10 @@ double mean_force(const std::vector<double>& forces) {
   return sum / static_cast<double>(forces.size());
 }
 
-void add_measured(Plot& plot, const CrowdStates& c, const std::string& color) {
+void add_measured(Plot& plot, const MultiContactStates& c, const std::string& color) {
   Series s;
   s.label = c.configuration->name;
-  for (const CrowdState* state : loading_states(c)) {
+  for (const MultiContactState* state : loading_states(c)) {
     s.x.push_back(*std::max_element(state->overlap.begin(), state->overlap.end()));
     s.y.push_back(mean_force(state->mean));
     s.y_error.push_back(mean_force(state->error));
@@ -57,25 +57,27 @@ void add_measured(Plot& plot, const CrowdStates& c, const std::string& color) {
   plot.add(s);
 }
 
-void add_law(Plot& plot, const CrowdStates& c, const CrowdLaw& law, const std::string& color, const char* dash) {
+void add_law(Plot& plot, const MultiContactStates& c, const MultiContactLaw& law, const std::string& color,
+             const char* dash) {
   Series s;
   s.hover = c.configuration->name + ", " + to_string(law.form) + " law";
   s.group = c.configuration->name;
-  const CrowdModel model = crowd_model(law);
+  const MultiContactModel model = multi_contact_model(law);
   const std::vector<double>& end = loading_states(c).back()->overlap;
   for (int k = 1; k <= 60; ++k) {
     std::vector<double> overlap = end;
     for (double& x : overlap) x *= k / 60.0;
     s.x.push_back(*std::max_element(overlap.begin(), overlap.end()));
-    s.y.push_back(mean_force(crowd_forces(model, c.configuration->partners, overlap)));
+    s.y.push_back(mean_force(multi_contact_forces(model, c.configuration->partners, overlap)));
   }
   s.style = {color, 1.5, dash, 1.0, Marker::none, 3.0};
   s.sets_range = false;
   plot.add(s);
 }
 
-std::string group_figure(const Group& group, const std::vector<CrowdStates>& states, const LawTableEntry& entry) {
-  Plot plot({"crowd-" + std::string(group.id),
+std::string group_figure(const Group& group, const std::vector<MultiContactStates>& states,
+                         const LawTableEntry& entry) {
+  Plot plot({"multi-contact-" + std::string(group.id),
              group.title,
              {"overlap h/Rs", Scale::linear, {}, {}},
              {"mean force per neighbour F/(E Rs²)", Scale::logarithmic, {}, {}},
@@ -83,13 +85,13 @@ std::string group_figure(const Group& group, const std::vector<CrowdStates>& sta
              560.0,
              420.0});
   std::size_t color = 0;
-  for (const CrowdStates& c : states) {
+  for (const MultiContactStates& c : states) {
     if (!belongs(c, group)) continue;
     const char* shade = palette::cycle(color++);
     add_measured(plot, c, shade);
     add_law(plot, c, *entry.find(entry.best), shade, "");
-    if (entry.best != Crowd::pair && entry.find(Crowd::pair) != nullptr)
-      add_law(plot, c, *entry.find(Crowd::pair), shade, "2 3");
+    if (entry.best != LawForm::pair && entry.find(LawForm::pair) != nullptr)
+      add_law(plot, c, *entry.find(LawForm::pair), shade, "2 3");
   }
   if (color == 0) return "";
   return figure(plot.svg(),
@@ -107,13 +109,13 @@ std::string with_error(const Estimate& e) {
 
 std::string error_table(const LawTableEntry& entry) {
   std::vector<std::string> header{"configuration", "use"};
-  for (const CrowdLaw& law : entry.laws) header.push_back(to_string(law.form) + " law: error [%]");
+  for (const MultiContactLaw& law : entry.laws) header.push_back(to_string(law.form) + " law: error [%]");
   header.emplace_back("noise of the mean [%]");
   HtmlTable table(header, 2);
-  const CrowdLaw& first = entry.laws.front();
+  const MultiContactLaw& first = entry.laws.front();
   for (std::size_t k = 0; k < first.errors.size(); ++k) {
     std::vector<std::string> cells{first.errors[k].name, to_string(first.errors[k].use)};
-    for (const CrowdLaw& law : entry.laws)
+    for (const MultiContactLaw& law : entry.laws)
       cells.push_back(k < law.errors.size() ? format_number(100.0 * law.errors[k].error, 2) : "–");
     cells.push_back(format_number(100.0 * first.errors[k].noise, 2));
     table.row(std::move(cells));
@@ -124,7 +126,7 @@ std::string error_table(const LawTableEntry& entry) {
 std::string parameter_table(const LawTableEntry& entry) {
   HtmlTable table({"law", "a", "b", "delta", "m0", "m1", "m2", "error, fitted [%]", "error, held out [%]",
                    "error, leave one out [%]", "information criterion"});
-  for (const CrowdLaw& law : entry.laws) {
+  for (const MultiContactLaw& law : entry.laws) {
     std::vector<std::string> cells{form_label(entry, law)};
     for (const Estimate* e : {&law.a, &law.b, &law.delta, &law.m0, &law.m1, &law.m2}) cells.push_back(with_error(*e));
     for (const double x : {law.error_fitted, law.error_held_out, law.error_cross})
@@ -135,7 +137,7 @@ std::string parameter_table(const LawTableEntry& entry) {
   return table.html();
 }
 
-std::string entry_body(const LawTableEntry& entry, const std::optional<CrowdMeasurements>& crowd) {
+std::string entry_body(const LawTableEntry& entry, const std::optional<MultiContactMeasurements>& multi_contact) {
   std::string body = paragraph(fmt::format(
       "Solid fraction {:.4f} ± {:.4f}, {} packings. Taken where none is named: the {} law. Measured up to h/Rs = "
       "{:.2f} "
@@ -143,14 +145,14 @@ std::string entry_body(const LawTableEntry& entry, const std::optional<CrowdMeas
       "{}; {}.",
       entry.solid_fraction, entry.solid_fraction_error, entry.packings, to_string(entry.best), entry.overlap_max,
       entry.volume_max, entry.grain_overlap_max, slides_text(entry), unloading_text(entry)));
-  for (const CrowdLaw& law : entry.laws)
+  for (const MultiContactLaw& law : entry.laws)
     if (law.status != LawStatus::good)
       body += paragraph("The " + to_string(law.form) + " law is " + to_string(law.status) +
                         (law.reason.empty() ? "" : ": " + law.reason) + ".");
   body += parameter_table(entry) + error_table(entry);
-  if (!crowd) return body;
-  const CrowdMeasurements data = mean_over_orientations(*crowd);  // states point to its configurations
-  const std::vector<CrowdStates> states = average_states(data);
+  if (!multi_contact) return body;
+  const MultiContactMeasurements data = mean_over_orientations(*multi_contact);  // states point to its configurations
+  const std::vector<MultiContactStates> states = average_states(data);
   std::vector<std::string> figures;
   for (const Group& g : kGroups) {
     const std::string f = group_figure(g, states, entry);
@@ -160,10 +162,10 @@ std::string entry_body(const LawTableEntry& entry, const std::optional<CrowdMeas
 }
 
 /// The measurement in the directory belongs to the entry of the same solid fraction.
-bool measured_here(const LawTableEntry& entry, const CrowdMeasurements& crowd) {
+bool measured_here(const LawTableEntry& entry, const MultiContactMeasurements& multi_contact) {
   double sum = 0.0;
-  for (const PackingInfo& p : crowd.packings) sum += p.solid_fraction;
-  return std::abs(sum / static_cast<double>(crowd.packings.size()) - entry.solid_fraction) < 1e-9;
+  for (const PackingInfo& p : multi_contact.packings) sum += p.solid_fraction;
+  return std::abs(sum / static_cast<double>(multi_contact.packings.size()) - entry.solid_fraction) < 1e-9;
 }
 
 }  // namespace
@@ -173,10 +175,12 @@ std::string law_table_section(const RunData& run) {
   std::string body;
   for (const LawTableEntry& entry : run.law_table->entries) {
     if (entry.find(entry.best) == nullptr) continue;
-    const bool here = run.crowd && !run.crowd->packings.empty() && measured_here(entry, *run.crowd);
-    body += entry_body(entry, here ? run.crowd : std::nullopt);
+    const bool here =
+        run.multi_contact && !run.multi_contact->packings.empty() && measured_here(entry, *run.multi_contact);
+    body += entry_body(entry, here ? run.multi_contact : std::nullopt);
   }
-  return section("law-table", "Laws of soft particles with several neighbours", body);
+  return section("law-table", "Laws of soft particles with several neighbours",
+                 "Force on one neighbour while others press too: measured means and the fitted laws.", body);
 }
 
 }  // namespace softgrain::report

@@ -17,22 +17,22 @@ namespace {
 
 constexpr double kFarAlong = 1.5;  ///< standard deviations: where a component is tried; 95 % of draws are within 2
 constexpr std::size_t kMostComponents = 4;
-constexpr double kShareHeld = 0.95;  ///< of the scatter of forces
+constexpr double kShareHeld = 0.95;  ///< share of the scatter of forces that the components must hold
 
 constexpr double kOneWay = 2.0;  ///< standard deviations within which a change of the law moves the stress one way
 
 /// Runs of a band on one sample: as a change of the law goes, so does the stress. Two runs at +-kFarAlong of a
 /// component give its slope and its bend. Paths of packings jump now and then, so that one of three runs has slipped at
 /// some point and the others have not: hence the bound of the bend.
-struct Bend {
+struct Curvature {
   double slope = 0.0;
-  double bend = 0.0;
+  double curvature = 0.0;
 
-  Bend(double stress, double below, double above)
+  Curvature(double stress, double below, double above)
       : slope((above - below) / (2.0 * kFarAlong)),
-        bend(std::clamp((above + below - 2.0 * stress) / (2.0 * kFarAlong * kFarAlong),
-                        -std::abs(slope) / (2.0 * kOneWay), std::abs(slope) / (2.0 * kOneWay))) {}
-  [[nodiscard]] double at(double s) const { return s * (slope + bend * s); }
+        curvature(std::clamp((above + below - 2.0 * stress) / (2.0 * kFarAlong * kFarAlong),
+                             -std::abs(slope) / (2.0 * kOneWay), std::abs(slope) / (2.0 * kOneWay))) {}
+  [[nodiscard]] double at(double s) const { return s * (slope + curvature * s); }
 };
 
 bool like(const MacroCurve& variant, const MacroCurve& curve, BandOf of) {
@@ -112,8 +112,8 @@ class DrawnBand {
     out.assign(components_.scores.size(), stress);
     for (std::size_t c = 0; c < components_.direction.size(); ++c)
       for (std::size_t k = 0; k < stress.size(); ++k) {
-        const Bend bend(stress[k], banded_stress(*ran[2 * c], of)[k], banded_stress(*ran[2 * c + 1], of)[k]);
-        for (std::size_t r = 0; r < out.size(); ++r) out[r][k] += bend.at(components_.scores[r][c]);
+        const Curvature curvature(stress[k], banded_stress(*ran[2 * c], of)[k], banded_stress(*ran[2 * c + 1], of)[k]);
+        for (std::size_t r = 0; r < out.size(); ++r) out[r][k] += curvature.at(components_.scores[r][c]);
       }
     return out;
   }
@@ -136,8 +136,8 @@ class DrawnBand {
     for (std::size_t v = first_off_; v < ran.size(); v += 2) {
       MacroBand& band = ways.emplace_back();
       for (std::size_t k = 0; k < stress.size(); ++k) {
-        const Bend bend(stress[k], banded_stress(*ran[v], of)[k], banded_stress(*ran[v + 1], of)[k]);
-        const auto [low, high] = std::minmax({bend.at(-kNormal95), bend.at(kNormal95)});
+        const Curvature curvature(stress[k], banded_stress(*ran[v], of)[k], banded_stress(*ran[v + 1], of)[k]);
+        const auto [low, high] = std::minmax({curvature.at(-kNormal95), curvature.at(kNormal95)});
         band.low.push_back(stress[k] + std::min(low, 0.0));
         band.high.push_back(stress[k] + std::max(high, 0.0));
       }
@@ -161,7 +161,7 @@ class DrawnBand {
   BandRecord record_;
 };
 
-/// Of the samples of an engine that were run twice; 0 where none was.
+/// Relative standard deviation of a run, from the samples of an engine that were run twice; 0 where none was.
 double noise_of(const std::vector<MacroCurve>& curves, const std::string& engine) {
   std::vector<double> squares;
   for (const MacroCurve& c : curves) {
@@ -229,8 +229,8 @@ std::vector<BandedEnd> banded_ends(const std::vector<MacroCurve>& curves) {
         stress.push_back(own);
         end.strain = c.strain.back();
         ++end.count;
-        if (!c.law_beyond.empty() && !c.law_asked.empty() && c.law_asked.back() > 0.0)
-          end.beyond = std::max(end.beyond, c.law_beyond.back() / c.law_asked.back());
+        if (!c.law_beyond.empty() && !c.law_evaluations.empty() && c.law_evaluations.back() > 0.0)
+          end.beyond = std::max(end.beyond, c.law_beyond.back() / c.law_evaluations.back());
         low[0] += own - law->low.back(), high[0] += law->high.back() - own;
         low[1] += own - off->low.back(), high[1] += off->high.back() - own;
       }

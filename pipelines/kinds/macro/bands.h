@@ -19,13 +19,13 @@ struct BandRecord {
   std::int64_t runs = 0;        ///< per sample, beside the run itself
   double explained = 1.0;       ///< share of the scatter of the law's forces that the components hold
   std::string origin;
-  double discrepancy = 0.0;  ///< of the logarithm of forces, one standard deviation
+  double discrepancy = 0.0;  ///< error of the form of law: standard deviation of the logarithm of forces
   std::string discrepancy_origin;
   double noise = 0.0;  ///< relative standard deviation of one run; 0: not run again
 };
 
 /// Runs what the bands of these laws need on all samples, and adds them to their curves (common/data/macro_band.h).
-/// Bands of a law that has none to draw from: BadInput before any run (see law_draws).
+/// Bands of a law that has none to draw from: InputError before any run (see law_draws).
 std::vector<BandRecord> add_bands(const MacroRuns& runs, const std::vector<LawDraws>& laws, const Run& run,
                                   std::vector<MacroCurve>& curves);
 
@@ -44,13 +44,13 @@ struct BandedEnd {
   double law = 0.0;
   double discrepancy = 0.0;
   double samples = 0.0;    ///< Student's, of the mean over samples; NaN with one
-  std::int64_t count = 0;  ///< of samples
+  std::int64_t count = 0;  ///< number of samples
   double beyond = 0.0;     ///< share of the uses of the law at this point beyond what was measured
   /// False where the interval would hold 0 too: nothing is known of a stress but that it is not larger. Ends are NaN.
   bool determined = true;
 };
 
-/// Of every engine that has bands.
+/// The BandedEnd of every engine that has bands.
 std::vector<BandedEnd> banded_ends(const std::vector<MacroCurve>& curves);
 
 /// "law: axial stress at strain 0.2: 1234 Pa, 95 % 1100 to 1380 (law 4 %, discrepancy 8 %, samples 5 %)".

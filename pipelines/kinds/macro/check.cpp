@@ -13,13 +13,13 @@
 #include "macrosim/lammps_run/lammps_program.h"
 #include "macrosim/test_protocol.h"
 #include "microsim/shell_packing.h"
-#include "pipelines/kinds/law_table/crowd_law_fit.h"
+#include "pipelines/kinds/law_table/multi_contact_law_fit.h"
 #include "pipelines/kinds/macro/memory.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/soft_particle/check.h"
-#include "pipelines/kinds/soft_particle/kept_states.h"
+#include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 #include "pipelines/law/law_values.h"
 #include "pipelines/results/summary.h"
 #include "pipelines/run/trial_times.h"
@@ -33,9 +33,9 @@ using nlohmann::json;
 /// Grains in a soft particle of the published kind.
 constexpr double kGrainsPerSoft = 400.0;
 /// Above it the pair law, measured with one contact, is far off.
-constexpr double kCrowdedShare = 0.05;
+constexpr double kMultiContactedShare = 0.05;
 
-/// Of one sample.
+/// Numbers of bodies in one sample.
 struct BodyCounts {
   double all = 0.0;
   double soft = 0.0;
@@ -46,7 +46,8 @@ BodyCounts counts_of(const std::vector<MacroBody>& bodies) {
           static_cast<double>(std::count_if(bodies.begin(), bodies.end(), [](const MacroBody& b) { return b.soft; }))};
 }
 
-/// Of the samples that the run draws; of scenes by construction, which are packed to be counted, the first alone.
+/// Counts the bodies of the samples that the run draws. Samples by construction must be packed to be counted, so only
+/// the first one is.
 std::vector<BodyCounts> count_bodies(const MacroSetup& setup, std::uint64_t seed) {
   if (setup.given) return {counts_of(setup.given->bodies)};
   if (setup.spec.construction == Construction::voids && !setup.spec.cells)
@@ -93,11 +94,11 @@ std::string load_text(const MacroSpec& spec) {
       overlap.mean, overlap.largest);
 }
 
-void beyond_range(const std::string& what, double asked, double end, Beyond beyond, Findings& out) {
+void beyond_range(const std::string& what, double asked, double end, Extrapolation beyond, Findings& out) {
   if (!(end > 0.0) || !(asked > end)) return;
-  const char* then = beyond == Beyond::error   ? "the run will end there"
-                     : beyond == Beyond::clamp ? "forces will stay at that of the end"
-                                               : "the law will be extrapolated";
+  const char* then = beyond == Extrapolation::error   ? "the run will end there"
+                     : beyond == Extrapolation::clamp ? "forces will stay at that of the end"
+                                                      : "the law will be extrapolated";
   out.warn(fmt::format("{}: about {:.2g} at the end of the test, measured up to {:.2g}: {}", what, asked, end, then));
 }
 
@@ -106,7 +107,7 @@ void check_card_law(const LawCard& card, const LawSources& laws, const MacroSpec
   for (const PairKind kind : kPairKinds) {
     const PairLaw* law = card.find(kind);
     if (law == nullptr) continue;
-    const Beyond beyond = laws.beyond.value_or(law->beyond);
+    const Extrapolation beyond = laws.beyond.value_or(law->beyond);
     out.add_once("law " + to_string(kind),
                  {{"status", to_string(law->status)}, {"delta_max", law->delta_max}, {"beyond", to_string(beyond)}},
                  fmt::format("law {}: {}, fitted up to Delta = {:.3g}", to_string(kind), to_string(law->status),
@@ -116,7 +117,7 @@ void check_card_law(const LawCard& card, const LawSources& laws, const MacroSpec
       out.warn("the " + to_string(kind) + " law is underdetermined: " + law->reason);
   }
   (void)pair_law_of(card, spec, "law", laws.beyond);  // says what is not usable
-  if (spec.soft_share > kCrowdedShare)
+  if (spec.soft_share > kMultiContactedShare)
     out.warn(fmt::format(
         "soft particles hold {:.0f} % of the bodies' volume and will have several neighbours each: {}; take a "
         "law table",
@@ -124,7 +125,7 @@ void check_card_law(const LawCard& card, const LawSources& laws, const MacroSpec
 }
 
 /// Ratios of radii between neighbours of a soft particle and itself that a scene can have.
-void check_ratios(const MacroSpec& spec, const CrowdLaw& law, Findings& out) {
+void check_ratios(const MacroSpec& spec, const MultiContactLaw& law, Findings& out) {
   const auto compare = [&](PartnerKind kind, double low, double high) {
     const std::vector<PartnerRow> rows = law.rows(kind);
     if (rows.empty()) {
@@ -148,17 +149,17 @@ void check_ratios(const MacroSpec& spec, const CrowdLaw& law, Findings& out) {
 }
 
 /// S of a soft particle between six planes at the mean overlap, against what was measured.
-void check_volume(const LawTable& table, const LawSources& laws, Crowd form, double fraction, const MacroSpec& spec,
+void check_volume(const LawTable& table, const LawSources& laws, LawForm form, double fraction, const MacroSpec& spec,
                   Findings& out) {
-  law::CrowdQuestion q;
+  law::MultiContactQuestion q;
   q.form = form;
   q.arrangement = Arrangement::cube;
   q.solid_fraction = fraction;
   q.range = laws.range;
   q.beyond = laws.beyond;
   const AffineOverlap overlap = affine_overlap(spec);
-  const law::CrowdAnswer answer = law::crowd_values(table, q, {overlap.mean});
-  const Beyond beyond = laws.beyond.value_or(answer.entry.beyond);
+  const law::MultiContactAnswer answer = law::multi_contact_values(table, q, {overlap.mean});
+  const Extrapolation beyond = laws.beyond.value_or(answer.entry.beyond);
   const double volume = answer.points.front().volume;
   out.add("law_volume", {{"expected", volume}, {"measured", answer.entry.volume_max}},
           fmt::format(
@@ -168,7 +169,7 @@ void check_volume(const LawTable& table, const LawSources& laws, Crowd form, dou
   beyond_range("lost volume of soft particles", volume, answer.entry.volume_max, beyond, out);
   beyond_range("overlaps of single soft contacts along the load", overlap.largest, answer.entry.overlap_max, beyond,
                out);
-  const CrowdLaw& law = *answer.entry.find(answer.form);
+  const MultiContactLaw& law = *answer.entry.find(answer.form);
   if (law.status != LawStatus::good)
     out.warn("the " + to_string(answer.form) + " law is " + to_string(law.status) + ": " + law.reason);
 }
@@ -187,7 +188,7 @@ void check_table_law(const LawTable& table, const LawSources& given, WantedForm 
   const NamedLaws named = table_law_of(laws, form, spec, contents_fraction);  // says what is not usable
   std::string remark;
   const LawTableEntry entry = law_entry(laws, contents_fraction, remark);
-  const CrowdLaw& law = *entry.find(named.form);
+  const MultiContactLaw& law = *entry.find(named.form);
   json facts = json_of(named.identity);
   facts["error_cross"] = law.error_cross;
   out.add_once("law", facts,
@@ -236,7 +237,7 @@ void check_laws_of(const LawSources& laws, const MacroSpec& spec, const MacroCon
   if (spec.cells) return check_cells(*spec.cells, spec, out);
   if (spec.soft_share > 0.0) out.add("picture", "shells", kMatterInShells);
   for (const WantedForm form : laws.forms) {
-    if (laws.card && (form == Crowd::pair || !laws.table))
+    if (laws.card && (form == LawForm::pair || !laws.table))
       check_card_law(*laws.card, laws, spec, out);
     else
       check_table_law(*laws.table, laws, form, spec, content, out);
@@ -261,7 +262,7 @@ void check_lammps(const MacroSetup& setup, const BodyCounts& count, Findings& ou
       out.warn(lammps::missing_text());
     else
       out.add("lammps_program", program, "LAMMPS: " + program);
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     out.warn(e.what());
   }
 }

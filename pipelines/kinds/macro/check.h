@@ -11,7 +11,7 @@
 namespace softgrain {
 
 /// A kind = "macro" scene; `law` replaces its key of that name, and the law is opened when there is one. Throws
-/// BadInput, FileTrouble.
+/// InputError, IoError.
 void check_macro_scene(const Scene& scene, const std::string& law, Findings& out);
 
 /// What the first `count` packings of a seed bring into the soft particles of a scene, the first of them tried already;

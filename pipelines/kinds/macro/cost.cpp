@@ -79,7 +79,7 @@ double try_test(const MacroSpec& spec, State& state, const Test& test) {
     try {
       test(state, spec, control);
     } catch (const TrialOver&) {
-    } catch (const NotUsable&) {  // the run will say so
+    } catch (const UnusableResult&) {  // the run will say so
     }
   });
   return share > 0.0 ? seconds / share : 0.0;
@@ -129,7 +129,7 @@ double relaxing_passes(const MacroSpec& spec, Twin twin) {
   return (twin == Twin::free ? 1.5 : 1.0) * increments * 650.0 * std::pow(strain / 0.005, 0.3);
 }
 
-/// And of its motion. The smallest grain sets the step.
+/// Loop passes of the motion of a twin over a whole test. The smallest grain sets the time step.
 double moving_passes(const MacroSpec& spec, const MacroContent& content) {
   constexpr double kPerNaturalTime = 0.98;  ///< R sqrt(rho/E) of the smallest grain, at step_factor 1
   constexpr double kPublished = 0.05;       // smallest grain of the published soft particle over its radius
@@ -154,7 +154,7 @@ double band_runs(const MacroSetup& setup) {
   return setup.band_estimator == BandEstimator::draws ? static_cast<double>(setup.bands + 4) : kMostAlongComponents;
 }
 
-/// Over bodies: contacts, and the passes of an increment.
+/// Exponent of the time of a test over the number of bodies: contacts, and the passes of an increment.
 constexpr double kTestExponent = 1.2;
 
 void spend_on_twins(const MacroSetup& setup, const MacroContent& content, Findings& out) {

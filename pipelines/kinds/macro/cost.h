@@ -12,13 +12,13 @@ namespace softgrain {
 
 /// What the scene holds, and what is inside its soft particles.
 struct MacroContent {
-  double bodies = 0.0;  ///< of a sample, mean
+  double bodies = 0.0;  ///< bodies in a sample, mean
   double soft = 0.0;
   double grains_per_soft = 0.0;        ///< mean over contents
-  std::vector<std::int64_t> grains{};  ///< of each content, in their order; fewer than there are where it took too long
-  double smallest_grain = 0.0;         ///< over the radius of its shell; 0: not known
+  std::vector<std::int64_t> grains{};  ///< grains in each content, in order; fewer entries where counting took too long
+  double smallest_grain = 0.0;         ///< radius of the smallest grain over that of its shell; 0: not known
   std::int64_t contents = 0;           ///< different ones; soft particle k holds number k modulo this
-  double grain_pass_seconds = 0.0;     ///< of one core, per loop pass and grain; 0: no twin is run
+  double grain_pass_seconds = 0.0;     ///< core seconds per loop pass and grain; 0: no twin is run
   double solid_fraction = 0.0;         ///< 0: not known
   bool prepared = false;               ///< samples are those of another scene
   bool untimed = false;                ///< somebody else tells the time

@@ -104,13 +104,13 @@ class Sample {
     if (note_diverged(rows, out.curve)) return out;
     if (rows.empty() ||
         (!lammps::ended_early(rows.back()) && static_cast<std::int64_t>(rows.size()) < recorded_points(spec())))
-      throw FileTrouble(fmt::format("{}/{}: {} of {} points, although LAMMPS ended without a complaint", where_,
-                                    lammps::kPointsFile, rows.size(), recorded_points(spec())));
+      throw IoError(fmt::format("{}/{}: {} of {} points, although LAMMPS ended without a complaint", where_,
+                                lammps::kPointsFile, rows.size(), recorded_points(spec())));
     if (!fs::exists(where_ + "/" + lammps::kEndFile))
-      throw FileTrouble(where_ + ": the last state is not there, although LAMMPS ended without a complaint");
+      throw IoError(where_ + ": the last state is not there, although LAMMPS ended without a complaint");
     try {
       read_states(rows, macro, out);
-    } catch (const BadInput& e) {  // a cell that has become too small for its bodies
+    } catch (const InputError& e) {  // a cell that has become too small for its bodies
       out.curve.usable = false;
       out.curve.note +=
           (out.curve.note.empty() ? "" : "; ") + fmt::format("its last state cannot be read: {}", e.what());
@@ -121,7 +121,7 @@ class Sample {
  private:
   [[nodiscard]] const MacroSpec& spec() const { return runs_.setup.spec; }
 
-  /// Of compaction and test; a compaction takes about as long as five points.
+  /// Share of compaction and test that is done. A compaction takes about as long as five points.
   [[nodiscard]] double share_done() const {
     const auto points = static_cast<double>(lammps::count_points(where_));
     const double before = spec().preparation == Preparation::lammps ? 5.0 : 0.0;
@@ -138,16 +138,16 @@ class Sample {
     const auto rows = read_rows();
     const double strain = rows.empty() ? strain_at(spec(), 0) : rows.back()[lammps::Point::strain];
     const std::string run = fmt::format("macro run '{}'", runs_.law.name);
-    if (log.says(lammps::kNotJammed)) throw NotUsable(not_jammed_text(spec()));
+    if (log.says(lammps::kNotJammed)) throw UnusableResult(not_jammed_text(spec()));
     if (log.says("Lost atoms"))
-      throw NotUsable(fmt::format("{}: the centre of a body is behind a wall beyond strain {:.6f}", run, strain));
+      throw UnusableResult(fmt::format("{}: the centre of a body is behind a wall beyond strain {:.6f}", run, strain));
     if (log.says("Non-numeric"))
-      throw NotUsable(fmt::format("{}: relaxation diverged beyond strain {:.6f}", run, strain));
-    throw FileTrouble(fmt::format("{} {}: {}; the whole log is in {}/{}; what was recorded is saved, --resume goes on",
-                                  lammps::kProgramName,
-                                  end.signal != 0 ? fmt::format("was ended by signal {}", end.signal)
-                                                  : fmt::format("ended with status {}", end.status),
-                                  log.complaint(), where_, lammps::kLogFile));
+      throw UnusableResult(fmt::format("{}: relaxation diverged beyond strain {:.6f}", run, strain));
+    throw IoError(fmt::format("{} {}: {}; the whole log is in {}/{}; what was recorded is saved, --resume goes on",
+                              lammps::kProgramName,
+                              end.signal != 0 ? fmt::format("was ended by signal {}", end.signal)
+                                              : fmt::format("ended with status {}", end.status),
+                              log.complaint(), where_, lammps::kLogFile));
   }
 
   void take_over_preparation() {
@@ -165,7 +165,7 @@ class Sample {
                           : rows.empty() ? 0.0
                                          : rows.back()[lammps::Point::strain];
     note_relaxation(curve, {RelaxationEnd::diverged, 0, HUGE_VAL}, strain, spec().tolerance);
-    if (rows.empty()) throw NotUsable(fmt::format("macro run '{}': {}", curve.engine, curve.note));
+    if (rows.empty()) throw UnusableResult(fmt::format("macro run '{}': {}", curve.engine, curve.note));
     return true;
   }
 
@@ -211,7 +211,7 @@ class Sample {
         const double x = macro.system.particles.sphere[static_cast<std::size_t>(k)].x[a];
         if (x < low[a] || x > high[a]) body = k;
       }
-    throw NotUsable(behind_wall_text(curve.engine, body, curve.strain.back()));
+    throw UnusableResult(behind_wall_text(curve.engine, body, curve.strain.back()));
   }
 
   const LammpsRuns& runs_;
@@ -224,26 +224,26 @@ class Sample {
 }  // namespace
 
 std::optional<LammpsEngine> read_engine(const CommonOptions& options, std::int64_t bodies) {
-  const auto engine = options.engine.empty() ? MacroEngine::softgrain : from_word<MacroEngine>(options.engine);
+  const auto engine = options.engine.empty() ? MacroEngine::softgrain : parse_enum<MacroEngine>(options.engine);
   if (!engine) {
     const std::string near = nearest_word(options.engine, {"softgrain", "lammps"});
-    throw BadInput("--engine " + options.engine + ": " + (near.empty() ? "" : "nearest is '" + near + "'; ") +
-                   "known are softgrain and lammps");
+    throw InputError("--engine " + options.engine + ": " + (near.empty() ? "" : "nearest is '" + near + "'; ") +
+                     "known are softgrain and lammps");
   }
   if (engine == MacroEngine::softgrain) {
-    if (options.ranks > 0) throw BadInput("--ranks goes with --engine lammps");
-    if (options.write_only) throw BadInput("--write-only goes with --engine lammps");
+    if (options.ranks > 0) throw InputError("--ranks goes with --engine lammps");
+    if (options.write_only) throw InputError("--write-only goes with --engine lammps");
     return std::nullopt;
   }
   if (options.write_only && options.ranks > 0)
-    throw BadInput("--ranks goes with a run: with --write-only LAMMPS is not started");
+    throw InputError("--ranks goes with a run: with --write-only LAMMPS is not started");
   LammpsEngine lammps{std::max<std::int64_t>(options.ranks, 1), options.write_only, ""};
   if (lammps.write_only) return lammps;
   lammps.program = lammps::find_program();
-  if (lammps.program.empty()) throw BadInput(lammps::missing_text());
+  if (lammps.program.empty()) throw InputError(lammps::missing_text());
   if (lammps.ranks > bodies)
-    throw BadInput(fmt::format("--ranks {}: the scene has {} bodies, and a rank needs one at least; allowed: 1 to {}",
-                               lammps.ranks, bodies, bodies));
+    throw InputError(fmt::format("--ranks {}: the scene has {} bodies, and a rank needs one at least; allowed: 1 to {}",
+                                 lammps.ranks, bodies, bodies));
   (void)lammps::command_words(lammps.program, lammps.ranks, {});  // mpirun must be there
   return lammps;
 }
@@ -269,7 +269,7 @@ void write_lammps_files(const LammpsRuns& runs, const std::vector<MacroPacking>&
     const std::string where = lammps_directory(context, sample, runs.folder);
     std::error_code error;
     fs::create_directories(where, error);
-    if (error) throw FileTrouble(where + ": cannot be created: " + error.message());
+    if (error) throw IoError(where + ": cannot be created: " + error.message());
     write_sample(runs, packings[k], sample, where);
   }
 }

@@ -18,7 +18,7 @@ struct LammpsEngine {
 };
 
 /// --engine, --ranks (of the smallest scene, which has so many bodies, one each at least) and --write-only; nothing for
-/// our own engine. Throws BadInput.
+/// our own engine. Throws InputError.
 std::optional<LammpsEngine> read_engine(const CommonOptions& options, std::int64_t bodies);
 
 /// What all samples share.
@@ -26,10 +26,10 @@ struct LammpsRuns {
   const MacroSetup& setup;
   const NamedLaws& law;
   double inner_solid_fraction = 1.0;
-  std::string title;              ///< for people
+  std::string title;              ///< title of the scene, for people
   std::string identity;           ///< scene, seed and law: tables of another one are refused
-  std::string name = "macro";     ///< as MacroRuns::name
-  std::string folder = "lammps";  ///< of samples: its number follows
+  std::string name = "macro";     ///< name of the runs, as MacroRuns::name
+  std::string folder = "lammps";  ///< folder of the samples; the number of a sample follows
 };
 
 /// DIR/FOLDER-K of sample K.
@@ -42,11 +42,11 @@ std::string lammps_identity(const Provenance& provenance, const std::string& mor
 std::string written_text(const std::string& directories);
 
 /// The bodies, laws and script of every sample, to lammps_directory(). What an earlier part of the same run left there
-/// is kept. Throws FileTrouble.
+/// is kept. Throws IoError.
 void write_lammps_files(const LammpsRuns& runs, const std::vector<MacroPacking>& packings, const RunContext& context);
 
 /// Runs what write_lammps_files() wrote, one sample after another, from the last recorded point on. With preparation
-/// "lammps" the packings are those that LAMMPS prepared afterwards. Throws FileTrouble when LAMMPS fails, NotUsable
+/// "lammps" the packings are those that LAMMPS prepared afterwards. Throws IoError when LAMMPS fails, UnusableResult
 /// when bodies are lost or do not jam, Interrupted.
 std::vector<RunOutcome> run_with_lammps(const LammpsRuns& runs, const LammpsEngine& engine,
                                         std::vector<MacroPacking>& packings, const RunContext& context);

@@ -62,7 +62,7 @@ void require_macro_memory(const SceneTable& macro, const MacroSetup& setup, cons
   const double grains =
       setup.twins.empty() ? 0.0 : static_cast<double>(generate_shell_packing(content, 1, 0).radius.size());
   const std::string problem = macro_memory_problem(setup, grains, available);
-  if (!problem.empty()) macro.reject("bodies", problem);
+  if (!problem.empty()) macro.throw_error("bodies", problem);
 }
 
 }  // namespace softgrain

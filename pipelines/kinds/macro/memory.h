@@ -16,7 +16,7 @@ double macro_memory(double bodies);
 std::string macro_memory_problem(const MacroSetup& setup, double grains, double available);
 
 /// Refuses a scene that does not fit, at its key `bodies`. `content`: what its twins are filled with; packed on trial
-/// where it matters. Throws BadInput.
+/// where it matters. Throws InputError.
 void require_macro_memory(const SceneTable& macro, const MacroSetup& setup, const SoftParticleSpec& content);
 
 }  // namespace softgrain

@@ -15,7 +15,8 @@ namespace softgrain {
 enum class BodyKind { solid, soft };
 
 template <>
-inline constexpr auto words<BodyKind> = word_list<BodyKind>({{BodyKind::solid, "solid"}, {BodyKind::soft, "soft"}});
+inline constexpr auto enum_names<BodyKind> = enum_name_list<BodyKind>({{BodyKind::solid, "solid"},
+                                                                       {BodyKind::soft, "soft"}});
 
 namespace {
 
@@ -27,8 +28,8 @@ std::size_t column_of(const CsvFile& csv, const char* name, Unit unit, const cha
   }
   std::string found;
   for (const CsvColumn& c : csv.columns()) found += (found.empty() ? "" : ", ") + c.title;
-  throw BadInput(fmt::format("{}: needs a column \"{}\"; a packing has x [m], y [m], z [m], r [m], kind; found: {}",
-                             csv.where(csv.header_line()), example, found));
+  throw InputError(fmt::format("{}: needs a column \"{}\"; a packing has x [m], y [m], z [m], r [m], kind; found: {}",
+                               csv.where(csv.header_line()), example, found));
 }
 
 struct Columns {
@@ -38,7 +39,7 @@ struct Columns {
 double required(const CsvFile& csv, const CsvRow& row, std::size_t column) {
   const auto value = csv.number(row, column, Unit::length);
   if (!value)
-    throw BadInput(fmt::format("{}: column \"{}\": is missing", csv.where(row.line), csv.columns()[column].title));
+    throw InputError(fmt::format("{}: column \"{}\": is missing", csv.where(row.line), csv.columns()[column].title));
   return *value;
 }
 
@@ -48,11 +49,11 @@ MacroBody body_of(const CsvFile& csv, const CsvRow& row, const Columns& c) {
   for (int a = 0; a < 3; ++a) body.x[a] = required(csv, row, places[static_cast<std::size_t>(a)]);
   body.r = required(csv, row, c.r);
   const auto complain = [&](std::size_t column, const std::string& problem) {
-    throw BadInput(fmt::format("{}: column \"{}\": {}: {}", csv.where(row.line), csv.columns()[column].title,
-                               row.cells[column], problem));
+    throw InputError(fmt::format("{}: column \"{}\": {}: {}", csv.where(row.line), csv.columns()[column].title,
+                                 row.cells[column], problem));
   };
   if (!(body.r > 0.0)) complain(c.r, "a radius must be above 0");
-  const auto kind = from_word<BodyKind>(row.cells[c.kind]);
+  const auto kind = parse_enum<BodyKind>(row.cells[c.kind]);
   if (!kind) complain(c.kind, "must be solid or soft");
   body.soft = kind == BodyKind::soft;
   return body;
@@ -74,7 +75,7 @@ void read_box(const CsvFile& csv, const Columns& c, MacroPacking& packing) {
   }
   const CsvSetting said = *csv.setting(kBoxNames);
   const auto complain = [&](const std::string& problem) {
-    throw BadInput(fmt::format("{}: {} = {}: {}", csv.where(said.line), said.title, said.value, problem));
+    throw InputError(fmt::format("{}: {} = {}: {}", csv.where(said.line), said.title, said.value, problem));
   };
   const bool unit = !said.unit.empty() || said.value.find('m') != std::string::npos;
   if (!unit && csv.columns()[c.x].unit != "m")
@@ -85,7 +86,7 @@ void read_box(const CsvFile& csv, const Columns& c, MacroPacking& packing) {
     if (!(packing.low[a] < packing.high[a])) complain("the high corner must be above the low one");
 }
 
-/// Of a periodic cell centres alone must be in it.
+/// Requires that all bodies are in the box. In a periodic cell only their centres must be.
 void require_inside(const CsvFile& csv, const MacroPacking& packing, const Columns& c, Boundary boundary) {
   const std::array<std::size_t, 3> places{c.x, c.y, c.z};
   for (std::size_t k = 0; k < packing.bodies.size(); ++k) {
@@ -95,7 +96,7 @@ void require_inside(const CsvFile& csv, const MacroPacking& packing, const Colum
       const double out = std::max(packing.low[a] - (b.x[a] - r), b.x[a] + r - packing.high[a]);
       if (out <= kGivenOverlap * b.r) continue;
       const std::size_t column = places[static_cast<std::size_t>(a)];
-      throw BadInput(
+      throw InputError(
           fmt::format("{}: column \"{}\": {}: the body is outside the box by {:.3g} of its radius; allowed: up to {:g}",
                       csv.where(csv.rows()[k].line), csv.columns()[column].title, csv.rows()[k].cells[column],
                       out / b.r, kGivenOverlap));
@@ -121,7 +122,7 @@ void require_apart(const CsvFile& csv, const MacroPacking& packing, Boundary bou
     const double overlap = a.r + b.r - norm(a.x - b.x - cell.image_shift(pair.image));
     if (overlap <= kGivenOverlap * smaller) continue;
     const auto [first, second] = std::minmax(csv.rows()[at(pair.i)].line, csv.rows()[at(pair.j)].line);
-    throw BadInput(
+    throw InputError(
         fmt::format("{}: columns x, y, z: overlaps the body of line {} by {:.3g} of the smaller radius; allowed: up "
                     "to {:g}",
                     csv.where(second), first, overlap / smaller, kGivenOverlap));
@@ -131,7 +132,7 @@ void require_apart(const CsvFile& csv, const MacroPacking& packing, Boundary bou
 /// A cell must be given, and be longer than two diameters of the largest body. All centres go home into it.
 void make_periodic(const CsvFile& csv, MacroPacking& packing) {
   if (!csv.setting(kBoxNames))
-    throw BadInput(fmt::format(
+    throw InputError(fmt::format(
         "{}: a periodic packing says its cell: \"# box [m] = 0 0 0 0.1 0.1 0.1\", the low corner and the high one",
         csv.where(csv.header_line())));
   const Vec3 size = packing.size();
@@ -139,8 +140,9 @@ void make_periodic(const CsvFile& csv, MacroPacking& packing) {
   for (std::size_t k = 0; k < packing.bodies.size(); ++k) {
     MacroBody& b = packing.bodies[k];
     if (4.1 * b.r > shortest)
-      throw BadInput(fmt::format("{}: images of a body must be at least two diameters apart: the cell is {:.3g} m long",
-                                 csv.where(csv.rows()[k].line), shortest));
+      throw InputError(
+          fmt::format("{}: images of a body must be at least two diameters apart: the cell is {:.3g} m long",
+                      csv.where(csv.rows()[k].line), shortest));
     for (int a = 0; a < 3; ++a) b.x[a] -= size[a] * std::floor((b.x[a] - packing.low[a]) / size[a]);
   }
 }
@@ -179,7 +181,7 @@ MacroPacking read_packing_file(const std::string& path, Boundary boundary) {
   csv.require_known_columns({"x", "y", "z", "r", "kind"}, "a packing");
   MacroPacking packing;
   for (const CsvRow& row : csv.rows()) packing.bodies.push_back(body_of(csv, row, columns));
-  if (packing.bodies.empty()) throw BadInput(csv.where(csv.header_line()) + ": no body");
+  if (packing.bodies.empty()) throw InputError(csv.where(csv.header_line()) + ": no body");
   read_box(csv, columns, packing);
   require_inside(csv, packing, columns, boundary);
   if (boundary == Boundary::periodic) make_periodic(csv, packing);

@@ -18,7 +18,7 @@ std::string packing_key(const MacroSpec& spec, std::uint64_t seed, std::uint64_t
 /// A table of bodies as CSV: columns "x [m]", "y [m]", "z [m]", "r [m]" (or other lengths) and "kind", which is solid
 /// or soft. The box in a comment "# box [mm] = x y z x y z" (any unit of length), its low and its high corner; without
 /// it the tightest one. A periodic cell must be said. Other columns and other comments that name a value are refused.
-/// Throws FileTrouble, and BadInput with line and column for what is no body, for a body outside the box and for two
+/// Throws IoError, and InputError with line and column for what is no body, for a body outside the box and for two
 /// that overlap by more than kGivenOverlap of the smaller radius.
 MacroPacking read_packing_file(const std::string& path, Boundary boundary = Boundary::walls);
 

@@ -32,7 +32,8 @@ void check_macro_file(const std::string& path, Findings& out) {
     if (!c.usable) out.warn(fmt::format("{} sample {} is not usable: {}", c.engine, c.sample, c.note));
     if (!c.law_beyond.empty() && c.law_beyond.back() > 0.0)
       out.warn(fmt::format("{} sample {}: {:.0f} of {:.0f} uses of its law lay beyond what was measured at the end",
-                           c.engine, c.sample, c.law_beyond.back(), c.law_asked.empty() ? 0.0 : c.law_asked.back()));
+                           c.engine, c.sample, c.law_beyond.back(),
+                           c.law_evaluations.empty() ? 0.0 : c.law_evaluations.back()));
   }
 }
 
@@ -76,14 +77,14 @@ std::string macro_line(const std::vector<MacroCurve>& macro) {
     return fmt::format("{} ({} samples); {} times fewer contact evaluations, {} times faster.", difference_line(c),
                        c.samples.size(), format_number(c.speedup_contact_evaluations, 3),
                        format_number(c.speedup_seconds, 3));
-  } catch (const BadInput& error) {
+  } catch (const InputError& error) {
     return error.what();
   }
 }
 
 std::vector<HeadLine> lines_of(const RunData& run) {
   if (run.macro.empty()) return {};
-  return {{"Macro", macro_line(run.macro)}};
+  return {{kResultLabel, macro_line(run.macro)}};
 }
 
 /// What the law is off by, and what it saves, beside the shelled twin.
@@ -100,7 +101,7 @@ void add_comparison(const std::vector<MacroCurve>& macro, std::vector<RunValue>&
                      unit * q.value.mean, unit * q.value.error});
     }
     out.push_back({"contact evaluations of the twin over those of the law", "", c.speedup_contact_evaluations});
-  } catch (const BadInput&) {  // no sample with two usable curves: said elsewhere
+  } catch (const InputError&) {  // no sample with two usable curves: said elsewhere
   }
 }
 
@@ -115,7 +116,7 @@ std::vector<RunCurve> curves_beside(const RunData& run) { return stress_curves(b
 NextSteps next_of(const RunData& run) {
   const auto any = [&](auto&& is) { return std::any_of(run.macro.begin(), run.macro.end(), is); };
   const bool twin = any([](const MacroCurve& c) { return c.twin() == Twin::shelled; });
-  const bool pair = any([](const MacroCurve& c) { return c.law.form == Crowd::pair; });
+  const bool pair = any([](const MacroCurve& c) { return c.law.form == LawForm::pair; });
   const bool several = any([](const MacroCurve& c) { return c.sample > 0; });
   const char* law = !twin ? "How far the law is off: the resolved twin of the same scene (`--set macro.resolved=true`; "
                             "`softgrain check` says "

@@ -13,8 +13,8 @@ std::string macro_section(const RunData& run);  ///< stress and strain, law agai
 }
 
 namespace report {
-/// Of the section of macro scenes: moduli and strength of all stages, and of tests in stages q/p and the change of
-/// volume over the axial strain. Empty where curves do not say their stages.
+/// Part of the section of macro scenes on stages: moduli and strength of all stages. For tests in stages it also has
+/// q/p and the change of volume over the axial strain. Empty where curves do not name their stages.
 std::string stage_parts(const std::vector<MacroCurve>& curves, MacroTest test);
 }  // namespace report
 

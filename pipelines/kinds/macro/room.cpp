@@ -36,7 +36,7 @@ double jammed_fraction(const MacroSpec& spec) {
   return fraction * (1.0 - kLoosest * std::min(1.0, spec.protocol.friction / 0.3));
 }
 
-/// And under a pressure over E: p/E = 0.045 x^1.75, x the loss of pores.
+/// Solid fraction under a pressure over E: p/E = 0.045 x^1.75, x the share of pores that is lost.
 double fraction_under(double jammed, double pressure) {
   return std::min(1.0, jammed + (1.0 - jammed) * std::pow(pressure / 0.045, 1.0 / 1.75));
 }
@@ -44,8 +44,9 @@ double fraction_under(double jammed, double pressure) {
 /// Least volume of bodies, over the cube of the largest radius, so that they can be placed at all.
 double placed_volume() { return kPackedShare * cube(kShortestPeriod); }
 
-/// And so that they have room under the first pressure of the preparation, which is up to 128 times that of its end,
-/// and where the test shortens the cell most.
+/// Least volume of bodies, over the cube of the largest radius, so that they can be placed and have room. They need
+/// room under the first pressure of the preparation, which is up to 128 times that of its end, and where the test
+/// shortens the cell most.
 double needed_volume(const MacroSpec& spec) {
   const double jammed = jammed_fraction(spec);
   const double first = fraction_under(jammed, spec.start_pressure * std::max(1.0, spec.protocol.first_pressure));
@@ -127,7 +128,7 @@ std::string room_doubt(const MacroSetup& setup, std::uint64_t seed, const std::s
 
 void require_room_for_images(const SceneTable& macro, const char* key, const MacroSetup& setup, std::uint64_t seed) {
   const std::string problem = room_problem(setup, seed, "bodies");
-  if (!problem.empty()) macro.mistake(key, problem + ", or boundary = \"walls\"");
+  if (!problem.empty()) macro.add_error(key, problem + ", or boundary = \"walls\"");
 }
 
 }  // namespace softgrain

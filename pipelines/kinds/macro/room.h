@@ -21,8 +21,8 @@ std::int64_t least_bodies(const MacroSpec& spec);
 /// periodic cell: ...: 130 or more have room". Empty: nothing. `what`: what bodies are called, in the plural.
 std::string room_problem(const MacroSetup& setup, std::uint64_t seed, const std::string& what);
 
-/// The same where samples of this or another seed may have no room left when they are pressed and strained: no reason
-/// to refuse them, as this is estimated.
+/// Says that samples of this or another seed may have no room left when they are pressed and strained. This is an
+/// estimate and no reason to refuse them. Empty: no doubt. `what` as in room_problem().
 std::string room_doubt(const MacroSetup& setup, std::uint64_t seed, const std::string& what);
 
 /// A mistake at `key` of this table where the samples of a macro scene have no room; walls are offered instead.

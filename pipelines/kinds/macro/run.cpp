@@ -47,7 +47,7 @@ std::string stage_line(const std::string& engine, const StageMeans& s) {
   return line;
 }
 
-std::string people_text(const LawIdentity& law, const std::vector<MacroCurve>& curves) {
+std::string console_summary(const LawIdentity& law, const std::vector<MacroCurve>& curves) {
   std::string text = "law: " + identity_text(law) + "\n";
   for (const MacroCurve& c : curves)
     text += fmt::format("{} sample {}: axial stress {:.5g} Pa at strain {:.3f}, lateral ratio {}, {:.1f} s{}\n",
@@ -70,10 +70,10 @@ void compare_with_twin(const std::vector<MacroCurve>& curves, MacroRunSummary& s
   try {
     const Comparison c = compare_curves(curves_of(curves, "law"), curves_of(curves, "shelled"));
     summary.runs.comparison = summary_of(c);
-    for (const std::string& one : c.undefined) summary.head.reject("law and twin: " + one);
+    for (const std::string& one : c.undefined) summary.head.mark_unusable("law and twin: " + one);
   } catch (const ZeroReference& e) {
-    summary.head.reject(std::string("law and twin cannot be compared: ") + e.what());
-  } catch (const BadInput& e) {
+    summary.head.mark_unusable(std::string("law and twin cannot be compared: ") + e.what());
+  } catch (const InputError& e) {
     summary.head.remarks.push_back(std::string("law and twin cannot be compared: ") + e.what());
   }
 }
@@ -148,16 +148,16 @@ std::vector<MacroCurve> curves_of_run(const MacroScene& scene, const std::option
   return curves;
 }
 
-/// Of the law, for its bands.
+/// Draws of the law for its bands.
 std::vector<LawDraws> draws_of(const MacroScene& scene, const NamedLaws& law,
                                const std::vector<ShellPacking>& contents) {
   return draws_for(scene.setup, scene.law, {law}, contents.empty() ? 0.0 : mean_solid_fraction(contents));
 }
 
-/// Before any work: that there is something to draw from.
+/// Checks before any work that the law has draws for bands. Throws InputError.
 void require_draws(const MacroScene& scene, bool lammps) {
-  if (lammps) throw BadInput("bands: runs in LAMMPS have none; leave --engine lammps out, or bands");
-  if (scene.law.cells) throw BadInput("bands: the card of a cell law keeps no refits; leave the key out");
+  if (lammps) throw InputError("bands: runs in LAMMPS have none; leave --engine lammps out, or bands");
+  if (scene.law.cells) throw InputError("bands: the card of a cell law keeps no refits; leave the key out");
   (void)draws_of(scene, scene_law(scene.law, scene.setup.spec, 0.0, "law"), {});
 }
 
@@ -172,14 +172,15 @@ ReadyMacro ready_macro(const Scene& scene, const CommonOptions& options) {
   MacroScene& macro = ready.macro;
   if (options.bands > 0) macro.setup.bands = options.bands;
   if (macro.setup.bands == 0 && scene.root().table("macro").has("band_estimator"))
-    scene.root().table("macro").reject("band_estimator", "goes with bands, the number of draws of the law, or --bands");
+    scene.root().table("macro").throw_error("band_estimator",
+                                            "goes with bands, the number of draws of the law, or --bands");
   if (macro.law_file.empty())
-    scene.root().reject(
+    scene.root().throw_error(
         "law", "no law: give --law law.toml (a card) or --law law_table.toml (a table), or the key law in the scene");
   const std::optional<LammpsEngine> lammps = ready.lammps = read_engine(options, macro.setup.spec.bodies);
   if (macro.setup.spec.preparation == Preparation::lammps && !lammps)
-    throw BadInput("key macro.preparation = \"lammps\" needs --engine lammps");
-  if (macro.law.cells && lammps) throw BadInput("--engine lammps: LAMMPS knows no cells; leave it out");
+    throw InputError("key macro.preparation = \"lammps\" needs --engine lammps");
+  if (macro.law.cells && lammps) throw InputError("--engine lammps: LAMMPS knows no cells; leave it out");
   if (macro.setup.bands > 0) require_draws(macro, lammps.has_value());
   return ready;
 }
@@ -215,7 +216,7 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
     summary.engine = engine_use(*lammps, lammps_directory(run.context, 0));
     add_directories(macro.setup.samples, run.context, summary);
   }
-  return run.finish(json_of(summary), people_text(identity, curves) + bands_text(bands, summary.band_ends));
+  return run.finish(json_of(summary), console_summary(identity, curves) + bands_text(bands, summary.band_ends));
 }
 
 }  // namespace

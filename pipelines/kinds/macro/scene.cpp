@@ -14,7 +14,7 @@
 #include "pipelines/kinds/macro/packing_source.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
-#include "pipelines/kinds/soft_particle/kept_states.h"
+#include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 
 namespace softgrain {
 
@@ -22,8 +22,8 @@ namespace softgrain {
 enum class CellStartFrom { pressure, density };
 
 template <>
-inline constexpr auto words<CellStartFrom> = word_list<CellStartFrom>({{CellStartFrom::pressure, "pressure"},
-                                                                       {CellStartFrom::density, "density"}});
+inline constexpr auto enum_names<CellStartFrom> = enum_name_list<CellStartFrom>({{CellStartFrom::pressure, "pressure"},
+                                                                                 {CellStartFrom::density, "density"}});
 
 namespace {
 
@@ -39,24 +39,24 @@ void read_power_laws(const SceneTable& t, MacroSpec& spec) {
 }
 
 /// What else depends on the largest and the smallest body.
-void take_ends(const std::optional<Grading>& sizes, double& radius_max, double& polydispersity) {
+void set_size_limits(const std::optional<Grading>& sizes, double& radius_max, double& polydispersity) {
   if (!sizes) return;
   radius_max = sizes->largest();
   polydispersity = sizes->largest() / sizes->smallest();
 }
 
-void mistake_beside(const SceneTable& t, std::initializer_list<const char*> keys, const std::string& problem) {
+void add_error_beside(const SceneTable& t, std::initializer_list<const char*> keys, const std::string& problem) {
   for (const char* key : keys)
-    if (t.has(key)) t.mistake(key, problem);
+    if (t.has(key)) t.add_error(key, problem);
 }
 
 }  // namespace
 
 void refuse_protocol_keys(const SceneTable& t) {
-  mistake_beside(t,
-                 {"inertial_number", "compaction_mu", "compaction_restitution", "coarse_share", "first_pressure",
-                  "preparation_tolerance", "preparation_passes"},
-                 "LAMMPS has a protocol of its own: goes without preparation = \"lammps\"");
+  add_error_beside(t,
+                   {"inertial_number", "compaction_mu", "compaction_restitution", "coarse_share", "first_pressure",
+                    "preparation_tolerance", "preparation_passes"},
+                   "LAMMPS has a protocol of its own: goes without preparation = \"lammps\"");
 }
 
 /// A name stands for all that defines a preparation; keys beside it replace single parts, whichever table gave them.
@@ -87,16 +87,16 @@ void read_preparation(const SceneTable& t, MacroSetup& setup) {
   p.max_passes = t.count("preparation_passes", 10, 100000000, p.max_passes);
   if (spec.preparation == Preparation::lammps) refuse_protocol_keys(t);
   if (!(p.inertial_number > 0.0))
-    mistake_beside(t, {"compaction_restitution"},
-                   "nothing moves at inertial_number = 0: give one, or preparation = \"fast\"");
+    add_error_beside(t, {"compaction_restitution"},
+                     "nothing moves at inertial_number = 0: give one, or preparation = \"fast\"");
   if (spec.construction != Construction::voids) return;
   if (spec.preparation == Preparation::lammps)
-    t.mistake("preparation",
-              "\"lammps\" goes with construction \"mixed\": holes are filled in a packing that is compacted");
+    t.add_error("preparation",
+                "\"lammps\" goes with construction \"mixed\": holes are filled in a packing that is compacted");
   if (p.coarse_share < 1.0)
-    t.mistake(t.has("coarse_share") ? "coarse_share" : "preparation",
-              "fines grow between coarse bodies of construction \"mixed\" alone");
-  mistake_beside(t, {"start_fraction"}, "construction \"voids\" begins at solid_fill");
+    t.add_error(t.has("coarse_share") ? "coarse_share" : "preparation",
+                "fines grow between coarse bodies of construction \"mixed\" alone");
+  add_error_beside(t, {"start_fraction"}, "construction \"voids\" begins at solid_fill");
 }
 
 namespace {
@@ -113,21 +113,21 @@ void read_bodies(const SceneTable& t, MacroSetup& setup) {
     spec.solid_sizes = read_sizes(t, "solid_sizes", {"solid_radius_max", "solid_polydispersity"});
   if (t.has("soft_sizes")) spec.soft_sizes = read_sizes(t, "soft_sizes", {"soft_radius_max", "soft_polydispersity"});
   if (spec.solid_sizes && spec.soft_sizes && t.has("exponent"))
-    t.mistake("exponent", "goes without solid_sizes and soft_sizes, which say all sizes");
-  take_ends(spec.solid_sizes, spec.solid_radius_max, spec.solid_polydispersity);
-  take_ends(spec.soft_sizes, spec.soft_radius_max, spec.soft_polydispersity);
+    t.add_error("exponent", "goes without solid_sizes and soft_sizes, which say all sizes");
+  set_size_limits(spec.solid_sizes, spec.solid_radius_max, spec.solid_polydispersity);
+  set_size_limits(spec.soft_sizes, spec.soft_radius_max, spec.soft_polydispersity);
   if (spec.construction == Construction::voids && spec.soft_sizes)
-    t.mistake("soft_sizes",
-              "construction \"voids\" makes soft particles as large as the holes between solid grains: "
-              "give soft_radius_max and soft_polydispersity, or construction \"mixed\"");
+    t.add_error("soft_sizes",
+                "construction \"voids\" makes soft particles as large as the holes between solid grains: "
+                "give soft_radius_max and soft_polydispersity, or construction \"mixed\"");
   spec.solid_fill = t.number("solid_fill", Unit::none, Range{0.0, 0.74, false, true}, spec.solid_fill);
   if (spec.construction == Construction::mixed)
-    mistake_beside(t, {"solid_fill"}, "goes with construction = \"voids\", which fills solid grains first");
+    add_error_beside(t, {"solid_fill"}, "goes with construction = \"voids\", which fills solid grains first");
   if (spec.construction == Construction::voids && spec.soft_share >= 1.0)
-    t.mistake("soft_share", "construction \"voids\" needs solid grains: must be below 1");
+    t.add_error("soft_share", "construction \"voids\" needs solid grains: must be below 1");
   spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
   spec.wall_friction = t.number("wall_mu", Unit::none, Range::not_negative(), spec.wall_friction);
-  if (spec.boundary == Boundary::periodic) mistake_beside(t, {"wall_mu"}, "a periodic cell has no walls");
+  if (spec.boundary == Boundary::periodic) add_error_beside(t, {"wall_mu"}, "a periodic cell has no walls");
   read_preparation(t, setup);
 }
 
@@ -179,13 +179,13 @@ void read_given(const SceneTable& t, MacroSetup& setup) {
   if (!own && !setup.given) return;
   for (const char* key : kMakingBodies)
     if (t.has(key))
-      t.mistake(key, own ? "goes without packing, which says where all bodies are"
-                         : "goes without the common packing, which says where all bodies are");
+      t.add_error(key, own ? "goes without packing, which says where all bodies are"
+                           : "goes without the common packing, which says where all bodies are");
   if (!own && t.has("boundary"))
-    t.mistake("boundary", "is that of the common packing: give it beside that, or packing here too");
-  if (setup.samples > 1) t.mistake("samples", "a packing is one sample: must be 1");
+    t.add_error("boundary", "is that of the common packing: give it beside that, or packing here too");
+  if (setup.samples > 1) t.add_error("samples", "a packing is one sample: must be 1");
   if (!own) return;
-  t.part([&] {
+  t.section([&] {
     const std::string file = t.resolve(t.text("packing"));
     setup.given = read_packing_file(file, setup.spec.boundary);
     const MacroPacking& p = *setup.given;
@@ -220,12 +220,12 @@ std::vector<Twin> read_twins(const SceneTable& t, const std::vector<Twin>& fallb
   if (!t.is_list("resolved")) return t.flag("resolved", true) ? std::vector<Twin>{Twin::shelled} : std::vector<Twin>{};
   std::vector<Twin> twins;
   for (const std::string& word : t.texts("resolved")) {
-    const auto twin = from_word<Twin>(word);
+    const auto twin = parse_enum<Twin>(word);
     if (!twin) {
-      t.mistake("resolved", "unknown twin '" + word + "'; known are \"shelled\" and \"free\"");
+      t.add_error("resolved", "unknown twin '" + word + "'; known are \"shelled\" and \"free\"");
       continue;
     }
-    if (std::count(twins.begin(), twins.end(), *twin) > 0) t.mistake("resolved", "'" + word + "' twice");
+    if (std::count(twins.begin(), twins.end(), *twin) > 0) t.add_error("resolved", "'" + word + "' twice");
     twins.push_back(*twin);
   }
   return twins;
@@ -234,8 +234,8 @@ std::vector<Twin> read_twins(const SceneTable& t, const std::vector<Twin>& fallb
 void read_twin_motion(const SceneTable& t, TwinMotion& m) {
   m.relaxation = t.choice<TwinRelaxation>("twin_relaxation", m.relaxation);
   if (m.relaxation == TwinRelaxation::damped)
-    mistake_beside(t, {"twin_speed", "twin_step_factor", "twin_settle_time"},
-                   "goes without motion: twin_relaxation = \"damped\"");
+    add_error_beside(t, {"twin_speed", "twin_step_factor", "twin_settle_time"},
+                     "goes without motion: twin_relaxation = \"damped\"");
   m.speed = t.number("twin_speed", Unit::none, Range{0.0, 0.1, true, false}, m.speed);
   m.step_factor = t.number("twin_step_factor", Unit::none, Range::closed(0.01, 10.0), m.step_factor);
   m.settle_time = t.number("twin_settle_time", Unit::none, Range::not_negative(), m.settle_time);
@@ -245,7 +245,7 @@ void read_twin_motion(const SceneTable& t, TwinMotion& m) {
 
 void require_own_preparation(const SceneTable& macro, const MacroSetup& setup) {
   if (setup.spec.preparation == Preparation::lammps)
-    macro.mistake(
+    macro.add_error(
         "preparation",
         "\"lammps\" goes with scenes of kind \"macro\" (softgrain macrosim) and \"material\" (softgrain run), and "
         "--engine lammps");
@@ -273,10 +273,10 @@ MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& def
 void require_known_contents(const SceneTable& macro, const MacroSetup& setup, const SoftParticleSpec& spec,
                             const std::string& law_file) {
   if (setup.twins.empty() || packing_known(spec)) return;
-  macro.mistake("resolved",
-                "a resolved twin is filled with grains, and " + law_file +
-                    " does not say what is inside the soft particle that was measured: give resolved = false, or add "
-                    "exponent, polydispersity, rmax_over_shell, beta and trials to [measurement] of the card");
+  macro.add_error("resolved",
+                  "a resolved twin is filled with grains, and " + law_file +
+                      " does not say what is inside the soft particle that was measured: give resolved = false, or add "
+                      "exponent, polydispersity, rmax_over_shell, beta and trials to [measurement] of the card");
 }
 
 std::string assumed_text(const MacroSetup& setup) {
@@ -304,8 +304,8 @@ MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
   read_given(macro, setup);
   setup.bands = macro.count("bands", 0, 100000, setup.bands);
   if (setup.bands > 0 && setup.bands < kFewestDraws)
-    macro.mistake("bands", fmt::format("{} draws say nothing of a 95 % band: 0 (none), or at least {}", setup.bands,
-                                       kFewestDraws));
+    macro.add_error("bands", fmt::format("{} draws say nothing of a 95 % band: 0 (none), or at least {}", setup.bands,
+                                         kFewestDraws));
   setup.band_estimator = macro.choice<BandEstimator>("band_estimator", setup.band_estimator);
   setup.law_increments = macro.count("law_increments", 1, 1000, setup.law_increments);
   setup.noise_samples = macro.count("noise_samples", 0, 10000, setup.noise_samples);
@@ -332,7 +332,7 @@ void read_cell_material(const SceneTable& root, SoftParticleSpec& spec) {
   const SceneTable material = root.table_or_empty("material");
   for (const char* key : {"nu", "mu"})
     if (material.has(key))
-      material.mistake(key, "goes without: the cell law was measured with a nu and mu and serves no others");
+      material.add_error(key, "goes without: the cell law was measured with a nu and mu and serves no others");
   spec.youngs_modulus = material.number("E", Unit::pressure, Range::positive(), spec.youngs_modulus);
   spec.density = material.number("density", Unit::density, Range::positive(), spec.density);
 }
@@ -344,17 +344,17 @@ void require_known_modulus(const SceneTable& root, const std::string& law_file) 
   for (const SceneTable& table : tables)
     for (const char* key : {"stress", "lateral_stress", "stress_x", "stress_y", "stress_z", "modulus_stress"})
       if (table.has(key))
-        table.mistake(key, "a stress in Pa needs E of the grains, which " + law_file +
-                               " does not say (its pressures are over E): give it, [material] E = \"50 GPa\" say");
+        table.add_error(key, "a stress in Pa needs E of the grains, which " + law_file +
+                                 " does not say (its pressures are over E): give it, [material] E = \"50 GPa\" say");
 }
 
 }  // namespace
 
 void refuse_idle_keys(const SceneTable& macro, bool twins, bool bands) {
-  if (!bands) mistake_beside(macro, {"band_estimator"}, "goes with bands, the number of draws of the law");
+  if (!bands) add_error_beside(macro, {"band_estimator"}, "goes with bands, the number of draws of the law");
   if (!twins)
-    mistake_beside(macro, {"twin_relaxation", "twin_speed", "twin_step_factor", "twin_settle_time"},
-                   "goes with a resolved twin: resolved = true");
+    add_error_beside(macro, {"twin_relaxation", "twin_speed", "twin_step_factor", "twin_settle_time"},
+                     "goes with a resolved twin: resolved = true");
 }
 
 namespace {
@@ -364,19 +364,19 @@ void read_cells(const SceneTable& root, const SceneTable& macro, const CellCard&
   MacroSpec& spec = setup.spec;
   if (!macro.has("soft_share") && !setup.given) spec.soft_share = 0.0;
   if (macro.has("resolved") && !setup.twins.empty())
-    macro.mistake("resolved",
-                  "what a cell law is compared with is the material with all its grains: see kind "
-                  "\"material-models\"");
+    macro.add_error("resolved",
+                    "what a cell law is compared with is the material with all its grains: see kind "
+                    "\"material-models\"");
   setup.twins.clear();
   if (spec.preparation == Preparation::lammps)
-    macro.mistake("preparation", "\"lammps\" knows no cells: frictionless, fast, slow or dense");
+    macro.add_error("preparation", "\"lammps\" knows no cells: frictionless, fast, slow or dense");
   if (spec.construction == Construction::voids)
-    macro.mistake("construction", "\"voids\" goes with soft particles in shells; cells fill all voids");
-  if (spec.soft_share >= 1.0) macro.mistake("soft_share", "cells need solid grains: must be below 1");
-  mistake_beside(macro, {"wall_mu"}, "walls of cells are smooth");
-  mistake_beside(macro, {"kt"}, "the tangential stiffness of cells is that of the card");
-  mistake_beside(macro, {"law_increments", "noise_samples"},
-                 "goes with laws of soft particles; increments_per_step serves cells");
+    macro.add_error("construction", "\"voids\" goes with soft particles in shells; cells fill all voids");
+  if (spec.soft_share >= 1.0) macro.add_error("soft_share", "cells need solid grains: must be below 1");
+  add_error_beside(macro, {"wall_mu"}, "walls of cells are smooth");
+  add_error_beside(macro, {"kt"}, "the tangential stiffness of cells is that of the card");
+  add_error_beside(macro, {"law_increments", "noise_samples"},
+                   "goes with laws of soft particles; increments_per_step serves cells");
   const SceneTable fines = root.table("fines");
   CellMatter matter;
   matter.card = card;
@@ -384,7 +384,7 @@ void read_cells(const SceneTable& root, const SceneTable& macro, const CellCard&
   matter.solid_fraction = fines.number("solid_fraction", Unit::none, Range{0.0, 1.0, true, true}, 0.0);
   matter.at_density = fines.choice<CellStartFrom>("start", CellStartFrom::pressure) == CellStartFrom::density;
   if (setup.given && matter.solid_fraction > 0.0)
-    fines.mistake("solid_fraction", "goes without packing, whose box says it");
+    fines.add_error("solid_fraction", "goes without packing, whose box says it");
   spec.cells = matter;
 }
 
@@ -411,8 +411,8 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   if (cells)
     read_cell_material(root, out.spec);
   else if (root.has("material"))
-    root.mistake("material",
-                 "goes without: the materials of all bodies are those of the law, which was measured with them");
+    root.add_error("material",
+                   "goes without: the materials of all bodies are those of the law, which was measured with them");
   const SceneTable macro = root.table("macro");
   out.setup = read_macro_setup(macro, out.spec);
   read_stages(root, macro, out.setup.spec);
@@ -422,17 +422,17 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
     if (!is_known(out.spec.youngs_modulus)) require_known_modulus(root, law_file);
   } else {
     if (!law_file.empty() && root.has("fines"))
-      root.mistake("fines", "goes with a card of the cell law (see the guide)");
+      root.add_error("fines", "goes with a card of the cell law (see the guide)");
     require_known_contents(macro, out.setup, out.spec, law_file);
   }
-  if (root.sound()) require_macro_memory(macro, out.setup, out.spec);
-  if (root.sound()) require_room_for_images(macro, "bodies", out.setup, out.seed);
+  if (!root.has_errors()) require_macro_memory(macro, out.setup, out.spec);
+  if (!root.has_errors()) require_room_for_images(macro, "bodies", out.setup, out.seed);
   refuse_idle_keys(macro, !out.setup.twins.empty(), true);  // --bands may give some
-  if (out.law.table) mistake_beside(macro, {"kt"}, "goes with a law card; a law table has one tangential stiffness");
+  if (out.law.table) add_error_beside(macro, {"kt"}, "goes with a law card; a law table has one tangential stiffness");
   if (out.law.card && std::none_of(out.law.card->pairs.begin(), out.law.card->pairs.end(), has_tangential))
-    mistake_beside(macro, {"kt"}, "no tangential stiffness was measured for " + law_file + ": one is assumed");
+    add_error_beside(macro, {"kt"}, "no tangential stiffness was measured for " + law_file + ": one is assumed");
   if (out.setup.twins.empty())
-    mistake_beside(root, {"contents"}, "is of the soft particles of a resolved twin: goes with resolved = true");
+    add_error_beside(root, {"contents"}, "is of the soft particles of a resolved twin: goes with resolved = true");
   out.setup.kept_states = read_kept_states(root, states_to_see(out.setup.spec));
   out.contents = root.count("contents", 1, 100000, out.contents);
   return out;

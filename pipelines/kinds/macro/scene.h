@@ -21,19 +21,19 @@ enum class BandEstimator {
 };
 
 template <>
-inline constexpr auto words<BandEstimator> = word_list<BandEstimator>({{BandEstimator::components, "components"},
-                                                                       {BandEstimator::draws, "draws"}});
+inline constexpr auto enum_names<BandEstimator> =
+    enum_name_list<BandEstimator>({{BandEstimator::components, "components"}, {BandEstimator::draws, "draws"}});
 
 struct MacroSetup {
   MacroSpec spec;
   std::int64_t samples = 1;
   std::vector<Twin> twins{Twin::shelled};  ///< resolved beside every sample
-  std::optional<MacroPacking> given{};     ///< that every test starts from, in place of prepared ones
-  std::int64_t kept_states = 0;            ///< of the first sample of every engine, for pictures
+  std::optional<MacroPacking> given{};     ///< packing that every test starts from, in place of prepared ones
+  std::int64_t kept_states = 0;            ///< number of kept states of the first sample of every engine, for pictures
   std::int64_t bands = 0;                  ///< draws of the law that error bars come from; 0: no error bars
   BandEstimator band_estimator = BandEstimator::components;
-  std::int64_t law_increments = 1;     ///< of runs with laws, for one of a twin
-  std::int64_t noise_samples = 0;      ///< that every engine runs a second time: see slightly_changed()
+  std::int64_t law_increments = 1;  ///< increments of runs with laws for one increment of a twin
+  std::int64_t noise_samples = 0;   ///< number of samples that every engine runs a second time: see slightly_changed()
   std::vector<std::string> assumed{};  ///< "nu = 0.3": of grains, where the law does not say them
   std::set<std::string> said{};  ///< keys of the preparation that a table gave: others follow from mu and its name
 };
@@ -42,20 +42,20 @@ struct MacroSetup {
   return std::find(setup.twins.begin(), setup.twins.end(), twin) != setup.twins.end();
 }
 
-/// Reads [macro]; material defaults come from the measured soft particle, as far as it is known. Throws BadInput.
+/// Reads [macro]; material defaults come from the measured soft particle, as far as it is known. Throws InputError.
 MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& defaults);
 
-/// Replaces what a table says, keeps the rest. Throws BadInput.
+/// Replaces what a table says, keeps the rest. Throws InputError.
 MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base);
 
 /// Parts of [macro] that other kinds of scene share. The first needs spec.friction: what no table said follows from it
-/// and from the name of the preparation, what one said stays. Throw BadInput.
+/// and from the name of the preparation, what one said stays. Throw InputError.
 void read_preparation(const SceneTable& t, MacroSetup& setup);
 /// Refuses the keys of a preparation by this program where LAMMPS prepares.
 void refuse_protocol_keys(const SceneTable& t);
 void read_test(const SceneTable& t, MacroSpec& spec);
 
-/// Twins are filled with packings like the one that was measured. Throws BadInput, at key `resolved`, when the scene
+/// Twins are filled with packings like the one that was measured. Throws InputError, at key `resolved`, when the scene
 /// has twins and `spec` of the law in this file does not say what is inside.
 void require_known_contents(const SceneTable& macro, const MacroSetup& setup, const SoftParticleSpec& spec,
                             const std::string& law_file);
@@ -66,7 +66,7 @@ void refuse_idle_keys(const SceneTable& macro, bool twins, bool bands);
 /// What was assumed because the law does not say it, as a sentence; empty when nothing was.
 std::string assumed_text(const MacroSetup& setup);
 
-/// For commands that do not run LAMMPS. Throws BadInput.
+/// Refuses preparation "lammps", for commands that do not run LAMMPS. Throws InputError.
 void require_own_preparation(const SceneTable& macro, const MacroSetup& setup);
 
 /// A scene of kind "macro".
@@ -74,16 +74,16 @@ struct MacroScene {
   std::string title;
   std::uint64_t seed = 1;
   std::string law_file;  ///< empty: the scene names none
-  LawSources law;        ///< of it
+  LawSources law;        ///< sources of the law
   MacroSetup setup;
-  SoftParticleSpec spec;      ///< that the law was measured on, and of the contents of twins
+  SoftParticleSpec spec;      ///< soft particle that the law was measured on, and of the contents of twins
   std::int64_t contents = 7;  ///< number of different ones
 };
 
-/// Reads it to the last key, and its law; `law` (a file) replaces the key of that name. Throws BadInput, FileTrouble.
+/// Reads it to the last key, and its law; `law` (a file) replaces the key of that name. Throws InputError, IoError.
 MacroScene read_macro_scene(const Scene& scene, const std::string& law);
 
-/// The scene without its law, whatever it names: twins are not held against what the law says. Throws BadInput.
+/// The scene without its law, whatever it names: twins are not held against what the law says. Throws InputError.
 MacroScene read_macro_scene_alone(const Scene& scene);
 
 /// Runs all samples by law, in our engine or in LAMMPS, and the twins; writes macro.h5, macro_initial.h5, the kept

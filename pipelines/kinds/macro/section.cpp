@@ -72,7 +72,8 @@ Plot stress_plot(const std::vector<MacroCurve>& curves, MacroTest test, bool axi
   return plot;
 }
 
-/// At the points of the twin; not a number where a test in stages imposes it, or the law does not come.
+/// Stress of the law run at the points of the twin. Not a number where a test in stages imposes it, or where the law
+/// run does not reach the point.
 std::vector<double> values_of_law(const MacroCurve& law, const MacroCurve& twin, Stress member) {
   const Compared what = member == &MacroCurve::stress_axial ? Compared::axial : Compared::lateral;
   try {
@@ -81,7 +82,7 @@ std::vector<double> values_of_law(const MacroCurve& law, const MacroCurve& twin,
     for (std::size_t i = 0; i < out.size(); ++i)
       if (given[i]) out[i] = kNaN;
     return out;
-  } catch (const BadInput&) {  // said below
+  } catch (const InputError&) {  // said below
     return std::vector<double>(twin.strain.size(), kNaN);
   }
 }
@@ -196,7 +197,7 @@ std::string comparison_part(const std::vector<MacroCurve>& laws, const std::vect
   if (laws.empty() || twins.empty()) return "";
   try {
     return comparison_table(compare_curves(laws, twins));
-  } catch (const BadInput& error) {
+  } catch (const InputError& error) {
     return paragraph(std::string("No comparison: ") + error.what());
   }
 }
@@ -227,7 +228,9 @@ std::string macro_section(const RunData& run) {
     body += stage_parts(curves, test);
     body += comparison_part(laws, twins) + bodies_table(curves) + law_paragraph(curves);
   }
-  return section("macro", "Macro scene", body);
+  return section("macro", "Macro scene",
+                 "Stress against strain by each engine, and the difference between the law and the resolved twin.",
+                 body);
 }
 
 }  // namespace softgrain::report

@@ -19,7 +19,7 @@
 #include "pipelines/kinds/macro/bands.h"
 #include "pipelines/kinds/macro/packing_source.h"
 #include "pipelines/kinds/macro/twin_cache.h"
-#include "pipelines/kinds/soft_particle/kept_states.h"
+#include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 #include "pipelines/run/result_cache.h"
 
 namespace softgrain {
@@ -104,7 +104,7 @@ MacroSystem make_system(const Stage& stage, std::int64_t sample, const Engine& e
   return make(spec, packing, stage.runs.contents, stage.runs.seed, static_cast<std::uint64_t>(sample));
 }
 
-/// Of systems with contacts.
+/// Test of a system with contacts, for run_task().
 struct ContactRun {
   const MacroSpec& spec;
   PointRecord also;
@@ -118,7 +118,7 @@ struct ContactRun {
   void go(State& s, const RunControl<State>& control) const { compress(s, spec, control, also); }
 };
 
-/// Of cells of fines.
+/// Test of cells of fines, for run_task().
 struct CellRun {
   const MacroSpec& spec;
   using State = CellTestState;
@@ -140,14 +140,14 @@ struct CellRun {
   void go(State& s, const RunControl<State>& control) const { test_cells(s, spec, control); }
 };
 
-/// From its checkpoint on, to its end or to where it breaks off.
+/// Runs a task from its checkpoint on, to its end or to where it breaks off.
 template <class Kind>
 RunOutcome run_task(const Stage& stage, const Kind& kind, typename Kind::State& state, const std::string& task,
                     Progress& progress) {
   using State = typename Kind::State;
   const auto points = recorded_points(kind.spec);
   const MacroPacking& packing = stage.runs.packings[static_cast<std::size_t>(state.curve.sample)];
-  KeptStates states(stage.run.store, task, points, state.curve.sample == 0 ? stage.runs.setup.kept_states : 0);
+  SnapshotRecorder states(stage.run.store, task, points, state.curve.sample == 0 ? stage.runs.setup.kept_states : 0);
   const LawIdentity law = state.curve.law;
   stage.run.store.load(task, [&](const h5::Group& g) { kind.read(g, state); });
   state.curve.law = law;
@@ -164,7 +164,7 @@ RunOutcome run_task(const Stage& stage, const Kind& kind, typename Kind::State& 
   control.progress = [&](const State&, double share) { mine.reach(share); };
   try {
     kind.go(state, control);
-  } catch (const NotUsable& e) {  // this run alone ends here; without a point there is nothing to go on with
+  } catch (const UnusableResult& e) {  // this run alone ends here; without a point there is nothing to go on with
     if (recorded.strain.empty()) throw;
     state.curve = std::move(recorded);
     state.curve.usable = false;
@@ -196,8 +196,8 @@ std::string task_name(const Stage& stage, std::int64_t sample, const Engine& eng
   return stage.runs.name + "-" + engine.name + law + "-" + std::to_string(sample);
 }
 
-/// Of the first samples of a scene the test is run again with strains that differ in their twelfth digit: what comes
-/// out differently is what paths of grains make of it.
+/// Runs the test of the first samples of a scene again, with strains that differ in their twelfth digit. Differences of
+/// the results come from the paths of grains.
 void run_again(const Stage& stage, std::int64_t sample, const Engine& engine, MacroCurve& curve, Progress& progress) {
   if (sample >= stage.runs.setup.noise_samples || engine.cells) return;
   const MacroSpec spec = slightly_changed(spec_for(stage, engine));

@@ -37,16 +37,16 @@ std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, const Run
 /// Bodies whose sizes a distribution says, as they are drawn; `of`: before what they are called.
 std::vector<DrawnSizes> drawn_sizes(const MacroSetup& setup, std::uint64_t seed, const std::string& of = "");
 
-/// Of the contents, their mean; 1 without any.
+/// Solid fraction of the contents, their mean; 1 without any.
 double mean_solid_fraction(const std::vector<ShellPacking>& contents);
 
 /// One scene with all its engines.
 struct MacroRuns {
   const MacroSetup& setup;
   const std::vector<MacroPacking>& packings;  ///< one per sample
-  const std::vector<ShellPacking>& contents;  ///< of soft particles
+  const std::vector<ShellPacking>& contents;  ///< contents of soft particles
   std::uint64_t seed = 1;
-  std::string name;  ///< of checkpoints and of progress: "macro", or that of the scene
+  std::string name;  ///< name of checkpoints and of progress: "macro", or that of the scene
 };
 
 /// A run and the states of it that are kept.

@@ -29,11 +29,11 @@ class StageReader {
   StageReader(const MacroSpec& spec, std::vector<MacroStage>& stages) : spec_(spec), stages_(stages) {}
 
   void read(const SceneTable& t) {
-    std::vector<const char*> kinds = all_words<StageKind>();
+    std::vector<const char*> kinds = all_enum_names<StageKind>();
     kinds.push_back(kCycles);
     const std::string word = t.choice("kind", kinds);
     if (word == kCycles) return read_cycles(t);
-    const StageKind kind = *from_word<StageKind>(word);
+    const StageKind kind = *parse_enum<StageKind>(word);
     refuse_foreign_keys(t, word);
     stages_.push_back(begin(t, kind));
     stages_.back().record.name = name_of(t, word);
@@ -69,17 +69,17 @@ class StageReader {
   StageKind way_before(const SceneTable& t, StageKind kind) const {
     for (auto s = stages_.rbegin(); s != stages_.rend(); ++s)
       if (goes_a_way(s->record.kind)) return s->record.kind;
-    t.mistake("kind", kind == StageKind::hold
-                          ? "a hold keeps what the stage before it left, and none is before it: the preparation has "
-                            "brought the packing to rest already, so leave it out or put it behind another stage"
-                          : "there is no stage before it whose way it could go");
+    t.add_error("kind", kind == StageKind::hold
+                            ? "a hold keeps what the stage before it left, and none is before it: the preparation has "
+                              "brought the packing to rest already, so leave it out or put it behind another stage"
+                            : "there is no stage before it whose way it could go");
     return StageKind::oedometric;
   }
 
   std::string name_of(const SceneTable& t, const std::string& word) const {
     std::string name = t.text("name", "");
     if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < ' '; }))
-      t.mistake("name", "must be one line of text");
+      t.add_error("name", "must be one line of text");
     if (!name.empty()) return name;
     const auto same = [&](const MacroStage& s) {
       return s.record.name == word || s.record.name.starts_with(word + " ");
@@ -90,7 +90,7 @@ class StageReader {
 
   static void refuse(const SceneTable& t, std::initializer_list<const char*> keys, const std::string& problem) {
     for (const char* key : keys)
-      if (t.has(key)) t.mistake(key, problem);
+      if (t.has(key)) t.add_error(key, problem);
   }
 
   static void refuse_foreign_keys(const SceneTable& t, const std::string& word) {
@@ -112,7 +112,7 @@ class StageReader {
   static double read_strain(const SceneTable& t, bool back) {
     const Range range = back ? Range{0.0, kLargestStrain, true, false} : Range::closed(-kLargestStrain, kLargestStrain);
     const double strain = t.number("strain", Unit::none, range);
-    if (strain == 0.0) t.mistake("strain", "must not be 0: kind = \"hold\" keeps the box as it is");
+    if (strain == 0.0) t.add_error("strain", "must not be 0: kind = \"hold\" keeps the box as it is");
     return strain;
   }
 
@@ -124,7 +124,7 @@ class StageReader {
     }
     const Vec3 stress = t.vector3("stress", Unit::pressure);
     for (int k = 0; k < 3; ++k)
-      if (!(stress[k] > 0.0)) t.mistake("stress", "must be above 0 along all axes: grains cannot be pulled");
+      if (!(stress[k] > 0.0)) t.add_error("stress", "must be above 0 along all axes: grains cannot be pulled");
     return stress;
   }
 
@@ -136,12 +136,12 @@ class StageReader {
     const bool strain = t.has("strain");
     const bool stress = t.has("stress");
     if (strain == stress) {
-      t.mistake(strain ? "stress" : "strain",
-                strain ? "contradicts strain: give one of both" : "missing; give strain or stress");
+      t.add_error(strain ? "stress" : "strain",
+                  strain ? "contradicts strain: give one of both" : "missing; give strain or stress");
       return;
     }
     if (stress && way == StageKind::shear) {
-      t.mistake("stress", "shear at constant volume goes by strain");
+      t.add_error("stress", "shear at constant volume goes by strain");
       return;
     }
     if (stress) {
@@ -158,16 +158,17 @@ class StageReader {
     if (way == StageKind::isotropic) stage.axis[0].value = stage.axis[1].value = strain;
     if (way == StageKind::shear) stage.axis[0].value = -strain;
     stage.logarithmic = way == StageKind::shear;
-    stage.alike = way == StageKind::isotropic;
+    stage.isotropic = way == StageKind::isotropic;
   }
 
   static void by_stress(MacroStage& stage, StageKind way, const Vec3& stress) {
     const bool all = way == StageKind::isotropic || way == StageKind::consolidation;
     for (int k = all ? 0 : 2; k < 3; ++k) stage.axis[static_cast<std::size_t>(k)] = {true, stress[k], -1};
-    stage.alike = way == StageKind::isotropic;
+    stage.isotropic = way == StageKind::isotropic;
   }
 
-  /// As they are when the stage begins, unless it says to what they go.
+  /// Holds the lateral stresses at their values at the start of the stage, or takes them to `lateral_stress` where it
+  /// is given.
   void hold_sides(const SceneTable& t, MacroStage& stage) const {
     const bool given = t.has("lateral_stress");
     const double stress = given ? t.number("lateral_stress", Unit::pressure, Range::positive()) : 0.0;
@@ -179,19 +180,20 @@ class StageReader {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::string strain = std::string("strain_") + "xyz"[k];
       const std::string stress = std::string("stress_") + "xyz"[k];
-      if (t.has(strain) && t.has(stress)) t.mistake(stress, "contradicts " + strain + ": give one of both");
+      if (t.has(strain) && t.has(stress)) t.add_error(stress, "contradicts " + strain + ": give one of both");
       any = any || t.has(strain) || t.has(stress);
       if (t.has(stress))
         stage.axis[k] = {true, t.number(stress, Unit::pressure, Range::positive()), -1};
       else
         stage.axis[k].value = t.number(strain, Unit::none, Range::closed(-kLargestStrain, kLargestStrain), 0.0);
     }
-    if (!any) t.mistake("kind", "no axis is driven: give strain_x, stress_z, ...; kind = \"hold\" drives none");
+    if (!any) t.add_error("kind", "no axis is driven: give strain_x, stress_z, ...; kind = \"hold\" drives none");
   }
 
   bool refuse_axes(const SceneTable& t) const {
     if (stages_.back().record.way != StageKind::axes) return false;
-    t.mistake("kind", "after " + quoted(StageKind::axes) + " another stage of that kind says how every axis goes back");
+    t.add_error("kind",
+                "after " + quoted(StageKind::axes) + " another stage of that kind says how every axis goes back");
     return true;
   }
 
@@ -207,7 +209,7 @@ class StageReader {
     std::int64_t from = here() - 1;
     while (from >= 0 && stages_[static_cast<std::size_t>(from)].record.kind == StageKind::hold) --from;
     if (from < 0 || stages_[static_cast<std::size_t>(from)].record.kind != StageKind::unload) {
-      t.mistake("kind", "nothing was unloaded before it: give strain or stress, or a stage of kind = \"unload\"");
+      t.add_error("kind", "nothing was unloaded before it: give strain or stress, or a stage of kind = \"unload\"");
       return;
     }
     turn_back(stages_[static_cast<std::size_t>(from)], from, stage);
@@ -217,7 +219,7 @@ class StageReader {
   void turn_back(const MacroStage& unload, std::int64_t from, MacroStage& stage) const {
     stage.axis = unload.axis;
     stage.logarithmic = unload.logarithmic;
-    stage.alike = unload.alike;
+    stage.isotropic = unload.isotropic;
     for (AxisDrive& drive : stage.axis) {
       if (!drive.by_stress)
         drive.value = drive.value == 0.0 ? 0.0 : unload.logarithmic ? -drive.value : -drive.value / (1.0 - drive.value);
@@ -245,7 +247,7 @@ class StageReader {
                    down.record.modulus_stress};
       stages_.push_back(up);
       turn_back(MacroStage(stages_[stages_.size() - 2]), here() - 1, stages_.back());
-      if (!t.sound()) return;
+      if (t.has_errors()) return;
     }
   }
 
@@ -265,7 +267,7 @@ void read_modulus_stress(const SceneTable& t, std::array<double, 2>& interval) {
   if (!t.has("modulus_stress")) return;
   const std::vector<double> ends = t.numbers("modulus_stress", Unit::pressure, Range::not_negative());
   if (ends.size() != 2 || !(ends[0] < ends[1]))
-    t.mistake("modulus_stress", "must be two stresses, the lower one first: [\"1 MPa\", \"2 MPa\"]");
+    t.add_error("modulus_stress", "must be two stresses, the lower one first: [\"1 MPa\", \"2 MPa\"]");
   else
     interval = {ends[0], ends[1]};
 }
@@ -278,12 +280,12 @@ constexpr std::array kOfStages{"steps", "increments_per_step", "tolerance", "mod
 void take_stages(const std::vector<SceneTable>& tables, MacroSpec& spec) {
   std::vector<MacroStage> stages;
   StageReader reader(spec, stages);
-  for (const SceneTable& t : tables) t.part([&] { reader.read(t); });
+  for (const SceneTable& t : tables) t.section([&] { reader.read(t); });
   spec.test = MacroTest::stages;
   spec.stages = std::move(stages);
 }
 
-/// Of stages that rest only the tolerance follows from that of the test.
+/// Whether every stage says this key itself. A stage that rests takes only the tolerance from the test.
 bool each_says(const std::vector<SceneTable>& stages, const std::string& key) {
   const auto says = [&](const SceneTable& s) {
     const bool rests = s.is_text("kind") && s.text("kind") == to_string(StageKind::hold);
@@ -298,7 +300,7 @@ void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& s
   const std::vector<SceneTable> tables = holder.tables("stage");
   if (tables.empty()) return;
   for (const char* key : {"test", "strain", "preload", "preload_steps"})
-    if (macro.has(key)) macro.mistake(key, "goes without [[stage]], which says the whole test");
+    if (macro.has(key)) macro.add_error(key, "goes without [[stage]], which says the whole test");
   take_stages(tables, spec);
 }
 
@@ -308,9 +310,9 @@ void read_part_stages(const SceneTable& common, const SceneTable& t, MacroSpec& 
   if (t.has("stage") || t.has("test") || stages.empty()) return read_stages(t, t, spec);
   for (const char* key : {"strain", "preload", "preload_steps"})
     if (t.has(key))
-      t.mistake(key,
-                "belongs to a test, and the common [[stage]] say what is tested: give test too, which takes their "
-                "place, or [[stage]] of its own");
+      t.add_error(key,
+                  "belongs to a test, and the common [[stage]] say what is tested: give test too, which takes their "
+                  "place, or [[stage]] of its own");
   take_stages(stages, spec);
 }
 
@@ -319,7 +321,7 @@ void refuse_idle_test_keys(const SceneTable& t, const SceneTable& stages, const 
     return std::none_of(tests.begin(), tests.end(), [&](const MacroSpec* s) { return takes(*s); });
   };
   const auto refuse = [&](const char* key, const char* problem) {
-    if (t.has(key)) t.mistake(key, problem);
+    if (t.has(key)) t.add_error(key, problem);
   };
   if (none([](const MacroSpec& s) { return s.test == MacroTest::shear; }))
     for (const char* key : {"preload", "preload_steps"})
@@ -336,7 +338,7 @@ void refuse_idle_test_keys(const SceneTable& t, const SceneTable& stages, const 
 void refuse_idle_stages(const SceneTable& root, const char* part, const std::vector<SceneTable>& parts) {
   const auto takes_none = [](const SceneTable& t) { return t.has("test") || t.has("stage"); };
   if (root.has("stage") && !parts.empty() && std::all_of(parts.begin(), parts.end(), takes_none))
-    root.mistake("stage", fmt::format("no [[{}]] takes it: each gives test or [[stage]] of its own", part));
+    root.add_error("stage", fmt::format("no [[{}]] takes it: each gives test or [[stage]] of its own", part));
 }
 
 bool says_in_test(const SceneTable& t, const std::string& key) {

@@ -12,14 +12,14 @@ namespace softgrain {
 
 /// Reads the tables `stage` of `holder`; where there are any they are the test, in place of what `spec` had, and
 /// `macro`, the table that says everything else of the scene, must not name one. Steps, increments and tolerance of a
-/// stage are those of `spec` unless it says them. Throws BadInput.
+/// stage are those of `spec` unless it says them. Throws InputError.
 void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& spec);
 
 /// Key `modulus_stress`: the two stresses [Pa] between which moduli are taken; as they were where the table has none.
 void read_modulus_stress(const SceneTable& t, std::array<double, 2>& interval);
 
-/// The same for a part of a scene ([[variant]], [[scene]]), table `t`: without stages or a test of its own it takes
-/// those of `common`, with its own steps, increments and tolerance where a stage says none. Throws BadInput.
+/// Reads the stages of a part of a scene ([[variant]], [[scene]]), table `t`. Without stages or a test of its own it
+/// takes those of `common`, with its own steps, increments and tolerance where a stage says none. Throws InputError.
 void read_part_stages(const SceneTable& common, const SceneTable& t, MacroSpec& spec);
 
 /// Refuses keys of a test in `t` that none of the tests that read them takes: the preload of a test without shear, the

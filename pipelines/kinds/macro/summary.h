@@ -50,7 +50,7 @@ struct MacroRunSummary {
   std::optional<RunLaw> law;
   MacroSummary runs;
   std::optional<EngineUse> engine;
-  std::vector<BandRecord> bands{};  ///< of laws that have error bars
+  std::vector<BandRecord> bands{};  ///< bands of the laws that have error bars
   std::vector<BandedEnd> band_ends{};
 };
 

@@ -18,7 +18,8 @@ struct NamedCurves {
 /// The curves of each engine, in the order of the run; without names where there is one.
 std::vector<NamedCurves> by_engine(const std::vector<MacroCurve>& curves);
 
-/// Over the usable samples: axial stress and lateral ratio at the end; of tests in stages also moduli and strength.
+/// Axial stress and lateral ratio at the end, means over the usable samples. Tests in stages also have moduli and
+/// strength.
 std::vector<RunValue> stress_values(const std::vector<NamedCurves>& all);
 
 /// Axial stress over strain, mean over the usable samples that have all recorded points.

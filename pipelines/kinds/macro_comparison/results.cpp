@@ -35,7 +35,7 @@ std::string scene_line(const ComparedCurves& scene) {
 
 std::vector<HeadLine> lines_of(const RunData& run) {
   std::vector<HeadLine> lines;
-  for (const ComparedCurves& scene : run.macro_scenes) lines.emplace_back("Macro", scene_line(scene));
+  for (const ComparedCurves& scene : run.macro_scenes) lines.emplace_back(kResultLabel, scene_line(scene));
   return lines;
 }
 

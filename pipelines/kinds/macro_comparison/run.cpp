@@ -120,7 +120,7 @@ void write_tables(const ScoreTable& scores, const Run& run) {
   write_text_atomic(run.path("table.csv"), as_csv(table));
 }
 
-std::string people_text(const std::vector<SceneResult>& results, const Run& run) {
+std::string console_summary(const std::vector<SceneResult>& results, const Run& run) {
   std::string text;
   for (const SceneResult& r : results)
     for (const EngineScore& s : r.scores) {
@@ -206,7 +206,7 @@ ExitStatus run_macro_comparison(const Scene& scene, const CommonOptions& options
   write_text_atomic(run.path("comparison.json"),
                     json_of(summary.compared).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   write_tables(whole_table(results), run);
-  return run.finish(json_of(summary), people_text(results, run));
+  return run.finish(json_of(summary), console_summary(results, run));
 }
 
 }  // namespace

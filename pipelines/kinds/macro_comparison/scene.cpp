@@ -7,8 +7,8 @@
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/macro_comparison/scene.h"
-#include "pipelines/kinds/soft_particle/kept_states.h"
 #include "pipelines/kinds/soft_particle/scene.h"
+#include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 
 namespace softgrain {
 
@@ -18,7 +18,7 @@ std::string default_name(const MacroSpec& spec) {
   return fmt::format("{}-{:g}", to_string(spec.test), 100.0 * spec.soft_share);
 }
 
-bool sound_name(const std::string& name) {
+bool valid_name(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-';
   });
@@ -26,22 +26,22 @@ bool sound_name(const std::string& name) {
 
 ComparisonScene read_scene(const SceneTable& root, const SceneTable& t, const MacroSetup& base,
                            const SoftParticleSpec& content, const std::vector<ComparisonScene>& before,
-                           std::uint64_t seed, bool sound) {
+                           std::uint64_t seed, bool valid) {
   ComparisonScene scene;
   scene.setup = read_macro_setup(t, base);
   read_part_stages(root, t, scene.setup.spec);
   refuse_idle_test_keys(t, t.has("stage") ? t : root, {&scene.setup.spec});
   refuse_idle_keys(t, !scene.setup.twins.empty(), scene.setup.bands > 0);
   require_own_preparation(t, scene.setup);
-  if (sound) require_macro_memory(t, scene.setup, content);
-  if (sound && t.sound()) require_room_for_images(t, "bodies", scene.setup, seed);
+  if (valid) require_macro_memory(t, scene.setup, content);
+  if (valid && !t.has_errors()) require_room_for_images(t, "bodies", scene.setup, seed);
   std::string name = default_name(scene.setup.spec);
   std::replace(name.begin(), name.end(), '.', '-');
   scene.name = t.text("name", name);
-  if (!sound_name(scene.name)) t.mistake("name", "letters, digits and '-' only: it becomes part of file names");
+  if (!valid_name(scene.name)) t.add_error("name", "letters, digits and '-' only: it becomes part of file names");
   for (const ComparisonScene& s : before)
     if (s.name == scene.name)
-      t.mistake("name", "another scene is called '" + s.name + "' already; give this one a name");
+      t.add_error("name", "another scene is called '" + s.name + "' already; give this one a name");
   return scene;
 }
 
@@ -62,7 +62,7 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
     if (!macro.has("resolved")) base.twins = {Twin::shelled, Twin::free};
     base.kept_states = read_kept_states(root);
     for (const SceneTable& t : root.tables("scene"))
-      setup.scenes.push_back(read_scene(root, t, base, setup.spec, setup.scenes, setup.seed, root.sound()));
+      setup.scenes.push_back(read_scene(root, t, base, setup.spec, setup.scenes, setup.seed, !root.has_errors()));
     refuse_idle_stages(root, "scene", root.tables("scene"));
     std::vector<const MacroSpec*> tests;
     for (const ComparisonScene& s : setup.scenes) tests.push_back(&s.setup.spec);
@@ -73,19 +73,20 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
                        any([](const ComparisonScene& s) { return s.setup.bands > 0; }));
       if (macro.has("solid_fill") &&
           !any([](const ComparisonScene& s) { return s.setup.spec.construction == Construction::voids; }))
-        macro.mistake("solid_fill", "goes with construction = \"voids\", which no [[scene]] has");
+        macro.add_error("solid_fill", "goes with construction = \"voids\", which no [[scene]] has");
     }
     const std::vector<SceneTable> parts = root.tables("scene");
     for (std::size_t k = 0; k < parts.size(); ++k)
       if (parts[k].has("law"))
-        parts[k].table("law").part([&] { setup.scenes[k].laws = read_law_sources(scene, parts[k].table("law")); });
-    if (setup.scenes.empty()) root.mistake("scene", "no [[scene]] to compare on; an empty one takes all from [macro]");
+        parts[k].table("law").section([&] { setup.scenes[k].laws = read_law_sources(scene, parts[k].table("law")); });
+    if (setup.scenes.empty())
+      root.add_error("scene", "no [[scene]] to compare on; an empty one takes all from [macro]");
     const bool all_own = !setup.scenes.empty() && std::all_of(setup.scenes.begin(), setup.scenes.end(),
                                                               [](const ComparisonScene& s) { return s.laws; });
     if (all_own && root.has("law"))
-      root.mistake("law", "every [[scene]] has a law of its own");
+      root.add_error("law", "every [[scene]] has a law of its own");
     else if (!all_own)
-      root.table("law").part([&] { setup.laws = read_law_sources(scene, root.table("law")); });
+      root.table("law").section([&] { setup.laws = read_law_sources(scene, root.table("law")); });
     return setup;
   });
 }

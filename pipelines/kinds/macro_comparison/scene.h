@@ -12,9 +12,9 @@
 namespace softgrain {
 
 struct ComparisonScene {
-  std::string name;  ///< of its files and in tables: letters, digits, '-'
+  std::string name;  ///< name of the scene in tables and of its files: letters, digits, '-'
   MacroSetup setup;
-  std::optional<LawSources> laws;  ///< in place of those of the comparison
+  std::optional<LawSources> laws;  ///< laws of this scene, in place of those of the comparison
 
   /// What soft particles hold is what the law was measured on, not the contents of twins.
   [[nodiscard]] bool by_own_law() const { return laws && setup.twins.empty(); }
@@ -34,14 +34,14 @@ struct MacroComparisonSetup {
 };
 
 /// Reads [material], [packing], [law], [macro] and every [[scene]], whose keys replace those of [macro]. Throws
-/// BadInput, FileTrouble.
+/// InputError, IoError.
 MacroComparisonSetup read_macro_comparison(const Scene& scene);
 
 /// Runs all scenes and writes macro_SCENE.h5, macro_initial_SCENE.h5, comparison.json, table.md, table.csv,
 /// summary.json and the report.
 SceneKind macro_comparison_kind();
 
-/// What every scene asks of its laws, and the time of all. Throws BadInput, FileTrouble.
+/// What every scene asks of its laws, and the time of all. Throws InputError, IoError.
 void check_macro_comparison(const Scene& scene, Findings& out);
 
 }  // namespace softgrain

@@ -128,7 +128,8 @@ std::string macro_scenes_section(const RunData& run) {
         "and "
         "forces are those between bodies at the end, a soft particle being one body. Mean over samples +- standard "
         "error.");
-  return section("macro-scenes", "Laws and resolved twins", body);
+  return section("macro-scenes", "Laws and resolved twins",
+                 "How far each law is from the resolved twin, scene by scene, and what it costs.", body);
 }
 
 }  // namespace softgrain::report

@@ -80,7 +80,7 @@ struct ComparedScene {
   MacroTest test = MacroTest::oedometric;
   Construction construction{};
   double soft_share = 0.0;
-  std::string file;  ///< of its curves
+  std::string file;  ///< file of its curves
   std::vector<SceneFacts> samples;
   std::vector<EngineScore> engines;
   std::vector<BandRecord> bands{};

@@ -55,7 +55,7 @@ StateFit fit_family(const std::vector<StateCurve>& curves, const EquationSetting
       some, {.form = settings.form, .replicates = static_cast<int>(settings.replicates), .seed = seed});
 }
 
-/// Of variants that differ in the span alone, whose curves these are.
+/// Extrapolated onsets of a family of variants that differ in the span alone. `curves` are theirs.
 std::vector<ExtrapolationSummary> extrapolate(const std::string& family, const std::vector<StateCurve>& curves,
                                               double exponent, const EquationSettings& settings, std::uint64_t seed) {
   std::vector<ExtrapolationSummary> out;
@@ -72,7 +72,7 @@ std::vector<ExtrapolationSummary> extrapolate(const std::string& family, const s
       if (e.usable) s.onset = e.onset;
       for (const OnsetFormFit& f : e.forms)
         if (!f.parameters.empty()) s.forms.push_back({to_string(f.form), f.usable, f.message, f.parameters, f.onset});
-    } catch (const BadInput& e) {
+    } catch (const InputError& e) {
       s.message = e.what();
     }
     out.push_back(std::move(s));
@@ -121,7 +121,7 @@ std::optional<EquationResult> equation_of(const std::vector<EquationInput>& vari
   try {
     fit = fit_equation_of_state(
         curves, {.form = settings.form, .replicates = static_cast<int>(settings.replicates), .seed = seed});
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     s.message = e.what();
     return out;
   }

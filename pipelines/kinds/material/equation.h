@@ -19,12 +19,12 @@ namespace softgrain {
 struct EquationSettings {
   bool asked = false;  ///< the scene has [equation]; without it a fit is made where tests allow one
   StateForm form = StateForm::porosity;
-  double largest_span = 0.0;  ///< that extrapolations use; 0: all
-  std::vector<double> spans;  ///< to which onsets are extrapolated
+  double largest_span = 0.0;  ///< largest span that extrapolations use; 0: all
+  std::vector<double> spans;  ///< spans to which onsets are extrapolated
   std::int64_t replicates = 400;
 };
 
-/// Throws BadInput.
+/// Throws InputError.
 EquationSettings read_equation(const SceneTable& t);
 
 /// A variant as the fit sees it.
@@ -33,7 +33,7 @@ struct EquationInput {
   double span = 1.0;   ///< largest over smallest radius
   std::string family;  ///< variants that differ in the span alone
   std::vector<MacroCurve> curves;
-  double exponent = 0.0;  ///< of the power law of their sizes; 0: another form
+  double exponent = 0.0;  ///< exponent of the power law of their sizes; 0: another form
 };
 
 void fields(auto&& visit, Of<StateEstimate> auto& e) {
@@ -84,7 +84,7 @@ struct ExtrapolationSummary {
   bool usable = false;
   std::string message;
   std::optional<StateEstimate> onset;
-  std::optional<StateEstimate> measured;  ///< where a variant has that span
+  std::optional<StateEstimate> measured;  ///< measured phi_J, where a variant has that span
   std::vector<OnsetFormSummary> forms;
 };
 
@@ -131,9 +131,9 @@ struct EquationResult {
   StateFit fit;
 };
 
-/// Of what every sample does from its start as long as it is compressed: up to where its volume grows, or a stage
-/// begins that shears it or is held by stress at its sides. Nothing where that is less than four points of every
-/// sample.
+/// Fits the equation of state to the compression that every sample starts with. It ends where the volume grows, or
+/// where a stage begins that shears the sample or is held by stress at its sides. Empty where every sample has fewer
+/// than four such points.
 std::optional<EquationResult> equation_of(const std::vector<EquationInput>& variants, const EquationSettings& settings,
                                           std::uint64_t seed);
 

@@ -13,7 +13,7 @@ namespace softgrain {
 /// scene differ in it. What a [[loading]] says is left out.
 std::string material_family(const MaterialVariant& variant, const std::vector<MaterialVariant>& all);
 
-/// The same with its loading.
+/// Equal for variants of one material_family() under the same loading.
 std::string family_of(const MaterialVariant& variant, const std::vector<MaterialVariant>& all);
 
 }  // namespace softgrain

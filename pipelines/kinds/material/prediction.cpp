@@ -121,7 +121,7 @@ PredictionSummary predict(const Group& group, const StateFit& fit, double span, 
     for (const StateCurve& c : group.states(settings.largest_span))
       highest = std::max(highest, *std::max_element(c.pressure.begin(), c.pressure.end()));
     s.points = points_of(p, strain, measured, highest);
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     s.usable = false;
     s.message = e.what();
   }

@@ -12,12 +12,12 @@ namespace softgrain {
 
 /// A variant under one loading, as predictions see it.
 struct PredictionInput {
-  std::string material;  ///< of all its loadings
+  std::string material;  ///< name of the material, the same for all its loadings
   double span = 1.0;
   std::string family;           ///< materials that differ in the span alone
   std::string loading;          ///< empty: the scene has one test
-  double exponent = 0.0;        ///< of the power law of sizes; 0: another form
-  double start_pressure = 0.0;  ///< over E
+  double exponent = 0.0;        ///< exponent of the power law of sizes; 0: another form
+  double start_pressure = 0.0;  ///< start pressure over E
   std::vector<MacroCurve> curves;
 };
 
@@ -27,7 +27,7 @@ struct PredictedValue {
   std::optional<MeanError> measured;
 
   [[nodiscard]] bool inside() const { return predicted.low <= measured->mean && measured->mean <= predicted.high; }
-  /// Of the interval, over the value.
+  /// Width of the interval over the value.
   [[nodiscard]] double width() const { return (predicted.high - predicted.low) / predicted.value; }
 };
 
@@ -38,7 +38,7 @@ void fields(auto&& visit, Of<PredictedValue> auto& v) {
 
 struct PredictedPoint {
   double strain = 0.0;
-  PredictedValue pressure, axial, lateral;  ///< over E; not where the volume is held
+  PredictedValue pressure, axial, lateral;  ///< stresses over E; not where the volume is held
   PredictedValue deviator;                  ///< q/p
   bool beyond = false;                      ///< pressure above all that the equation of state was fitted to
 };
@@ -52,7 +52,7 @@ void fields(auto&& visit, Of<PredictedPoint> auto& p) {
   visit("beyond_fit", p.beyond);
 }
 
-/// Of one family under one loading, at one span.
+/// Prediction for one family under one loading, at one span.
 struct PredictionSummary {
   std::string family;
   std::string loading;
@@ -79,9 +79,9 @@ void fields(auto&& visit, Of<PredictionSummary> auto& s) {
   visit("points", s.points, kLeftOut);
 }
 
-/// Of all families with two spans or more up to `largest_span`, under loadings of one stage, at `settings.spans`. The
-/// equation of state behind one is fitted to its loading (of shear: to the first loading that compresses) and its
-/// family alone, without larger spans.
+/// Predictions for all families with two spans or more up to `largest_span`, under loadings of one stage, at
+/// `settings.spans`. The equation of state of a prediction is fitted to its loading (for shear: to the first loading
+/// that compresses) and its family alone, without larger spans.
 std::vector<PredictionSummary> predict_spans(const std::vector<PredictionInput>& inputs,
                                              const EquationSettings& settings, std::uint64_t seed);
 

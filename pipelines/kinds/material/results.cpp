@@ -34,7 +34,7 @@ std::vector<HeadLine> lines_of(const RunData& run) {
   return lines;
 }
 
-/// Of the tests of materials; summaries of other kinds have variants too.
+/// Curves of the tests of materials. Summaries of other kinds have variants too, which are left out.
 std::vector<NamedCurves> tests_of(const RunData& run) {
   std::vector<NamedCurves> out;
   for (const MaterialVariantSummary& v : run.summary_as<MaterialSummary>().variants) {
@@ -69,7 +69,8 @@ NextSteps next_of(const RunData&) {
       "How far from converged: `softgrain run SCENE.toml --seeds 1..8` for the scatter, `softgrain sweep SCENE.toml "
       "--over "
       "grains.count=1000,2000,4000` for the size.",
-      "A law of this matter for larger spans: `softgrain run pipelines/material_law.toml` with the same [material] and "
+      "A law of this material for larger spans: `softgrain run pipelines/material_law.toml` with the same [material] "
+      "and "
       "[grains]; models beside it: `softgrain run pipelines/material_vs_models.toml`."};
 }
 

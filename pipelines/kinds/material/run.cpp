@@ -42,18 +42,19 @@ LammpsRuns lammps_runs(const MaterialScene& scene, const MaterialVariant& v, con
 
 using Packings = std::shared_ptr<const std::vector<MacroPacking>>;
 
-/// As they are handed to a test: in touch, or with preparation "lammps" only placed. A failure says what to do.
+/// Packings as they are handed to a test: in contact, or with preparation "lammps" only placed. A failure says what to
+/// do.
 Packings packings_of(const MaterialVariant& v, const Run& run) {
   const std::string file = file_of(packings_name(v), "material_initial");
   try {
     auto packings = std::make_shared<const std::vector<MacroPacking>>(prepare_packings(v.setup, run, file));
     if (v.setup.spec.preparation != Preparation::lammps) save_packings(*packings, run, file);
     return packings;
-  } catch (const NotUsable& e) {
-    throw NotUsable(std::string(e.what()) +
-                    "; more preparation_passes, a larger preparation_tolerance or another seed may do");
-  } catch (const BadInput& e) {  // the cell became too small for its grains
-    throw NotUsable(std::string(e.what()) + "; more grains (count) make a larger cell");
+  } catch (const UnusableResult& e) {
+    throw UnusableResult(std::string(e.what()) +
+                         "; more preparation_passes, a larger preparation_tolerance or another seed may do");
+  } catch (const InputError& e) {  // the cell became too small for its grains
+    throw UnusableResult(std::string(e.what()) + "; more grains (count) make a larger cell");
   }
 }
 
@@ -141,7 +142,7 @@ MaterialVariantSummary summary_of(const VariantResult& r) {
 void require_engine(const MaterialScene& scene, const std::optional<LammpsEngine>& lammps) {
   for (const MaterialVariant& v : scene.variants)
     if (v.setup.spec.preparation == Preparation::lammps && !lammps)
-      throw BadInput("key packing.preparation = \"lammps\" needs --engine lammps");
+      throw InputError("key packing.preparation = \"lammps\" needs --engine lammps");
 }
 
 }  // namespace
@@ -170,7 +171,7 @@ VariantRuns run_variants(const MaterialScene& scene, const Run& run, const Varia
   const auto prepared = [&](const MaterialVariant& v) -> Packings {
     try {
       return packings_of(v, run);
-    } catch (const NotUsable& e) {
+    } catch (const UnusableResult& e) {
       const std::string tests = tests_of(scene.variants, v);
       failed(v, packings_name(v) == kMaterialEngine ? kMaterialEngine : "packing " + packings_name(v),
              e.what() + (tests == packings_name(v) ? "" : "; not tested: " + tests));
@@ -181,7 +182,7 @@ VariantRuns run_variants(const MaterialScene& scene, const Run& run, const Varia
     try {
       out.results.push_back(run_variant(scene, v, options.lammps, run, *packings));
       if (options.packings) out.results.back().packings = packings;
-    } catch (const NotUsable& e) {
+    } catch (const UnusableResult& e) {
       failed(v, v.name, e.what() + std::string("; another seed or more grains (count) may do"));
     }
   };
@@ -191,13 +192,13 @@ VariantRuns run_variants(const MaterialScene& scene, const Run& run, const Varia
       if (!v.same_packings) packings = prepared(v);
       if (packings) test(v, packings);
     }
-    if (out.results.empty()) throw NotUsable(out.failures.front().problem);
+    if (out.results.empty()) throw UnusableResult(out.failures.front().problem);
   });
   return out;
 }
 
 void reject_failures(const std::vector<VariantFailure>& failures, SummaryHead& head) {
-  for (const VariantFailure& f : failures) head.reject(f.problem);
+  for (const VariantFailure& f : failures) head.mark_unusable(f.problem);
 }
 
 TextTable points_of(const std::vector<VariantResult>& results) {
@@ -292,7 +293,7 @@ std::string equation_text(const EquationSummary& s) {
 
 }  // namespace
 
-std::string people_text(const MaterialSummary& s) {
+std::string console_summary(const MaterialSummary& s) {
   std::string text;
   for (const MaterialVariantSummary& v : s.variants) {
     text +=
@@ -323,8 +324,8 @@ MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantR
     s.head.files[r.variant->name] = run.path(r.file);
     for (const MacroCurve& c : r.curves)
       if (!c.usable || !(c.stress_axial.back() > 0.0))
-        s.head.reject(fmt::format("{}, sample {}: {}", r.variant->name, c.sample,
-                                  c.note.empty() ? "bears no stress at its end" : c.note));
+        s.head.mark_unusable(fmt::format("{}, sample {}: {}", r.variant->name, c.sample,
+                                         c.note.empty() ? "bears no stress at its end" : c.note));
     if (r.variant->same_packings) continue;
     for (const SizesSummary& sizes : summaries_of(drawn_sizes(
              r.variant->setup, run.seed, scene.variants.size() > 1 ? packings_name(*r.variant) + ": " : "")))
@@ -410,7 +411,7 @@ ExitStatus run_material(const Scene& scene, const CommonOptions& options) {
     for (const VariantResult& r : results) add_directories(*r.variant, run, summary);
   }
   write_text_atomic(run.path("material.csv"), as_csv(points_of(results)));
-  return run.finish(json_of(summary), people_text(summary));
+  return run.finish(json_of(summary), console_summary(summary));
 }
 
 }  // namespace

@@ -15,14 +15,14 @@
 
 namespace softgrain {
 
-/// Of packings without soft particles, which never ask them.
+/// Laws for packings without soft particles, which never evaluate them.
 NamedLaws no_soft_laws();
 
 struct VariantResult {
   const MaterialVariant* variant = nullptr;
-  std::string file;  ///< of its curves
+  std::string file;  ///< file of its curves
   std::vector<MacroCurve> curves;
-  /// That they begin with, shared by the loadings of a material; null unless they are asked for.
+  /// Packings that the curves begin with, shared by the loadings of a material; null unless they are asked for.
   std::shared_ptr<const std::vector<MacroPacking>> packings;
 };
 
@@ -34,8 +34,8 @@ struct VariantFailure {
 };
 
 struct VariantOptions {
-  std::optional<LammpsEngine> lammps{};  ///< that runs the tests
-  bool packings = false;                 ///< kept in the results
+  std::optional<LammpsEngine> lammps{};  ///< LAMMPS, where it runs the tests
+  bool packings = false;                 ///< whether packings are kept in the results
 };
 
 /// Variants that were measured, in their order, and those that were not.
@@ -45,7 +45,7 @@ struct VariantRuns {
 };
 
 /// Prepares and tests all samples of all variants; writes material_NAME.h5, material_initial_NAME.h5 and kept states.
-/// One that fails costs no other. Throws NotUsable where none is left.
+/// One that fails costs no other. Throws UnusableResult where none is left.
 VariantRuns run_variants(const MaterialScene& scene, const Run& run, const VariantOptions& options = {});
 
 /// Says in the head what failed, which then is not usable.
@@ -62,7 +62,7 @@ struct MaterialOutcome {
 /// Variants and equation of state; curves that are not usable are said in the head.
 MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantResult>& results, const Run& run);
 
-std::string people_text(const MaterialSummary& summary);
+std::string console_summary(const MaterialSummary& summary);
 
 /// The least and the largest p/E above 0 that take part in the equation of state.
 std::array<double, 2> pressure_range(const std::vector<VariantResult>& results);

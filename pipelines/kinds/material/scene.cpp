@@ -17,7 +17,7 @@
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/material/results.h"
-#include "pipelines/kinds/soft_particle/kept_states.h"
+#include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 #include "pipelines/run/variant_name.h"
 
 namespace softgrain {
@@ -65,8 +65,8 @@ void read_grains(const SceneTable& t, MacroSpec& spec) {
 void read_splits(const SceneTable& t, MacroSpec& spec) {
   spec.splits = t.numbers("splits", Unit::none, Range{0.0, 1.0, true, true}, spec.splits);
   std::set<double> once(spec.splits.begin(), spec.splits.end());
-  if (once.size() != spec.splits.size()) t.mistake("splits", "one is there twice");
-  if (spec.splits.empty()) t.mistake("splits", "at least one value is needed");
+  if (once.size() != spec.splits.size()) t.add_error("splits", "one is there twice");
+  if (spec.splits.empty()) t.add_error("splits", "at least one value is needed");
 }
 
 /// Preparations of materials end at a finer tolerance: at 0.03 the curve after one starts too soft.
@@ -101,23 +101,23 @@ void take_sizes(MacroSpec& spec, const Grading& sizes) {
 
 void require_material_memory(const SceneTable& grains, const MacroSetup& setup) {
   const std::string problem = macro_memory_problem(setup, 0.0, available_memory());
-  if (!problem.empty()) grains.reject("count", problem);
+  if (!problem.empty()) grains.throw_error("count", problem);
 }
 
 namespace {
 
-/// The tables [[loading]]: tests of every variant. Their keys are read over those of each, once all are found sound.
+/// The tables [[loading]]: tests of every variant. Their keys are read over those of each, once all are found valid.
 class Loadings {
  public:
   Loadings(const SceneTable& root, const MacroSpec& base) : tables_(root.tables("loading")) {
     if (tables_.empty()) return;
     if (!root.tables("stage").empty())
-      root.mistake("stage", "goes without [[loading]]: give [[loading.stage]], or a loading of its own");
+      root.add_error("stage", "goes without [[loading]]: give [[loading.stage]], or a loading of its own");
     for (const SceneTable& t : tables_) {
       MacroSpec spec = base;
-      t.part([&] { read(t, spec); });
+      t.section([&] { read(t, spec); });
       names_.push_back(t.text("name", ""));
-      if (std::count(names_.begin(), names_.end(), names_.back()) > 1) t.mistake("name", "is used twice");
+      if (std::count(names_.begin(), names_.end(), names_.back()) > 1) t.add_error("name", "is used twice");
     }
   }
 
@@ -142,7 +142,7 @@ class Loadings {
       for (const MaterialVariant& v : all)
         if (v.loading == names_[k]) tests.push_back(&v.setup.spec);
       if (tests.empty())
-        tables_[k].mistake("name", "no variant is tested under it: key loadings of a variant says which are");
+        tables_[k].add_error("name", "no variant is tested under it: key loadings of a variant says which are");
       else
         refuse_idle_test_keys(tables_[k], tables_[k], tests);
     }
@@ -152,11 +152,11 @@ class Loadings {
         refuse_idle_test_keys(variants[v], variants[v].has("stage") ? variants[v] : root, {&all[v].setup.spec});
   }
 
-  /// Those that a variant is tested under.
+  /// Numbers of the loadings that a variant is tested under.
   [[nodiscard]] std::vector<std::size_t> of_variant(const SceneTable& t) const {
     if (!empty()) {
       for (const char* key : {"test", "strain", "preload", "preload_steps", "stage"})
-        if (t.has(key)) t.mistake(key, "goes without [[loading]], which says what is tested");
+        if (t.has(key)) t.add_error(key, "goes without [[loading]], which says what is tested");
     }
     if (!t.has("loadings")) return all();
     std::vector<std::size_t> some;
@@ -165,14 +165,14 @@ class Loadings {
       const auto number = static_cast<std::size_t>(found - names_.begin());
       const std::string near = nearest_word(name, names_);
       if (found == names_.end())
-        t.mistake("loadings",
-                  fmt::format("no [[loading]] '{}'{}", name, near.empty() ? "" : "; nearest is '" + near + "'"));
+        t.add_error("loadings",
+                    fmt::format("no [[loading]] '{}'{}", name, near.empty() ? "" : "; nearest is '" + near + "'"));
       else if (std::count(some.begin(), some.end(), number) > 0)
-        t.mistake("loadings", fmt::format("'{}' is there twice", name));
+        t.add_error("loadings", fmt::format("'{}' is there twice", name));
       else
         some.push_back(number);
     }
-    if (some.empty()) t.mistake("loadings", "at least one is needed");
+    if (some.empty()) t.add_error("loadings", "at least one is needed");
     return some;
   }
 
@@ -197,7 +197,7 @@ class Loadings {
            {"steps", "increments_per_step", "tolerance", "force_floor", "max_passes", "modulus_stress"})
         if (variants[v].has(key) &&
             std::all_of(under[v].begin(), under[v].end(), [&](std::size_t k) { return says_in_test(tables_[k], key); }))
-          variants[v].mistake(key, "each [[loading]] of this variant gives its own");
+          variants[v].add_error(key, "each [[loading]] of this variant gives its own");
   }
 
   static void read(const SceneTable& t, MacroSpec& spec) {
@@ -211,7 +211,7 @@ class Loadings {
 };
 
 /// Keys of all tables of the scene, in one.
-MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const MacroSetup& base, bool sound) {
+MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const MacroSetup& base, bool valid) {
   MaterialVariant v{read_variant_name(t), base};
   MacroSpec& spec = v.setup.spec;
   read_matter(t, spec);
@@ -220,16 +220,16 @@ MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const 
   read_test(t, spec);
   read_part_stages(root, t, spec);
   v.setup.samples = t.count("samples", 1, 10000, v.setup.samples);
-  if (sound && t.sound()) require_material_memory(t, v.setup);
+  if (valid && !t.has_errors()) require_material_memory(t, v.setup);
   return v;
 }
 
-/// For all loadings of the packings from `first` on.
+/// Requires room in all variants from `first` on, which are the loadings of the same packings.
 void require_room(const SceneTable& t, const MaterialScene& scene, std::size_t first) {
   for (std::size_t k = first; k < scene.variants.size(); ++k) {
     const std::string problem = room_problem(scene.variants[k].setup, scene.seed, "grains");
     if (problem.empty()) continue;
-    t.mistake("count", problem + " ([grains] count)");
+    t.add_error("count", problem + " ([grains] count)");
     return;  // the others have the same grains
   }
 }
@@ -240,9 +240,9 @@ void require_names_apart(const SceneTable& root, const std::vector<MaterialVaria
   for (const MaterialVariant& v : variants) {
     const char* const what = v.loading.empty() ? "variant" : "loading";
     if (!v.loading.empty() && !names.insert(v.name).second)
-      root.mistake(what, fmt::format("'{}' would be the name of two results", v.name));
+      root.add_error(what, fmt::format("'{}' would be the name of two results", v.name));
     if (v.name == "initial" || v.name.starts_with("initial_"))
-      root.mistake(what, fmt::format("'{}': files of packings begin with \"initial\": give another name", v.name));
+      root.add_error(what, fmt::format("'{}': files of packings begin with \"initial\": give another name", v.name));
   }
 }
 
@@ -263,28 +263,28 @@ MaterialScene read_material(const SceneTable& root) {
   out.equation.asked = root.has("equation");
   const Loadings loadings(root, base.spec);
   std::set<std::string> names;
-  const bool sound = root.sound();
+  const bool valid = !root.has_errors();
   const auto add = [&](const MaterialVariant& v, const std::vector<std::size_t>& under, bool plain) {
     if (loadings.empty()) return out.variants.push_back(v);
-    if (!root.sound()) return;  // nothing comes of it
+    if (root.has_errors()) return;  // nothing comes of it
     for (MaterialVariant& one : loadings.apply(v, under, plain)) out.variants.push_back(std::move(one));
   };
   const std::vector<SceneTable> variants = root.tables("variant");
   std::vector<std::vector<std::size_t>> under;
   for (const SceneTable& t : variants) {
-    const MaterialVariant v = read_variant(root, t, base, sound);
-    if (!names.insert(v.name).second) t.mistake("name", "is used twice");
+    const MaterialVariant v = read_variant(root, t, base, valid);
+    if (!names.insert(v.name).second) t.add_error("name", "is used twice");
     const std::size_t first = out.variants.size();
     under.push_back(loadings.of_variant(t));
     add(v, under.back(), false);
-    if (root.sound()) require_room(t, out, first);
+    if (!root.has_errors()) require_room(t, out, first);
   }
   if (variants.empty()) {
-    if (root.sound()) require_material_memory(grains, base);
+    if (!root.has_errors()) require_material_memory(grains, base);
     add({kMaterialEngine, base}, loadings.all(), true);
-    if (root.sound()) require_room(grains, out, 0);
+    if (!root.has_errors()) require_room(grains, out, 0);
   }
-  if (root.sound()) loadings.refuse_idle(root, variants, under, out.variants);
+  if (!root.has_errors()) loadings.refuse_idle(root, variants, under, out.variants);
   refuse_idle_stages(root, "variant", variants);
   const auto by_lammps = [](const MaterialVariant& v) { return v.setup.spec.preparation == Preparation::lammps; };
   if (!out.variants.empty() && std::all_of(out.variants.begin(), out.variants.end(), by_lammps))

@@ -12,10 +12,10 @@ namespace softgrain {
 
 /// One material, its preparation and its test.
 struct MaterialVariant {
-  std::string name;            ///< in files and tables
-  MacroSetup setup;            ///< without soft particles, periodic
-  bool same_packings = false;  ///< as the variant before it, whose samples it tests in another way
-  std::string packings{};      ///< what they are called; empty: as the variant
+  std::string name;            ///< name in files and tables
+  MacroSetup setup;            ///< periodic setup without soft particles
+  bool same_packings = false;  ///< whether it tests the samples of the variant before it in another way
+  std::string packings{};      ///< name of its packings; empty: that of the variant
   std::string loading{};       ///< the name of its [[loading]], if any
 };
 
@@ -30,24 +30,24 @@ struct MaterialScene {
 MacroSetup material_defaults();
 
 /// [material], [grains] (which must be there), [packing] and [test], stages apart, over what `setup` has. Throws
-/// BadInput.
+/// InputError.
 void read_material_tables(const SceneTable& root, MacroSetup& setup);
 
-/// Of the solid grains, whichever way the spec says them.
+/// Sizes of the solid grains, whichever way the spec says them.
 Grading sizes_of(const MacroSpec& spec);
 void take_sizes(MacroSpec& spec, const Grading& sizes);
 
-/// Refuses samples that do not fit into memory, at `count` of this table. Throws BadInput.
+/// Refuses samples that do not fit into memory, at `count` of this table. Throws InputError.
 void require_material_memory(const SceneTable& grains, const MacroSetup& setup);
 
-/// All tables but those of other kinds that hold materials too, which read theirs beside it. Throws BadInput,
-/// FileTrouble.
+/// All tables but those of other kinds that hold materials too, which read theirs beside it. Throws InputError,
+/// IoError.
 MaterialScene read_material(const SceneTable& root);
 
-/// Reads the whole scene. Throws BadInput, FileTrouble.
+/// Reads the whole scene. Throws InputError, IoError.
 MaterialScene read_material_scene(const Scene& scene);
 
-/// Number, sizes and memory of every variant, what to mind, and with `timed` the time. Throws BadInput, FileTrouble.
+/// Number, sizes and memory of every variant, what to mind, and with `timed` the time. Throws InputError, IoError.
 void check_variants(const MaterialScene& material, Findings& out, bool timed = true);
 
 /// Prepares and tests all samples of all variants; writes material_NAME.h5, material_initial_NAME.h5, the kept states,

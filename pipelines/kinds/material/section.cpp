@@ -297,7 +297,9 @@ std::string material_section(const RunData& run) {
     if (variants.size() > 1) body += "<h3>" + escape(v.name) + "</h3>\n";
     body += stage_parts(v.curves, MacroTest::oedometric);
   }
-  return section("material", "Material", body + share_table(variants));
+  return section("material", "Material",
+                 "Stress against strain of the material with every grain resolved, for each variant.",
+                 body + share_table(variants));
 }
 
 }  // namespace softgrain::report

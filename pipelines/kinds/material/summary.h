@@ -7,12 +7,12 @@
 
 namespace softgrain {
 
-/// Of the samples of one variant.
+/// Results of the samples of one variant.
 struct MaterialVariantSummary {
   std::string name;
-  std::string file;  ///< of its curves
+  std::string file;  ///< file of its curves
   std::int64_t grains = 0;
-  double youngs_modulus = 0.0;  ///< of its grains [Pa]; 0: as the summary says
+  double youngs_modulus = 0.0;  ///< Young's modulus of its grains [Pa]; 0: as the summary says
   double size_ratio = 0.0;      ///< largest over smallest radius
   Preparation preparation = Preparation::frictionless;
   double friction = 0.0;

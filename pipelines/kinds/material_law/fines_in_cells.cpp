@@ -17,9 +17,9 @@ namespace {
 
 /// Bodies of one size would order.
 constexpr double kSiteRatio = 1.5;
-/// Of a stage: steps of one percent give what those of a quarter do.
+/// Compared points of a stage: steps of one percent give what those of a quarter do.
 constexpr std::size_t kComparedPoints = 8;
-/// Of a relaxation; at a tenth of it stress ratios differ by 1e-4.
+/// Tolerance of a relaxation; at a tenth of it stress ratios differ by 1e-4.
 constexpr double kTolerance = 1e-2;
 
 std::size_t last_stage_begins(const MacroCurve& curve) {
@@ -33,7 +33,7 @@ EquationOfState equation_of_fines(const FinesState& s) {
   return PoreForm{s.modulus, s.exponent};
 }
 
-/// In the cell whose low corner is the origin.
+/// Image of a point in the periodic cell whose low corner is the origin.
 Vec3 home(const Vec3& x, const Vec3& size) {
   Vec3 out;
   for (int k = 0; k < 3; ++k) {
@@ -111,7 +111,7 @@ std::vector<double> strain_fines(const MacroPacking& sites, const FinesState& st
       if (point.relaxation.end != RelaxationEnd::converged) return {};
       if (k + path.compared >= path.length.size()) out.push_back(measure_of(point.stress, path.measure));
     }
-  } catch (const NotUsable&) {
+  } catch (const UnusableResult&) {
     return {};
   }
   return out;

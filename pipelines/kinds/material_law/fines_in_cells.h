@@ -29,8 +29,8 @@ enum class FinesMeasure {
 /// Some recorded points of a curve, from its start; the last ones are compared.
 struct FinesPath {
   FinesMeasure measure = FinesMeasure::lateral_ratio;
-  std::vector<std::size_t> points;  ///< of the curve
-  std::vector<Vec3> length;         ///< of the axes there, over those at the start
+  std::vector<std::size_t> points;  ///< numbers of the points in the curve
+  std::vector<Vec3> length;         ///< lengths of the axes there, over those at the start
   std::size_t compared = 0;
 };
 
@@ -40,7 +40,8 @@ FinesPath path_of(const MacroCurve& curve, FinesMeasure measure);
 /// The measure of a curve at the compared points of the path; not a number where next to nothing bears.
 std::vector<double> measured_on(const MacroCurve& curve, const FinesPath& path);
 
-/// Sites for cells: bodies of nearly one size, packed without friction in a periodic cell. Throws NotUsable, BadInput.
+/// Sites for cells: bodies of nearly one size, packed without friction in a periodic cell. Throws UnusableResult,
+/// InputError.
 MacroPacking pack_sites(std::int64_t count, std::uint64_t seed);
 
 /// The measure at the compared points, all cells at the start pressure at first. Empty where the law gives none (a cell

@@ -69,7 +69,7 @@ class MaterialLawFit {
     std::tie(card.pressure_low, card.pressure_high) = std::tuple_cat(pressure_range(results_));
   }
 
-  /// Of all samples of a mixture together.
+  /// Grains of all samples of a mixture together.
   [[nodiscard]] GrainShares grains_of(const MaterialVariant& v) const {
     GrainShares all;
     for (std::int64_t s = 0; s < v.setup.samples; ++s) {
@@ -120,7 +120,7 @@ class MaterialLawFit {
     out_.summary.excess_widening = fit.widening;
   }
 
-  /// Of the fines, mean over the recorded points of the compression.
+  /// Adds K0, the lateral over the axial stress of the fines, mean over the recorded points of the compression.
   void lateral_ratio() {
     std::vector<double> samples;
     for (const MacroCurve& c : result(LawVariant::fines).curves) {

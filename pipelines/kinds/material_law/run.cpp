@@ -42,12 +42,12 @@ ExitStatus run_material_law(const Scene& scene, const CommonOptions& options) {
   else
     fitted.problems.push_back("not all of its packings could be measured");
   MaterialLawSummary summary{std::move(measured.summary), std::move(fitted.summary)};
-  for (const std::string& problem : fitted.problems) summary.material.head.reject("no cell law: " + problem);
+  for (const std::string& problem : fitted.problems) summary.material.head.mark_unusable("no cell law: " + problem);
   if (summary.law.usable) {
     write_cell_card(fitted.card, run.path(kCellLawFile), run.provenance);
     summary.material.head.files["cell_law"] = run.path(kCellLawFile);
   }
-  std::string text = people_text(summary.material) + law_text(summary.law);
+  std::string text = console_summary(summary.material) + law_text(summary.law);
   for (const std::string& problem : fitted.problems) text += "no cell law: " + problem + "\n";
   return run.finish(json_of(summary), text);
 }

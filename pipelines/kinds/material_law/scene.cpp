@@ -10,7 +10,7 @@
 #include "common/packing/grading_parts.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/material_law/fines_in_cells.h"
-#include "pipelines/kinds/soft_particle/kept_states.h"
+#include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 
 namespace softgrain {
 
@@ -53,10 +53,10 @@ void read_law(const SceneTable& law, MaterialLawScene& out) {
   out.material.equation.replicates = law.count("replicates", 40, 100000, 400);
   out.cells = law.count("cells", kLeastCells, 100000, out.cells);
   if (out.mixtures.size() < kLeastMixtures)
-    law.mistake("mixtures", "at least three shares are needed: w_inf and xi are fitted to them");
+    law.add_error("mixtures", "at least three shares are needed: w_inf and xi are fitted to them");
   for (std::size_t k = 1; k < out.mixtures.size(); ++k)
     if (!(out.mixtures[k - 1] < out.mixtures[k])) {
-      law.mistake("mixtures", "shares must ascend");
+      law.add_error("mixtures", "shares must ascend");
       return;
     }
 }
@@ -67,8 +67,8 @@ void make_variants(const SceneTable& law, const MacroSetup& base, double shear_s
   const std::vector<SizePiece> fines = pieces_between(out.sizes, 0.0, cut);
   const std::vector<SizePiece> coarse = pieces_between(out.sizes, cut, kInfinity);
   if (fines.empty())
-    law.reject("split", fmt::format("no grain is fine: the smallest radius is {:.3g} of the largest",
-                                    out.sizes.smallest() / out.sizes.largest()));
+    law.throw_error("split", fmt::format("no grain is fine: the smallest radius is {:.3g} of the largest",
+                                         out.sizes.smallest() / out.sizes.largest()));
   MacroSetup still = base;  // what other tests than shear do before is nothing
   still.spec.preload = 0.0;
   auto& variants = out.material.variants;
@@ -87,12 +87,13 @@ void require_grains(const SceneTable& law, const SceneTable& grains, const Mater
   for (const MaterialVariant& v : scene.material.variants) {
     if (v.setup.spec.bodies > kManyGrains) continue;
     const std::string problem = room_problem(v.setup, scene.material.seed, "grains");
-    if (!problem.empty()) grains.reject("count", fmt::format("packing {}: {} ([grains] count)", v.name, problem));
+    if (!problem.empty()) grains.throw_error("count", fmt::format("packing {}: {} ([grains] count)", v.name, problem));
     if (&v - scene.material.variants.data() < static_cast<std::ptrdiff_t>(kFirstMixture)) continue;
     const GrainShares shares = shares_of(scene, v, scene.material.seed, 0);
     if (shares.coarse == 0 || shares.fines == 0)
-      law.reject("mixtures", fmt::format("{}: none of {} grains is {}: more grains ([grains] count), or another share",
-                                         v.name, v.setup.spec.bodies, shares.coarse == 0 ? "coarse" : "fine"));
+      law.throw_error("mixtures",
+                      fmt::format("{}: none of {} grains is {}: more grains ([grains] count), or another share", v.name,
+                                  v.setup.spec.bodies, shares.coarse == 0 ? "coarse" : "fine"));
   }
 }
 
@@ -120,13 +121,13 @@ MaterialLawScene read_material_law_scene(const Scene& scene) {
     read_material_tables(root, base);
     const SceneTable test = root.table_or_empty("test");
     if (base.spec.test != MacroTest::oedometric)
-      test.mistake("test", "the law is measured in oedometric compression (and the fines in shear)");
+      test.add_error("test", "the law is measured in oedometric compression (and the fines in shear)");
     base.samples = root.count("samples", 1, 10000, base.samples);
     base.kept_states = read_kept_states(root);
     const SceneTable law = root.table_or_empty("law");
     read_law(law, out);
     const double shear = law.number("shear_strain", Unit::none, Range{0.0, 0.5, true, false}, 0.06);
-    if (!root.sound()) return out;
+    if (root.has_errors()) return out;
     out.sizes = sizes_of(base.spec);
     make_variants(law, base, shear, out);
     require_material_memory(root.table("grains"), base);

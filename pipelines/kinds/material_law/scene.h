@@ -18,7 +18,7 @@ inline constexpr std::size_t place_of(LawVariant v) { return static_cast<std::si
 
 struct MaterialLawScene {
   MaterialScene material;        ///< variants: LawVariant, then a mixture for each share
-  Grading sizes;                 ///< of the whole material
+  Grading sizes;                 ///< sizes of the whole material
   double split = 1.0 / 3.0;      ///< fines are below this share of the largest radius
   std::vector<double> mixtures;  ///< shares of fines by solid volume, ascending
   std::int64_t cells = 100;      ///< sites of the cells that friction is fitted with
@@ -37,10 +37,10 @@ struct GrainShares {
 GrainShares shares_of(const MaterialLawScene& scene, const MaterialVariant& variant, std::uint64_t seed,
                       std::uint64_t sample);
 
-/// Reads the whole scene. Throws BadInput, FileTrouble.
+/// Reads the whole scene. Throws InputError, IoError.
 MaterialLawScene read_material_law_scene(const Scene& scene);
 
-/// Variants, time, and what to mind. Throws BadInput, FileTrouble.
+/// Variants, time, and what to mind. Throws InputError, IoError.
 void check_material_law(const Scene& scene, Findings& out);
 
 /// Measures all variants, fits the cell law; writes cell_law.toml beside what a scene of kind "material" leaves. Status

@@ -134,7 +134,10 @@ std::string cell_law_section(const RunData& run) {
         "Form: {}. W/V_c is {} about what is fitted (root mean square), the stress ratios of the fines {} about the "
         "law.",
         to_string(law.form), format_number(law.excess_deviation, 2), format_number(law.friction_deviation, 2)));
-  return section("cell-law", "Cell law", body);
+  return section(
+      "cell-law", "Cell law",
+      "Pressure over solid fraction of the material between coarse grains: measured packings and the fitted law.",
+      body);
 }
 
 }  // namespace softgrain::report

@@ -63,7 +63,7 @@ void fields(auto&& visit, Of<BandSummary> auto& s) {
 struct FrictionCurve {
   std::string variant;
   std::string measure;           ///< "lateral/axial", "q/p"
-  std::vector<double> strain;    ///< of z, since the stage began
+  std::vector<double> strain;    ///< strain of z since the stage began
   std::vector<double> measured;  ///< mean of the samples
   std::vector<double> error;     ///< standard error of it
   std::vector<double> fitted;
@@ -82,12 +82,12 @@ struct CellLawSummary {
   bool usable = false;
   StateForm form = StateForm::porosity;
   double split = 0.0;
-  std::vector<LawNumber> numbers;  ///< those that were determined; of a card that was written, its own
-  std::vector<LawNumber> of_pair;  ///< of a recipe: what its two coarsest levels alone came to, before all finer ones
+  std::vector<LawNumber> numbers;  ///< numbers that were determined; those of the card where one was written
+  std::vector<LawNumber> of_pair;  ///< numbers of the two coarsest levels of a recipe alone, before all finer ones
   std::vector<MixtureSummary> mixtures;
   std::optional<BandSummary> band;
   double excess_deviation = 0.0;  ///< root mean square of W/V_c about its form
-  double excess_widening = 1.0;   ///< of the intervals of w_inf and xi, as the form misses the mixtures
+  double excess_widening = 1.0;   ///< factor on the intervals of w_inf and xi, as the form misses the mixtures
   std::vector<FrictionCurve> curves;
   double friction_deviation = 0.0;  ///< root mean square of the ratios about those of the law
 };

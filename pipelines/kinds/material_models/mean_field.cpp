@@ -11,7 +11,7 @@ namespace softgrain {
 
 namespace {
 
-/// Of the state of a mixture with this solid fraction.
+/// Argument x of the equation of state K x^n for a mixture with this solid fraction.
 double state_of(const CellCard& card, double solid_fraction, double onset) {
   if (card.form == StateForm::porosity) return (solid_fraction - onset) / (1.0 - onset);
   return 1.0 - (1.0 / solid_fraction - 1.0) / (1.0 / onset - 1.0);
@@ -62,18 +62,18 @@ MacroCurve mean_field(const CellCard& card, const MacroCurve& truth, double pres
   return out;
 }
 
-void map_by_state(const CellCard& card, const MacroCurve& truth, double pressure, MacroCurve& stand_in) {
+void map_by_state(const CellCard& card, const MacroCurve& truth, double pressure, MacroCurve& substitute) {
   const double onset_t = onset_of(card, truth.more.at(kSolidFraction).front(), pressure);
-  const double onset_s = onset_of(card, stand_in.more.at(kSolidFraction).front(), pressure);
-  const std::size_t points = std::min(truth.strain.size(), stand_in.strain.size());
+  const double onset_s = onset_of(card, substitute.more.at(kSolidFraction).front(), pressure);
+  const std::size_t points = std::min(truth.strain.size(), substitute.strain.size());
   for (std::size_t k = 0; k < points; ++k) {
-    const double own = pressure_at(card, state_of(card, solid_fraction_at(stand_in, k), onset_s));
-    // Along the strain of the stand-in, so that both lose the same share of their volume.
-    const double phi = truth.more.at(kSolidFraction).front() * solid_fraction_at(stand_in, k) /
-                       stand_in.more.at(kSolidFraction).front();
+    const double own = pressure_at(card, state_of(card, solid_fraction_at(substitute, k), onset_s));
+    // Along the strain of the substitute, so that both lose the same share of their volume.
+    const double phi = truth.more.at(kSolidFraction).front() * solid_fraction_at(substitute, k) /
+                       substitute.more.at(kSolidFraction).front();
     const double factor = own > 0.0 ? pressure_at(card, state_of(card, phi, onset_t)) / own : 1.0;
-    for (std::vector<double>* column : {&stand_in.stress_axial, &stand_in.stress_lateral, &stand_in.stress_x,
-                                        &stand_in.stress_y, &stand_in.stress_deviator})
+    for (std::vector<double>* column : {&substitute.stress_axial, &substitute.stress_lateral, &substitute.stress_x,
+                                        &substitute.stress_y, &substitute.stress_deviator})
       if (k < column->size()) (*column)[k] *= factor;
   }
 }

@@ -27,7 +27,7 @@ struct OneSample {
   const MaterialModel& model;
   const VariantResult& truth;
   const Run& run;
-  StandInRuns& stand_ins;
+  SubstituteRuns& substitutes;
 
   /// Bodies in places of their own, which no loading moves.
   [[nodiscard]] MacroPacking own_packing(const std::string& key, const std::function<MacroPacking()>& make) const {
@@ -66,7 +66,7 @@ constexpr RandomPurpose kShellRadii{71};
 CoarseAndFine parted_or_refused(const MacroPacking& packing, double cut) {
   CoarseAndFine parts = parted(packing, cut);
   if (parts.coarse.empty() || !(parts.fines_volume > 0.0))
-    throw NotUsable("the material has no grains on one side of the split");
+    throw UnusableResult("the material has no grains on one side of the split");
   return parts;
 }
 
@@ -77,13 +77,13 @@ MacroSetup coarse_steps(MacroSetup setup) {
   return setup;
 }
 
-/// Of a mixture, so many bodies that about as many as in the truth are coarse.
+/// Number of bodies of a mixture such that about as many of them as in the truth are coarse.
 std::int64_t bodies_for(MacroSpec spec, double cut, std::size_t coarse, std::uint64_t seed) {
   constexpr std::int64_t kTrial = 4000;
   spec.bodies = kTrial;
   double found = 0.0;
   for (const MacroBody& b : drawn_bodies(spec, seed, 0)) found += !b.soft && b.r >= cut ? 1.0 : 0.0;
-  if (!(found > 0.0)) throw NotUsable("a stand-in of this material has hardly any coarse grains");
+  if (!(found > 0.0)) throw UnusableResult("a coarse-grained substitute of this material has hardly any coarse grains");
   return std::max<std::int64_t>(30, std::llround(static_cast<double>(kTrial) * static_cast<double>(coarse) / found));
 }
 
@@ -117,7 +117,7 @@ MacroCurve coarse_of(const OneSample& one, std::size_t sample) {
   return one.test(setup, in_box_of(whole, parts.coarse), sample, &laws);
 }
 
-MacroCurve raw_stand_in_of(const OneSample& one, std::size_t sample) {
+MacroCurve raw_substitute_of(const OneSample& one, std::size_t sample) {
   const MaterialModel& m = one.model;
   const MacroSpec& truth = spec_of(one.truth);
   const double cut = cut_of(m, one.truth);
@@ -131,11 +131,11 @@ MacroCurve raw_stand_in_of(const OneSample& one, std::size_t sample) {
   return one.test(setup, one.own_packing(setup.spec, sample), sample, &laws);
 }
 
-MacroCurve stand_in_of(const OneSample& one, std::size_t sample) {
+MacroCurve substitute_of(const OneSample& one, std::size_t sample) {
   const MaterialModel& m = one.model;
   const std::tuple key{m.split, m.smallest, sample};
-  auto raw = one.stand_ins.find(key);
-  if (raw == one.stand_ins.end()) raw = one.stand_ins.emplace(key, raw_stand_in_of(one, sample)).first;
+  auto raw = one.substitutes.find(key);
+  if (raw == one.substitutes.end()) raw = one.substitutes.emplace(key, raw_substitute_of(one, sample)).first;
   MacroCurve c = raw->second;
   c.engine = m.name;
   if (m.mapped) map_by_state(*m.card, one.truth.curves[sample], spec_of(one.truth).start_pressure, c);
@@ -169,8 +169,8 @@ MacroCurve mean_field_of(const OneSample& one, std::size_t sample) {
   const MacroCurve& truth = one.truth.curves[sample];
   const double pressure = spec_of(one.truth).start_pressure;
   const CellCard& card = *one.model.card;
-  if (truth.test == MacroTest::shear) throw NotUsable("the mean field knows no shear");
-  if (truth.test == MacroTest::stages) throw NotUsable("the mean field knows no way back");
+  if (truth.test == MacroTest::shear) throw UnusableResult("the mean field knows no shear");
+  if (truth.test == MacroTest::stages) throw UnusableResult("the mean field knows no way back");
   double onset = kNaN;
   if (one.model.start == ModelStart::density) {
     const CoarseAndFine parts =
@@ -186,8 +186,8 @@ MacroCurve curve_of(const OneSample& one, std::size_t sample) {
   switch (one.model.kind) {
     case ModelKind::cells:
       return cells_of(one, sample);
-    case ModelKind::stand_in:
-      return stand_in_of(one, sample);
+    case ModelKind::substitute:
+      return substitute_of(one, sample);
     case ModelKind::mean_field:
       return mean_field_of(one, sample);
     case ModelKind::coarse:
@@ -247,15 +247,16 @@ std::string other_fines(const MaterialModel& model, const MacroSpec& spec) {
   return text;
 }
 
-ModelRun run_model(const MaterialModel& model, const VariantResult& truth, const Run& run, StandInRuns& stand_ins) {
+ModelRun run_model(const MaterialModel& model, const VariantResult& truth, const Run& run,
+                   SubstituteRuns& substitutes) {
   ModelRun out{&model, &truth, {}, "", other_fines(model, spec_of(truth))};
-  const OneSample one{model, truth, run, stand_ins};
+  const OneSample one{model, truth, run, substitutes};
   try {
     for (std::size_t k = 0; k < truth.packings->size(); ++k) out.curves.push_back(curve_of(one, k));
-  } catch (const NotUsable& e) {
+  } catch (const UnusableResult& e) {
     out.curves.clear();
     out.refusal = e.what();
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     out.curves.clear();
     out.refusal = e.what();
   }

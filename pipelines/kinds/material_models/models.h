@@ -20,11 +20,12 @@ struct ModelRun {
   std::string remark;              ///< what to mind about them
 };
 
-/// Curves of the stand-ins of one variant as they are run, by split, smallest radius and sample: mapped ones are these.
-using StandInRuns = std::map<std::tuple<double, double, std::size_t>, MacroCurve>;
+/// Curves of the substitutes of one variant as they are run, by split, smallest radius and sample: mapped ones are
+/// these.
+using SubstituteRuns = std::map<std::tuple<double, double, std::size_t>, MacroCurve>;
 
-/// Throws what runs throw, but for a model that this material is none for (BadInput, NotUsable): then a refusal.
-ModelRun run_model(const MaterialModel& model, const VariantResult& truth, const Run& run, StandInRuns& stand_ins);
+/// Throws what runs throw, but for a model that this material is none for (InputError, UnusableResult): then a refusal.
+ModelRun run_model(const MaterialModel& model, const VariantResult& truth, const Run& run, SubstituteRuns& substitutes);
 
 /// Grains below `split` of the largest that the variant may have.
 struct CoarseAndFine {
@@ -51,9 +52,9 @@ std::string other_fines(const MaterialModel& model, const MacroSpec& spec);
 /// changes; by density phi_J is `onset` and p0 follows. Both forms of the card.
 MacroCurve mean_field(const CellCard& card, const MacroCurve& truth, double pressure, double onset);
 
-/// Stresses times [x_t/x_s]^n: the state x of the truth over that of the stand-in at equal strains, both from the same
+/// Stresses times [x_t/x_s]^n: the state x of the truth over that of the substitute at equal strains, both from the same
 /// start pressure.
-void map_by_state(const CellCard& card, const MacroCurve& truth, double pressure, MacroCurve& stand_in);
+void map_by_state(const CellCard& card, const MacroCurve& truth, double pressure, MacroCurve& substitute);
 
 /// phi_J of the mixture by the card: 1/(1 + e), e the pores of fines and coarse grains over their solid volume.
 double onset_by_card(const CellCard& card, double share);

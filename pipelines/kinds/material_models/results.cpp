@@ -118,7 +118,8 @@ std::string material_models_section(const RunData& run) {
   std::vector<std::string> figures;
   for (const MaterialVariantSummary& v : summary.material.variants) figures.push_back(stress_figure_of(run, v));
   body += figure_row(figures);
-  return section("material-models", "Models beside the truth", body);
+  return section("material-models", "Models beside the truth",
+                 "Stress of each model against the material with every grain resolved: error against cost.", body);
 }
 
 }  // namespace report

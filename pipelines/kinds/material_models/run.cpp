@@ -20,10 +20,10 @@ std::vector<ModelScore> run_models(const MaterialModelsScene& scene, const std::
   std::vector<ModelScore> scores;
   for (const VariantResult& truth : truths) {
     std::vector<MacroCurve> curves;
-    StandInRuns stand_ins;
+    SubstituteRuns substitutes;
     for (const MaterialModel& model : scene.models) {
       if (!model.variants.empty() && !among(model.variants, *truth.variant)) continue;
-      const ModelRun one = run_model(model, truth, run, stand_ins);
+      const ModelRun one = run_model(model, truth, run, substitutes);
       scores.push_back(score(one, among(scene.blind, *truth.variant)));
       curves.insert(curves.end(), one.curves.begin(), one.curves.end());
     }
@@ -45,7 +45,7 @@ ExitStatus run_material_models(const Scene& file, const CommonOptions& options) 
   run.context.guard([&] { summary.scores = run_models(scene, truths, run); });
   write_text_atomic(run.path("models.csv"), as_csv(table_of(summary.scores)));
   summary.material.head.files["models"] = run.path("models.csv");
-  return run.finish(json_of(summary), people_text(summary.material) + people_text(summary.scores));
+  return run.finish(json_of(summary), console_summary(summary.material) + console_summary(summary.scores));
 }
 
 void check_models(const Scene& file, Findings& out) {

@@ -16,17 +16,17 @@ namespace {
 void require_own_keys(const SceneTable& t, ModelKind kind) {
   const auto only = [&](const char* key, std::initializer_list<ModelKind> kinds) {
     if (t.has(key) && std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
-      t.mistake(key, "does not go with kind = \"" + to_string(kind) + "\"");
+      t.add_error(key, "does not go with kind = \"" + to_string(kind) + "\"");
   };
-  only("split", {ModelKind::cells, ModelKind::stand_in, ModelKind::coarse, ModelKind::shells});
+  only("split", {ModelKind::cells, ModelKind::substitute, ModelKind::coarse, ModelKind::shells});
   only("places", {ModelKind::cells});
   only("start", {ModelKind::cells, ModelKind::mean_field});
-  only("smallest", {ModelKind::stand_in});
-  only("mapped", {ModelKind::stand_in});
+  only("smallest", {ModelKind::substitute});
+  only("mapped", {ModelKind::substitute});
   for (const char* key : {"table", "form", "scale"}) only(key, {ModelKind::shells});
   only("radii", {ModelKind::shells, ModelKind::cells});
   only("soft_share", {ModelKind::cells});
-  only("card", {ModelKind::cells, ModelKind::mean_field, ModelKind::stand_in});
+  only("card", {ModelKind::cells, ModelKind::mean_field, ModelKind::substitute});
 }
 
 CellCard read_card(const Scene& scene, const SceneTable& t, MaterialModelsScene& out) {
@@ -47,7 +47,7 @@ LawSources read_shells(const Scene& scene, const SceneTable& t, MaterialModelsSc
     out.files.push_back(path);
     out.text += read_text(path);
   }
-  law.forms = {t.choice<Crowd>("form", Crowd::directional)};
+  law.forms = {t.choice<LawForm>("form", LawForm::directional)};
   law.range = RangePolicy::clamp;
   return law;
 }
@@ -64,21 +64,21 @@ MaterialModel read_model(const Scene& scene, const SceneTable& t, MaterialModels
   m.smallest = t.number("smallest", Unit::none, Range{0.0, m.split, true, true}, std::min(m.smallest, 0.6 * m.split));
   m.soft_share = t.number("soft_share", Unit::none, Range{0.0, 0.6, false, false}, 0.0);
   if (m.soft_share > 0.0 && m.places == ModelPlaces::truth)
-    t.mistake("soft_share", "soft bodies are at places of their own: places = \"own\"");
+    t.add_error("soft_share", "soft bodies are at places of their own: places = \"own\"");
   if (m.kind == ModelKind::cells && m.soft_share == 0.0 && t.has("radii"))
-    t.mistake("radii", "are those of soft bodies: goes with soft_share above 0");
+    t.add_error("radii", "are those of soft bodies: goes with soft_share above 0");
   m.mapped = t.flag("mapped", false);
-  if (m.kind == ModelKind::stand_in && !m.mapped && t.has("card"))
-    t.mistake("card", "says the equation of state that stresses are mapped by: goes with mapped = true");
+  if (m.kind == ModelKind::substitute && !m.mapped && t.has("card"))
+    t.add_error("card", "says the equation of state that stresses are mapped by: goes with mapped = true");
   m.scale = t.number("scale", Unit::none, Range{0.0, 2.0, true, false}, m.scale);
   const std::vector<double> radii = t.numbers("radii", Unit::none, Range{0.0, 2.0, true, false}, {0.2, 0.6});
   if (radii.size() != 2 || !(radii[0] < radii[1]))
-    t.mistake("radii", "the smallest and the largest shell, in this order");
+    t.add_error("radii", "the smallest and the largest shell, in this order");
   else
     m.radii = {radii[0], radii[1]};
   if (m.kind == ModelKind::shells)
     m.law = read_shells(scene, t, out);
-  else if (m.kind != ModelKind::coarse && (m.kind != ModelKind::stand_in || m.mapped))
+  else if (m.kind != ModelKind::coarse && (m.kind != ModelKind::substitute || m.mapped))
     m.card = read_card(scene, t, out);
   return m;
 }
@@ -97,17 +97,17 @@ MaterialModelsScene read_material_models_scene(const Scene& scene) {
       for (const std::string& name : names)
         if (std::none_of(out.material.variants.begin(), out.material.variants.end(),
                          [&](const MaterialVariant& v) { return is_named(v, name); }))
-          t.mistake(key, "'" + name + "' is no variant");
+          t.add_error(key, "'" + name + "' is no variant");
     };
     require_variants(root, "blind", out.blind);
     std::set<std::string> names;
     for (const SceneTable& t : root.tables("model")) {
-      if (!names.insert(t.text("name", "")).second) t.mistake("name", "is used twice");
+      if (!names.insert(t.text("name", "")).second) t.add_error("name", "is used twice");
       MaterialModel m = read_model(scene, t, out);
       require_variants(t, "variants", m.variants);
       out.models.push_back(std::move(m));
     }
-    if (out.models.empty()) root.mistake("model", "give at least one [[model]]");
+    if (out.models.empty()) root.add_error("model", "give at least one [[model]]");
     return out;
   });
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/core/words.h"
+#include "common/core/enum_names.h"
 #include "pipelines/kinds/material/scene.h"
 #include "pipelines/law/named_laws.h"
 
@@ -13,62 +13,62 @@ namespace softgrain {
 
 enum class ModelKind {
   cells,       ///< coarse grains in cells of fines
-  stand_in,    ///< fines replaced by fewer, larger grains of the same volume
+  substitute,  ///< fines replaced by fewer, larger grains of the same volume
   mean_field,  ///< no bodies: the equation of state at the mean density
   coarse,      ///< coarse grains alone
   shells       ///< fines as soft particles between the coarse grains
 };
 
 template <>
-inline constexpr auto words<ModelKind> = word_list<ModelKind>({{ModelKind::cells, "cells"},
-                                                               {ModelKind::stand_in, "stand-in"},
-                                                               {ModelKind::mean_field, "mean-field"},
-                                                               {ModelKind::coarse, "coarse"},
-                                                               {ModelKind::shells, "shells"}});
+inline constexpr auto enum_names<ModelKind> = enum_name_list<ModelKind>({{ModelKind::cells, "cells"},
+                                                                         {ModelKind::substitute, "substitute"},
+                                                                         {ModelKind::mean_field, "mean-field"},
+                                                                         {ModelKind::coarse, "coarse"},
+                                                                         {ModelKind::shells, "shells"}});
 
 /// Where the coarse grains of a model are.
 enum class ModelPlaces { truth, own };
 
 template <>
-inline constexpr auto words<ModelPlaces> = word_list<ModelPlaces>({{ModelPlaces::truth, "truth"},
-                                                                   {ModelPlaces::own, "own"}});
+inline constexpr auto enum_names<ModelPlaces> = enum_name_list<ModelPlaces>({{ModelPlaces::truth, "truth"},
+                                                                             {ModelPlaces::own, "own"}});
 
 /// What its start follows from.
 enum class ModelStart { pressure, density };
 
 template <>
-inline constexpr auto words<ModelStart> = word_list<ModelStart>({{ModelStart::pressure, "pressure"},
-                                                                 {ModelStart::density, "density"}});
+inline constexpr auto enum_names<ModelStart> = enum_name_list<ModelStart>({{ModelStart::pressure, "pressure"},
+                                                                           {ModelStart::density, "density"}});
 
 /// One [[model]].
 struct MaterialModel {
   std::string name;
   ModelKind kind = ModelKind::cells;
-  std::vector<std::string> variants{};  ///< that it is for; empty: all
+  std::vector<std::string> variants{};  ///< variants that it is for; empty: all
   double split = 1.0 / 3.0;             ///< radius over the largest below which grains are fines
   ModelPlaces places = ModelPlaces::truth;
   ModelStart start = ModelStart::pressure;
-  std::optional<CellCard> card{};         ///< of cells, mean fields and stand-ins (for the equation of state)
-  double soft_share = 0.0;                ///< of cells in own places: soft bodies, of the volume of all bodies
-  double smallest = 0.2;                  ///< of stand-ins: smallest radius over the largest of the material
-  bool mapped = false;                    ///< of stand-ins: stresses mapped by the equation of state
-  std::optional<LawSources> law{};        ///< of shells
-  std::array<double, 2> radii{0.2, 0.6};  ///< of shells and soft bodies: over the largest grain
-  double scale = 1.0;                     ///< of shells: of their radii once they are placed
+  std::optional<CellCard> card{};         ///< card for cells, mean fields and substitutes (for the equation of state)
+  double soft_share = 0.0;                ///< volume share of soft bodies among all bodies, for cells in own places
+  double smallest = 0.2;                  ///< smallest radius of substitutes over the largest of the material
+  bool mapped = false;                    ///< whether stresses of substitutes are mapped by the equation of state
+  std::optional<LawSources> law{};        ///< law of shells
+  std::array<double, 2> radii{0.2, 0.6};  ///< radii of shells and soft bodies over the largest grain: low, high
+  double scale = 1.0;                     ///< factor on the radii of shells once they are placed
 };
 
 struct MaterialModelsScene {
   MaterialScene material;
   std::vector<MaterialModel> models;
   std::vector<std::string> blind;  ///< variants apart from the rest
-  std::vector<std::string> files;  ///< of laws
-  std::string text;                ///< of these
+  std::vector<std::string> files;  ///< files of laws
+  std::string text;                ///< contents of these files
 };
 
-/// By its own name, or that of the packings which its loadings share.
+/// Whether `name` is that of the variant, or of the packings which its loadings share.
 bool is_named(const MaterialVariant& v, const std::string& name);
 
-/// Throws BadInput, FileTrouble.
+/// Throws InputError, IoError.
 MaterialModelsScene read_material_models_scene(const Scene& scene);
 
 /// Runs materials and models; writes models.csv, models_NAME.h5 and what kind material does.

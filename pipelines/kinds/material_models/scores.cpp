@@ -16,7 +16,7 @@ namespace {
 
 using Column = std::vector<double> (*)(const MacroCurve&);
 
-/// Of the points that all have.
+/// Mean of a column over the curves, at the points that all of them have.
 std::vector<double> mean_of(const std::vector<MacroCurve>& curves, Column column) {
   std::vector<double> sum(column(curves.front()).size(), 0.0);
   for (const MacroCurve& c : curves) {
@@ -60,7 +60,7 @@ Pairs pairs_of(const ModelRun& run, std::string& remark) {
 struct FreeColumns {
   std::vector<double> model;
   std::vector<double> truth;
-  std::size_t first = 0;  ///< in them, of the point that was meant
+  std::size_t first = 0;  ///< place in these columns of the point that was meant
 };
 
 FreeColumns without_imposed(const std::vector<double>& model, const std::vector<double>& truth,
@@ -240,7 +240,7 @@ TextTable table_of(const std::vector<ModelScore>& scores) {
   return out;
 }
 
-std::string people_text(const std::vector<ModelScore>& scores) {
+std::string console_summary(const std::vector<ModelScore>& scores) {
   std::string text;
   for (const ModelScore& s : scores) {
     text += fmt::format("{}{}, {}: ", s.variant, s.blind ? " (blind)" : "", s.model);

@@ -15,6 +15,6 @@ ModelScore score(const ModelRun& run, bool blind);
 double relative_difference(const std::vector<double>& model, const std::vector<double>& truth, std::size_t first);
 
 TextTable table_of(const std::vector<ModelScore>& scores);
-std::string people_text(const std::vector<ModelScore>& scores);
+std::string console_summary(const std::vector<ModelScore>& scores);
 
 }  // namespace softgrain

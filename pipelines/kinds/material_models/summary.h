@@ -13,21 +13,21 @@ struct ModelScore {
   ModelKind kind = ModelKind::cells;
   bool blind = false;
   std::string remark;        ///< why nothing was run; or what to mind
-  std::int64_t samples = 0;  ///< that truth and model came through; 0: nothing is known
+  std::int64_t samples = 0;  ///< samples that truth and model came through; 0: nothing is known
   std::int64_t bodies = 0;
   double axial = 0.0;        ///< square root of sum (model - truth)^2/sum truth^2 of points beyond 1 % strain
   double axial_error = 0.0;  ///< standard error, of the same in every sample
-  double lateral = 0.0;      ///< the same of the lateral stress
+  double lateral = 0.0;      ///< relative error of the lateral stress, as `axial`
   double lateral_error = 0.0;
   double axial_at_2 = 0.0;    ///< model/truth - 1 at 2 % strain
-  double axial_at_end = 0.0;  ///< at the end of the first stage
+  double axial_at_end = 0.0;  ///< model/truth - 1 at the end of the first stage
   double ratio_at_2 = 0.0;    ///< q/p, model/truth - 1
   double ratio_at_6 = 0.0;
   double unloading = 0.0;    ///< modulus at the begin of unloading, model/truth - 1
   double truth_error = 0.0;  ///< standard error of the mean axial stress of the truth at the end, relative
   double evaluations = 0.0;  ///< truth over model: of contacts, or faces of cells
   double seconds = 0.0;      ///< truth over model, tests alone
-  double seconds_all = 0.0;  ///< with preparations
+  double seconds_all = 0.0;  ///< truth over model, preparations included
 };
 
 void fields(auto&& visit, Of<ModelScore> auto& s) {

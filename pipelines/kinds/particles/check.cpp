@@ -33,7 +33,7 @@ double step_seconds(System<D>& s, const SceneTime& time) {
   return seconds_per_call([&] { integrator.step(s); }, kTrialSeconds, std::min(kTrialSteps, time.steps));
 }
 
-/// Of a cell that is periodic along all axes.
+/// Adds the solid fraction of a cell that is periodic along all axes.
 template <int D>
 void add_solid_fraction(const System<D>& s, Findings& out) {
   if (!std::all_of(s.cell.periodic.begin(), s.cell.periodic.end(), [](bool along) { return along; })) return;
@@ -66,7 +66,7 @@ void add_overlap(const System<D>& s, Findings& out) {
   if (!beyond.empty()) out.warn("at the start: " + beyond);
 }
 
-/// Of the largest grain; disks may have any unit of length.
+/// Warns of a largest grain whose radius is hardly meant in metres; disks may have any unit of length.
 template <int D>
 void warn_of_radius(const System<D>& s, Findings& out) {
   double largest = 0.0;

@@ -18,9 +18,9 @@ void check_particles_file(const std::string& path, Findings& out) {
   std::size_t frames = 0;
   try {
     visit_particles(path, SnapshotChoice::all, [&](const Snapshot&) { ++frames; });
-  } catch (const FileTrouble& e) {
+  } catch (const IoError& e) {
     const std::string text = e.what();
-    throw FileTrouble(text.starts_with(path) ? text : path + ": " + text);
+    throw IoError(text.starts_with(path) ? text : path + ": " + text);
   }
   out.add("kind", "particles", fmt::format("particles: {} recorded frames", frames));
 }

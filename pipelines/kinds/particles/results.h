@@ -8,7 +8,7 @@ namespace softgrain {
 KindResults particles_results();
 
 /// run.h5: every recorded frame, with the contacts of those that kept them; frames whose numbers were lost are left
-/// out. Throws FileTrouble.
+/// out. Throws IoError.
 void visit_particles(const std::string& path, SnapshotChoice choice, const VisitSnapshot& visit);
 
 namespace report {

@@ -51,7 +51,8 @@ std::string particles_section(const RunData& run) {
       table_of(summary.particles, {"particle", "position [m]", "velocity [m/s]", "spin [rad/s]"}, grain_row);
   const std::string contacts = table_of(summary.contacts.value_or(std::vector<PairSummary>{}),
                                         {"pair", "duration [s]", "largest force [N]", "largest overlap [m]"}, pair_row);
-  return section("particles", "Particles at the end", states) + section("contacts", "Contacts", contacts);
+  return section("particles", "Particles at the end", "Positions of the particles at the end of the run.", states) +
+         section("contacts", "Contacts", "Forces and overlaps of the contacts at the end of the run.", contacts);
 }
 
 }  // namespace softgrain::report

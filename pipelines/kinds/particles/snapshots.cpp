@@ -22,7 +22,7 @@ struct Bodies {
 };
 
 void require(bool fits, const char* what) {
-  if (!fits) throw FileTrouble(fmt::format("data set '{}' does not fit the rest of the file", what));
+  if (!fits) throw IoError(fmt::format("data set '{}' does not fit the rest of the file", what));
 }
 
 bool all_finite(const std::vector<double>& values) {
@@ -48,7 +48,7 @@ std::vector<SnapshotParticle> read_particles(const h5::Group& bodies) {
   return particles;
 }
 
-/// Of the state in full that ends the file, which has as many coordinates as the run has dimensions.
+/// Walls of the full state that ends the file. They have as many coordinates as the run has dimensions.
 std::vector<SnapshotWall> read_walls(const h5::Group& bodies, std::size_t particles, std::size_t dimension) {
   const std::vector<std::int64_t> counts = bodies.integers("counts");
   const std::vector<double> spheres = bodies.doubles("sphere");
@@ -123,7 +123,7 @@ Snapshot frame_of(const Trajectory& t, const Bodies& bodies, std::size_t frame) 
   return s;
 }
 
-bool is_sound(const Snapshot& s) {
+bool is_valid(const Snapshot& s) {
   return std::all_of(s.particles.begin(), s.particles.end(), [](const SnapshotParticle& p) {
     return std::isfinite(norm2(p.position)) && std::isfinite(norm2(p.velocity));
   });
@@ -149,8 +149,8 @@ void add_contacts(Snapshot& s, const FrameContacts& all, const std::vector<std::
 
 void visit_particles(const std::string& path, SnapshotChoice choice, const VisitSnapshot& visit) {
   const h5::Group root = h5::open_file(path);
-  if (!root.has_attribute("kind") || from_word<SnapshotKind>(root.text("kind")) != SnapshotKind::particles)
-    throw FileTrouble(path + ": holds no particles");
+  if (!root.has_attribute("kind") || parse_enum<SnapshotKind>(root.text("kind")) != SnapshotKind::particles)
+    throw IoError(path + ": holds no particles");
   const Bodies bodies = read_bodies(root);
   const Trajectory t = read_trajectory(root.open("trajectory"));
   require_fits(t, bodies);
@@ -162,7 +162,7 @@ void visit_particles(const std::string& path, SnapshotChoice choice, const Visit
   const std::size_t frames = t.time.size();
   for (std::size_t k = choice == SnapshotChoice::last && frames > 0 ? frames - 1 : 0; k < frames; ++k) {
     Snapshot s = frame_of(t, bodies, k);
-    if (!is_sound(s)) continue;
+    if (!is_valid(s)) continue;
     add_contacts(s, contacts, starts);
     visit(s);
   }

@@ -79,15 +79,15 @@ json guards_json(const GuardSpec& spec, const GuardReport& g, const System<D>& s
               {"energy", record_json(g.energy, spec.energy, spec.energy.limit)},
               {"escape", record_json(g.escape, spec.escape, spec.escape.limit)},
               {"wall", record_json(g.wall_travel, spec.wall_travel, g.wall_travel_limit)},
-              {"hasty_lists", s.neighbours.hasty}};
+              {"hasty_lists", s.neighbours.short_lived}};
   out["energy"]["watched"] = g.energy_unwatched.empty();
   if (!g.energy_unwatched.empty()) out["energy"]["unwatched_because"] = g.energy_unwatched;
-  if (g.laws.asked > 0)
-    out["law_range"] = {{"asked", g.laws.asked},
+  if (g.laws.evaluations > 0)
+    out["law_range"] = {{"asked", g.laws.evaluations},
                         {"beyond", g.laws.beyond},
                         {"clamped", g.laws.clamped},
-                        {"refused", g.laws.refused},
-                        {"largest_over_end", g.laws.largest}};
+                        {"refused", g.laws.rejected},
+                        {"largest_over_end", g.laws.max_range_ratio}};
   return out;
 }
 
@@ -104,9 +104,9 @@ std::vector<std::string> guard_remarks(const GuardSpec& spec, const GuardReport&
   counted(g.energy, spec.energy.limit, "growth of energy in a scene that nothing drives");
   counted(g.escape, spec.escape.limit, "grains outside");
   counted(g.wall_travel, g.wall_travel_limit, "way of a wall that its load moves [m]");
-  if (s.neighbours.hasty > 0)
+  if (s.neighbours.short_lived > 0)
     out.push_back(fmt::format("{} of {} neighbour lists lasted one step only: bodies move far in a step",
-                              s.neighbours.hasty, s.neighbours.rebuilds));
+                              s.neighbours.short_lived, s.neighbours.rebuilds));
   const std::string laws = law_use_text(g.laws);
   if (!laws.empty()) out.push_back(laws);
   return out;

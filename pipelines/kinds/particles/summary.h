@@ -72,7 +72,7 @@ struct ParticlesSummary {
   std::vector<GrainState> particles;  ///< the first thousand
   std::vector<WallState> walls;
   std::optional<std::vector<PairSummary>> contacts;  ///< when they were watched
-  nlohmann::json contact_state;                      ///< at the end: contacts, coordination_number, pressure, stress
+  nlohmann::json contact_state;                      ///< contacts, coordination_number, pressure, stress at the end
   nlohmann::json cost;
   nlohmann::json guards;
 };

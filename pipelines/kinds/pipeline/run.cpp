@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "calibrate/threshold_fit.h"
-#include "common/contact/crowd_table_file.h"
+#include "common/contact/multi_contact_table_file.h"
 #include "pipelines/compare/compare.h"
-#include "pipelines/kinds/law_table/crowd_check.h"
-#include "pipelines/kinds/law_table/crowd_stage.h"
-#include "pipelines/kinds/law_table/crowd_summary.h"
+#include "pipelines/kinds/law_table/multi_contact_check.h"
+#include "pipelines/kinds/law_table/multi_contact_stage.h"
+#include "pipelines/kinds/law_table/multi_contact_summary.h"
 #include "pipelines/kinds/macro/bands.h"
 #include "pipelines/kinds/macro/check.h"
 #include "pipelines/kinds/macro/first_point.h"
@@ -40,12 +40,12 @@ std::string law_line(const PairLaw& law) {
 struct PipelineResult {
   MeasureResult measured;
   LawCard card;
-  CrowdMeasurements crowd;  ///< with [[configuration]]
-  CrowdLawFit crowd_fit;
+  MultiContactMeasurements multi_contact;  ///< measurements of [[configuration]]
+  MultiContactLawFit multi_contact_fit;
   std::vector<MacroCurve> curves;
   std::vector<BandRecord> bands;
-  std::optional<Comparison> comparison;       ///< of engine "law" with its twin
-  std::optional<Comparison> pair_comparison;  ///< of engine "pair", where "law" is one of crowds
+  std::optional<Comparison> comparison;       ///< comparison of engine "law" with its twin
+  std::optional<Comparison> pair_comparison;  ///< comparison of engine "pair", where "law" is a multi-contact law
   std::vector<std::string> warnings;
   std::vector<std::string> remarks;
   bool usable = true;
@@ -69,21 +69,22 @@ void fit(const PipelineSetup& setup, const Run& run, PipelineResult& result) {
 void measure_table(const PipelineSetup& setup, const Run& run, PipelineResult& result) {
   if (!setup.measured_table) return;
   const MeasuredTable& wanted = *setup.measured_table;
-  CrowdLawFit& fit = result.crowd_fit;
-  CrowdFitOptions options = wanted.fit;
+  MultiContactLawFit& fit = result.multi_contact_fit;
+  MultiContactFitOptions options = wanted.fit;
   options.seed = run.seed;
   std::string why;
   try {
     std::vector<ShellPacking> packings = result.measured.packings;
-    run.context.guard([&] { result.crowd = run_crowd_stage(wanted.crowd, run, fit.remarks, packings); });
-    add_entry(fit, result.crowd, options, wanted.crowd.target);
-  } catch (const BadInput& e) {  // what is left could not be fitted
+    run.context.guard(
+        [&] { result.multi_contact = run_multi_contact_stage(wanted.multi_contact, run, fit.remarks, packings); });
+    add_entry(fit, result.multi_contact, options, wanted.multi_contact.target);
+  } catch (const InputError& e) {  // what is left could not be fitted
     why = e.what();
-  } catch (const NotUsable& e) {
+  } catch (const UnusableResult& e) {
     why = e.what();
   }
   if (!why.empty()) {  // the pair law goes on alone
-    fit.remarks.push_back("no law of crowds: " + why);
+    fit.remarks.push_back("no multi-contact law: " + why);
     fit.usable = false;
   } else {
     fit.table.entries.front().main = true;
@@ -93,18 +94,18 @@ void measure_table(const PipelineSetup& setup, const Run& run, PipelineResult& r
   result.usable = result.usable && fit.usable;
 }
 
-bool has_crowd_law(const PipelineSetup& setup, const PipelineResult& result) {
-  return setup.table || !result.crowd_fit.table.entries.empty();
+bool has_multi_contact_law(const PipelineSetup& setup, const PipelineResult& result) {
+  return setup.table || !result.multi_contact_fit.table.entries.empty();
 }
 
 /// Where the law called "law" comes from.
 LawSources sources_of(const PipelineSetup& setup, const Run& run, const PipelineResult& result) {
   if (setup.table) return *setup.table;
   LawSources out;
-  if (has_crowd_law(setup, result)) {
-    out.table = result.crowd_fit.table;
+  if (has_multi_contact_law(setup, result)) {
+    out.table = result.multi_contact_fit.table;
     out.table_file = run.path("law_table.toml");
-    out.forms = {result.crowd_fit.table.entries.front().best};
+    out.forms = {result.multi_contact_fit.table.entries.front().best};
   } else {
     out.card = result.card;
   }
@@ -117,15 +118,15 @@ bool run_macro_samples(const PipelineSetup& setup, const Run& run, PipelineResul
   try {
     const double fraction = mean_solid_fraction(result.measured.packings);
     const LawSources sources = sources_of(setup, run, result);
-    const bool crowd = has_crowd_law(setup, result);
-    std::vector<NamedLaws> laws{pair_law_of(result.card, setup.macro->spec, crowd ? "pair" : "law")};
-    if (crowd) laws.insert(laws.begin(), scene_law(sources, setup.macro->spec, fraction, "law"));
+    const bool multi_contact = has_multi_contact_law(setup, result);
+    std::vector<NamedLaws> laws{pair_law_of(result.card, setup.macro->spec, multi_contact ? "pair" : "law")};
+    if (multi_contact) laws.insert(laws.begin(), scene_law(sources, setup.macro->spec, fraction, "law"));
     result.curves = run_macro_stage(*setup.macro, laws, result.measured.packings, run,
                                     draws_for(*setup.macro, sources, {laws.front()}, fraction), result.bands);
     return true;
-  } catch (const BadInput& e) {  // a law that did not cross its threshold or could not be fitted
+  } catch (const InputError& e) {  // a law that did not cross its threshold or could not be fitted
     why = e.what();
-  } catch (const NotUsable& e) {
+  } catch (const UnusableResult& e) {
     why = e.what();
   }
   result.remarks.push_back("no macro run: " + why);
@@ -141,7 +142,7 @@ std::optional<Comparison> with_twin(const std::string& engine, PipelineResult& r
       result.usable = false;
     }
     return c;
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     // No sample with two usable curves: said in the summary, what was computed is kept.
     result.remarks.push_back(engine + " and twin cannot be compared: " + e.what());
     result.usable = false;
@@ -158,7 +159,7 @@ void run_macro(const PipelineSetup& setup, const Run& run, PipelineResult& resul
   result.usable = result.usable && all_carry_stress(result.curves);
   if (!has_twin(*setup.macro, Twin::shelled)) return;
   result.comparison = with_twin("law", result);
-  if (has_crowd_law(setup, result)) result.pair_comparison = with_twin("pair", result);
+  if (has_multi_contact_law(setup, result)) result.pair_comparison = with_twin("pair", result);
 }
 
 struct PipelineSummary {
@@ -166,7 +167,7 @@ struct PipelineSummary {
   std::map<std::string, PairLawSummary> laws;
   MeasuredSummary measured;
   MacroSummary macro;
-  std::optional<MacroSummary> pair;  ///< by the pair law, where `macro` is by a law of crowds
+  std::optional<MacroSummary> pair;  ///< runs by the pair law, where those of `macro` are by a multi-contact law
   std::vector<BandRecord> bands;
   std::vector<BandedEnd> band_ends;
 };
@@ -186,8 +187,8 @@ PipelineSummary summarise(const PipelineSetup& setup, const PipelineResult& r, c
   s.head = {r.usable ? RunStatus::good : RunStatus::not_usable, setup.title, r.remarks, {}, {}, r.warnings};
   for (const char* file : {"measurements.h5", "law.toml", "law.h5", "macro.h5", "macro_initial.h5", "report.html"})
     s.head.files[file] = run.path(file);
-  if (!r.crowd_fit.table.entries.empty())
-    for (const char* file : {"crowd.h5", "law_table.toml", "law_table.h5"}) s.head.files[file] = run.path(file);
+  if (!r.multi_contact_fit.table.entries.empty())
+    for (const char* file : {"multi_contact.h5", "law_table.toml", "law_table.h5"}) s.head.files[file] = run.path(file);
   s.bands = r.bands;
   s.band_ends = banded_ends(r.curves);
   s.head.sizes = summaries_of(shell_sizes(r.measured.data.spec, r.measured.data.packings));
@@ -202,7 +203,7 @@ PipelineSummary summarise(const PipelineSetup& setup, const PipelineResult& r, c
   s.macro.resolved = summary_of(r.curves, "shelled");
   if (setup.macro && has_twin(*setup.macro, Twin::free)) s.macro.free = summary_of(r.curves, "free");
   if (r.comparison) s.macro.comparison = summary_of(*r.comparison);
-  if (has_crowd_law(setup, r)) {
+  if (has_multi_contact_law(setup, r)) {
     s.pair.emplace();
     s.pair->macro = summary_of(r.curves, "pair");
     if (r.pair_comparison) s.pair->comparison = summary_of(*r.pair_comparison);
@@ -221,20 +222,20 @@ std::string difference_text(const Comparison& c) {
   return text;
 }
 
-std::string people_text(const PipelineSetup& setup, const PipelineResult& r) {
+std::string console_summary(const PipelineSetup& setup, const PipelineResult& r) {
   std::string text = fmt::format("{} packings measured, laws fitted:\n", r.measured.data.packings.size());
   for (const PairLaw& law : r.card.pairs) text += "  " + law_line(law) + "\n";
-  if (!r.crowd_fit.table.entries.empty()) text += entries_text(r.crowd_fit.table);
-  const bool crowd = r.pair_comparison.has_value();
+  if (!r.multi_contact_fit.table.entries.empty()) text += entries_text(r.multi_contact_fit.table);
+  const bool multi_contact = r.pair_comparison.has_value();
   if (r.comparison)
     text +=
         fmt::format("macro{} against its resolved twin: {}, {} times fewer contact evaluations, {} times less time\n",
-                    !crowd                 ? ""
+                    !multi_contact         ? ""
                     : setup.measured_table ? ", law of all neighbours at once (measured above),"
                                            : ", law of all neighbours at once (from the table),",
                     difference_text(*r.comparison), rounded(r.comparison->speedup_contact_evaluations),
                     rounded(r.comparison->speedup_seconds));
-  if (crowd)
+  if (multi_contact)
     text += fmt::format("macro, pair law (as published, measured above): {}\n", difference_text(*r.pair_comparison));
   return text;
 }
@@ -254,22 +255,22 @@ ExitStatus run_pipeline(const Scene& scene, const CommonOptions& options) {
   measure_table(setup, run, result);
   run_macro(setup, run, result);
   nlohmann::json summary = json_of(summarise(setup, result, run));
-  if (!result.crowd_fit.table.entries.empty()) {
-    summary["crowd"] = crowd_json(result.crowd, setup.measured_table->crowd.target);
-    summary["entries"] = entries_json(result.crowd_fit.table);
+  if (!result.multi_contact_fit.table.entries.empty()) {
+    summary["multi_contact"] = multi_contact_json(result.multi_contact, setup.measured_table->multi_contact.target);
+    summary["entries"] = entries_json(result.multi_contact_fit.table);
   }
-  return run.finish(summary, people_text(setup, result) + bands_text(result.bands, banded_ends(result.curves)));
+  return run.finish(summary, console_summary(setup, result) + bands_text(result.bands, banded_ends(result.curves)));
 }
 
 void check_pipeline(const Scene& scene, const std::string&, Findings& out) {
   const PipelineSetup setup = read_pipeline_setup(scene);
   const MeasureTrial trial = check_measurements(setup.measure, out);
   if (setup.measured_table) {
-    check_configurations(setup.measured_table->crowd, out);
-    const auto pool = static_cast<double>(setup.measured_table->crowd.pool());
+    check_configurations(setup.measured_table->multi_contact, out);
+    const auto pool = static_cast<double>(setup.measured_table->multi_contact.pool());
     const auto there = static_cast<double>(setup.measure.packings());
-    spend_on_packings(setup.measured_table->crowd, trial, std::max(0.0, 1.0 - there / pool), out);
-    spend_on_crowd(setup.measured_table->crowd, trial, 1.0, "measuring with many neighbours", out);
+    spend_on_packings(setup.measured_table->multi_contact, trial, std::max(0.0, 1.0 - there / pool), out);
+    spend_on_multi_contact(setup.measured_table->multi_contact, trial, 1.0, "measuring with many neighbours", out);
   }
   if (!setup.macro) return;
   add_sizes(out, drawn_sizes(*setup.macro, setup.measure.seed));

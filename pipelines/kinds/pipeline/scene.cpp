@@ -9,35 +9,38 @@ namespace softgrain {
 
 namespace {
 
-LawSources read_crowd_law(const Scene& scene, const SceneTable& law) {
+LawSources read_multi_contact_law(const Scene& scene, const SceneTable& law) {
   const std::string path = scene.resolve(law.text("table"));
   LawSources out = read_scene_law(law, path);
-  if (!out.table) law.reject("table", path + " is no law table (the pair law is the one that this run measures)");
-  if (out.forms.front() == Crowd::pair)
-    law.reject("form", "the pair law is the one that this run measures: \"bag\", \"directional\" or \"best\"");
+  if (!out.table) law.throw_error("table", path + " is no law table (the pair law is the one that this run measures)");
+  if (out.forms.front() == LawForm::pair)
+    law.throw_error("form",
+                    "the pair law is the one that this run measures: \"isotropic\", \"directional\" or \"best\"");
   return out;
 }
 
 MeasuredTable read_measured_table(const SceneTable& root) {
-  const SceneTable calibrate = root.table_or_empty("calibrate").table_or_empty("crowd");
-  MeasuredTable out{read_crowd_setup(root), read_crowd_fit(calibrate)};
-  require_law_of_crowds(root, out.crowd, calibrate, out.fit);
-  if (out.fit.best == Crowd::pair)
-    calibrate.mistake("best", "the pair law is measured anyway: \"bag\" or \"directional\"");
+  const SceneTable calibrate = root.table_or_empty("calibrate").table_or_empty("multi_contact");
+  MeasuredTable out{read_multi_contact_setup(root), read_multi_contact_fit(calibrate)};
+  require_law_of_multi_contact(root, out.multi_contact, calibrate, out.fit);
+  if (out.fit.best == LawForm::pair)
+    calibrate.add_error("best", "the pair law is measured anyway: \"isotropic\" or \"directional\"");
   return out;
 }
 
-void read_crowd_laws(const Scene& scene, const SceneTable& root, PipelineSetup& setup) {
+void read_multi_contact_laws(const Scene& scene, const SceneTable& root, PipelineSetup& setup) {
   const bool measures = root.has("configuration");
   for (const char* key : {"law", "configuration"})
     if (root.has(key) && !root.has("macro"))
-      root.reject(key,
-                  "goes with [macro]: laws of crowds are for many neighbours at once; a table alone is measured by "
-                  "kind = \"law-table\"");
+      root.throw_error(
+          key,
+          "goes with [macro]: multi-contact laws are for many neighbours at once; a table alone is measured by "
+          "kind = \"law-table\"");
   if (measures && root.has("law"))
-    root.reject("law", "[[configuration]] measures a law of crowds already; leave one of the two out");
-  if (root.has("crowd") && !measures) root.reject("crowd", "goes with [[configuration]], which says what is measured");
-  if (root.has("law")) setup.table = read_crowd_law(scene, root.table("law"));
+    root.throw_error("law", "[[configuration]] measures a multi-contact law already; leave one of the two out");
+  if (root.has("multi_contact") && !measures)
+    root.throw_error("multi_contact", "goes with [[configuration]], which says what is measured");
+  if (root.has("law")) setup.table = read_multi_contact_law(scene, root.table("law"));
   if (measures) setup.measured_table = read_measured_table(root);
 }
 
@@ -50,7 +53,7 @@ PipelineSetup read_pipeline_setup(const Scene& scene) {
     setup.title = root.text("title", "");
     setup.measure = read_measure_setup(root);
     setup.fit = read_fit_settings(root.table_or_empty("calibrate"));
-    read_crowd_laws(scene, root, setup);
+    read_multi_contact_laws(scene, root, setup);
     if (!root.has("macro")) return setup;
     const SceneTable macro = root.table("macro");
     setup.macro = read_macro_setup(macro, setup.measure.spec);
@@ -58,11 +61,11 @@ PipelineSetup read_pipeline_setup(const Scene& scene) {
     refuse_idle_test_keys(macro, root, {&setup.macro->spec});
     refuse_idle_keys(macro, !setup.macro->twins.empty(), setup.macro->bands > 0);
     if (macro.has("kt") && !setup.measure.rotates())
-      macro.mistake("kt", "goes with angles_deg: no tangential stiffness is measured in this scene");
+      macro.add_error("kt", "goes with angles_deg: no tangential stiffness is measured in this scene");
     setup.macro->kept_states = setup.measure.kept_states;
     require_own_preparation(macro, *setup.macro);
-    if (root.sound()) require_macro_memory(macro, *setup.macro, setup.measure.spec);
-    if (root.sound()) require_room_for_images(macro, "bodies", *setup.macro, setup.measure.seed);
+    if (!root.has_errors()) require_macro_memory(macro, *setup.macro, setup.measure.spec);
+    if (!root.has_errors()) require_room_for_images(macro, "bodies", *setup.macro, setup.measure.seed);
     return setup;
   });
 }

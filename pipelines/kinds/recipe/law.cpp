@@ -82,7 +82,7 @@ OneShape shape_of_packing(const VariantResult& r, StateForm form, const StateFit
   return out;
 }
 
-/// Of the mixtures of the two coarsest levels the one whose share of fines is nearest to that of the whole.
+/// The mixture of the two coarsest levels whose share of fines is nearest to that of the whole.
 std::size_t nearest_mixture(const RecipeScene& scene) {
   const double share = 1.0 - scene.levels[0].share;
   std::size_t best = 0;

@@ -15,10 +15,11 @@ namespace softgrain {
 MaterialLaw fit_coarsest(const RecipeScene& scene, const std::vector<VariantResult>& results,
                          const std::optional<StateFit>& states, std::uint64_t seed);
 
-/// Of the grains of the whole, mean over their solid volume [kg/m^3].
+/// Density of the grains of the whole, mean over their solid volume [kg/m^3].
 double grain_density(const RecipeScene& scene);
 
-/// The same among everything finer: e_J is theirs by `fines`, and w_inf goes with it, as pores of LevelForms do.
+/// The card of the coarsest level among everything finer: e_J is that of `fines`, and w_inf goes with it, as pores of
+/// LevelForms do.
 CellCard among_all_fines(const RecipeScene& scene, const CellCard& coarsest, const OnsetByForms& fines);
 
 /// How packings answer the test, beside the equation of state: over the strain the pressure of each over that of its
@@ -27,8 +28,8 @@ struct ResponseShape {
   std::vector<double> strain;
   std::vector<double> factor;            ///< mean over packings
   std::vector<double> factor_deviation;  ///< standard deviation over them
-  std::vector<double> ratio;             ///< of the check, or of the mixture whose share comes nearest
-  std::vector<double> ratio_deviation;   ///< over all
+  std::vector<double> ratio;             ///< lateral over axial stress of the check, or of the mixture of nearest share
+  std::vector<double> ratio_deviation;   ///< standard deviation over all packings
 };
 ResponseShape shape_of(const RecipeScene& scene, const std::vector<VariantResult>& results, const StateFit& states);
 
@@ -39,9 +40,9 @@ struct WholeLaw {
   Estimate exponent;  ///< n
   Estimate onset;     ///< phi_J
   ResponseShape shape;
-  double start_pressure = 0.0;  ///< over E
-  double pressure_low = 0.0;    ///< over E, of the fit
-  double pressure_high = 0.0;
+  double start_pressure = 0.0;  ///< start pressure over E
+  double pressure_low = 0.0;    ///< lowest pressure of the fit over E
+  double pressure_high = 0.0;   ///< highest pressure of the fit over E
 };
 
 /// phi at the start pressure, by the onset and its ends.
@@ -64,7 +65,7 @@ inline constexpr double kHardlyBeyond = 1.05;
 /// Lateral over axial stress where the shape ends.
 Estimate lateral_ratio(const ResponseShape& shape);
 
-/// Writes the card as TOML, for people and programs. Atomic. Throws FileTrouble.
+/// Writes the card as TOML, for people and programs. Atomic. Throws IoError.
 void write_material_card(const RecipeScene& scene, const WholeLaw& law, const std::string& path,
                          const Provenance& provenance);
 

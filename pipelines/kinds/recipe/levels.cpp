@@ -20,7 +20,7 @@ double rounded(double x) {
   return std::round(x * kDigits) / kDigits;
 }
 
-/// In units where `largest` is kUnit.
+/// Pieces in units where `largest` is kUnit, with volumes that add up to 1.
 std::vector<SizePiece> scaled(std::vector<SizePiece> pieces, double largest) {
   double all = 0.0;
   for (const SizePiece& p : pieces) all += p.volume;

@@ -10,7 +10,7 @@ namespace softgrain {
 struct RecipeLevel {
   double low = 0.0;    ///< smallest radius in it [m]
   double high = 0.0;   ///< largest
-  double share = 0.0;  ///< of the solid volume of all
+  double share = 0.0;  ///< share of the solid volume of all levels
   std::vector<SizePiece> pieces;
 };
 

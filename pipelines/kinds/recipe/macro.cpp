@@ -47,9 +47,9 @@ RecipeCurve pressed(const std::string& name, std::vector<MacroCurve>& kept,
     for (MacroCurve& c : curves) c.engine = name;
     kept.insert(kept.end(), curves.begin(), curves.end());
     return mean_curve(name, curves);
-  } catch (const NotUsable& e) {
+  } catch (const UnusableResult& e) {
     return {name, {}, {}, {}, {}, {}, e.what()};
-  } catch (const BadInput& e) {
+  } catch (const InputError& e) {
     return {name, {}, {}, {}, {}, {}, e.what()};
   }
 }

@@ -19,8 +19,9 @@ RecipeCurve mean_curve(const std::string& name, const std::vector<MacroCurve>& c
 RecipeCurve press_in_cells(const RecipeScene& scene, const CellCard& card, double strain, const Run& run,
                            std::vector<MacroCurve>& kept);
 
-/// The same grains with the fines' volume in soft particles of a law table, from a fifth to three fifths of the largest
-/// grain, prepared together as macro scenes are: a denser or looser packing than that of the cells.
+/// Oedometric compression of the grains of press_in_cells(), with the fines' volume in soft particles of a law table.
+/// Their radii are from a fifth to three fifths of the largest grain. They are prepared together as macro scenes are,
+/// which gives a denser or looser packing than that of the cells.
 RecipeCurve press_with_shells(const RecipeScene& scene, const CellCard& card, const LawTable& table, double strain,
                               const Run& run, std::vector<MacroCurve>& kept);
 

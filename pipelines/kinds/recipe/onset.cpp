@@ -61,7 +61,7 @@ struct LevelForms::Parts {
     for (std::size_t v = 0; v < variants.size(); ++v) {
       if (variants[v].same_packings) continue;
       const StateGroup* group = fit.find(variants[v].name);
-      if (group == nullptr) throw NotUsable(variants[v].name + " bears at too few points to tell its onset");
+      if (group == nullptr) throw UnusableResult(variants[v].name + " bears at too few points to tell its onset");
       estimate[v] = group->onset.value;
       measured[v] = estimate_of(group->onset);
       error[v] = std::isfinite(group->onset.error) && group->onset.error > 0.0 ? group->onset.error : 1.0;
@@ -112,7 +112,7 @@ struct LevelForms::Parts {
   }
 
   const RecipeScene& scene;
-  int degrees;  ///< that replicates know of the scatter by
+  int degrees;  ///< degrees of freedom of the scatter of replicates
   Onsets estimate;
   std::vector<Estimate> measured;
   std::vector<Onsets> replicates;

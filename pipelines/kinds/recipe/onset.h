@@ -11,7 +11,7 @@
 
 namespace softgrain {
 
-/// Of a curve through rising x, straight between; the first or last value beyond.
+/// Value of a curve with rising x by linear interpolation; the first or last value beyond its ends.
 double straight(const std::vector<double>& x, const std::vector<double>& y, double at);
 
 /// phi_J of joined levels by two forms, each fitted to all packings that were measured (the check apart):
@@ -25,7 +25,7 @@ double straight(const std::vector<double>& x, const std::vector<double>& y, doub
 /// lean() knows better.
 class LevelForms {
  public:
-  /// `fit`: groups by the names of the variants. Throws NotUsable where a packing is not among them.
+  /// `fit`: groups by the names of the variants. Throws UnusableResult where a packing is not among them.
   LevelForms(const RecipeScene& scene, const StateFit& fit);
   ~LevelForms();
   LevelForms(const LevelForms&) = delete;
@@ -39,7 +39,7 @@ class LevelForms {
   /// - 1/2)^2/tau^2, within 0 and 1, s the error of the measurement and the deviation of rods together, tau = 0.3.
   void lean(std::size_t count, double measured, double error);
   [[nodiscard]] double share_of_rods() const;
-  /// Of a level alone, as measured.
+  /// Onset of a level alone, as measured.
   [[nodiscard]] double own_onset(std::size_t level) const;
   [[nodiscard]] double gap() const;
   [[nodiscard]] double rods_deviation() const;

@@ -14,12 +14,11 @@ namespace {
 std::vector<HeadLine> lines_of(const report::RunData& run) {
   const auto r = run.summary_as<RecipeSummary>().recipe;
   if (r.levels.empty() || !r.onset) return {};
-  return {{"Recipe",
-           fmt::format(
-               "{} levels, largest over smallest {}; begins to bear at a solid fraction of {}; a cubic metre holds {} "
-               "grains.",
-               r.levels.size(), report::format_number(r.span, 3), interval_text(*r.onset),
-               report::format_number(r.grains_per_cubic_metre, 2))}};
+  return {{"Recipe", fmt::format("{} levels, largest over smallest {}; begins to carry pressure at a solid fraction of "
+                                 "{}; a cubic metre holds {} "
+                                 "grains.",
+                                 r.levels.size(), report::format_number(r.span, 3), interval_text(*r.onset),
+                                 report::format_number(r.grains_per_cubic_metre, 2))}};
 }
 
 std::vector<RunValue> values_of(const report::RunData& run) {

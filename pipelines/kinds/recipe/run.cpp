@@ -51,7 +51,7 @@ class RecipeRun {
     bool check_failed = false;
     for (const VariantFailure& f : failures) {
       const bool check = scene_.checked && f.variant == &scene_.material.variants[*scene_.checked];
-      head().reject(f.problem + (check ? " ([check] grains)" : " ([grains] count)"));
+      head().mark_unusable(f.problem + (check ? " ([check] grains)" : " ([grains] count)"));
       complete = complete && check;
       check_failed = check_failed || check;
     }
@@ -77,7 +77,7 @@ class RecipeRun {
   }
 
   void put_together(const std::optional<StateFit>& states) {
-    if (!states || !states->usable) return head().reject("no law: the equation of state is not usable");
+    if (!states || !states->usable) return head().mark_unusable("no law: the equation of state is not usable");
     LevelForms forms(scene_, *states);
     out().gap = forms.gap();
     out().rods_deviation = forms.rods_deviation();
@@ -237,10 +237,10 @@ class RecipeRun {
       for (const std::string& remark : shells.remarks) head().remarks.push_back(remark);
       if (!shells.usable) head().status = RunStatus::not_usable;
       return shells;
-    } catch (const NotUsable& e) {
-      head().reject("no shell law: " + std::string(e.what()));
-    } catch (const BadInput& e) {  // a law that misses what the next level asks of it
-      head().reject("no shell law: " + std::string(e.what()));
+    } catch (const UnusableResult& e) {
+      head().mark_unusable("no shell law: " + std::string(e.what()));
+    } catch (const InputError& e) {  // a law that misses what the next level asks of it
+      head().mark_unusable("no shell law: " + std::string(e.what()));
     }
     return {};
   }
@@ -248,7 +248,7 @@ class RecipeRun {
   /// What a reader must not overlook.
   void judge(double end) {
     for (const RecipeCurve& c : out().curves)
-      if (!c.problem.empty()) head().reject(c.name + ": " + c.problem);
+      if (!c.problem.empty()) head().mark_unusable(c.name + ": " + c.problem);
     if (summary_.law.numbers.empty() || !summary_.law.usable) head().status = RunStatus::not_usable;
     const RecipeCurve& whole = out().curves.front();
     const double p = (whole.axial.back() + 2.0 * whole.lateral.back()) / 3.0;

@@ -19,7 +19,7 @@ inline constexpr const char* kTwoLevelsTellNothing =
     "cannot tell which way does better over more levels, and the value is the middle of both; more grains ([check] "
     "grains) check three levels";
 
-/// Levels, packings, time, and what to mind. Throws BadInput, FileTrouble.
+/// Levels, packings, time, and what to mind. Throws InputError, IoError.
 void check_recipe(const Scene& scene, Findings& out);
 
 KindResults recipe_results();

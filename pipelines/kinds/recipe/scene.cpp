@@ -12,7 +12,7 @@
 #include "pipelines/kinds/material/run.h"
 #include "pipelines/kinds/material_law/fines_in_cells.h"
 #include "pipelines/kinds/recipe/run.h"
-#include "pipelines/kinds/soft_particle/kept_states.h"
+#include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 
 namespace softgrain {
 
@@ -30,20 +30,20 @@ constexpr double kCoarseGrains = 60.0;
 void refuse_own_material(const SceneTable& t) {
   for (const char* key : {"E", "nu", "mu"})
     if (t.has(key))
-      t.mistake(key,
-                "goes into [material]: contacts between constituents of different stiffness or friction are not "
-                "measured, all grains have one E, nu and mu (their mean, by volume)");
+      t.add_error(key,
+                  "goes into [material]: contacts between constituents of different stiffness or friction are not "
+                  "measured, all grains have one E, nu and mu (their mean, by volume)");
 }
 
 Constituent read_constituent(const SceneTable& t, double density) {
   Constituent c;
-  t.part([&] {
+  t.section([&] {
     c.name = t.text("name");
     c.mass_share = t.number("mass_share", Unit::none, Range{0.0, 1.0, true, false});
     c.density = t.number("density", Unit::density, Range::positive(), density);
     refuse_own_material(t);
     c.sizes = read_sizes(t, "sizes", {});
-    if (!t.has("sizes")) t.mistake("sizes", "is missing: a sieve curve, or another law of sizes");
+    if (!t.has("sizes")) t.add_error("sizes", "is missing: a sieve curve, or another law of sizes");
   });
   return c;
 }
@@ -55,18 +55,18 @@ std::vector<Constituent> read_constituents(const SceneTable& root, double densit
     out.push_back(read_constituent(t, density));
     sum += out.back().mass_share;
     if (std::count_if(out.begin(), out.end(), [&](const Constituent& c) { return c.name == out.back().name; }) > 1)
-      t.mistake("name", "is used twice");
+      t.add_error("name", "is used twice");
   }
-  if (out.empty() || !root.sound()) return out;
+  if (out.empty() || root.has_errors()) return out;
   if (std::abs(sum - 1.0) > 1e-6)
-    root.mistake("constituent", fmt::format("the mass shares add up to {:g}; they must add up to 1", sum));
+    root.add_error("constituent", fmt::format("the mass shares add up to {:g}; they must add up to 1", sum));
   double volume = 0.0;
   for (const Constituent& c : out) volume += c.mass_share / c.density;
   for (Constituent& c : out) c.volume_share = c.mass_share / c.density / volume;
   return out;
 }
 
-/// Of all constituents together, by solid volume.
+/// Sizes of all constituents together, by solid volume.
 Grading mixed_sizes(const std::vector<Constituent>& constituents) {
   std::vector<SizePiece> pieces;
   for (const Constituent& c : constituents)
@@ -87,12 +87,12 @@ WantedCuts read_cuts(const SceneTable& t) {
   WantedCuts out;
   out.ratio = t.number("ratio", Unit::none, Range::closed(1.5, 10.0), out.ratio);
   if (!t.has("cut_diameters")) return out;
-  if (t.has("ratio")) t.mistake("ratio", "goes without cut_diameters, which say where the curve is cut");
+  if (t.has("ratio")) t.add_error("ratio", "goes without cut_diameters, which say where the curve is cut");
   out.given = t.numbers("cut_diameters", Unit::length, Range::positive());
   for (double& cut : out.given) cut *= 0.5;
   std::sort(out.given.begin(), out.given.end(), std::greater<>());
   if (std::adjacent_find(out.given.begin(), out.given.end()) != out.given.end())
-    t.mistake("cut_diameters", "one is there twice");
+    t.add_error("cut_diameters", "one is there twice");
   return out;
 }
 
@@ -100,8 +100,8 @@ std::vector<double> cuts_of(const SceneTable& t, const WantedCuts& wanted, const
   if (wanted.given.empty()) return find_cuts(sizes, wanted.ratio, kLeastShare);
   for (const double cut : wanted.given)
     if (!(cut > sizes.smallest() && cut < sizes.largest()))
-      t.mistake("cut_diameters", fmt::format("{:g} mm cuts off no level: diameters go from {:g} to {:g} mm", 2e3 * cut,
-                                             2e3 * sizes.smallest(), 2e3 * sizes.largest()));
+      t.add_error("cut_diameters", fmt::format("{:g} mm cuts off no level: diameters go from {:g} to {:g} mm",
+                                               2e3 * cut, 2e3 * sizes.smallest(), 2e3 * sizes.largest()));
   return wanted.given;
 }
 
@@ -113,26 +113,28 @@ std::string text_of(const RecipeLevel& level) {
 void require_levels(const SceneTable& t, const RecipeScene& scene, std::int64_t grains) {
   const auto& levels = scene.levels;
   if (levels.size() < 2)
-    t.reject("ratio", fmt::format("the sizes make one level ({}): resolve all grains, with kind = \"material\", or cut "
-                                  "closer",
-                                  text_of(levels.front())));
+    t.throw_error("ratio",
+                  fmt::format("the sizes make one level ({}): resolve all grains, with kind = \"material\", or cut "
+                              "closer",
+                              text_of(levels.front())));
   for (std::size_t k = 0; k < levels.size(); ++k)
     if (levels[k].share < kLeastShare)
-      t.mistake("cut_diameters",
-                fmt::format("level {} ({}) holds {:.2g} % of the volume; {:g} % at least: cut elsewhere", k + 1,
-                            text_of(levels[k]), 100.0 * levels[k].share, 100.0 * kLeastShare));
+      t.add_error("cut_diameters",
+                  fmt::format("level {} ({}) holds {:.2g} % of the volume; {:g} % at least: cut elsewhere", k + 1,
+                              text_of(levels[k]), 100.0 * levels[k].share, 100.0 * kLeastShare));
   for (std::size_t k = 0; k + 1 < levels.size(); ++k)
     for (const double share : scene.mixtures) {
       const double coarse = (1.0 - share) / mean_grain_volume(levels[k].pieces);
       const double fine = share / mean_grain_volume(levels[k + 1].pieces);
       const double least = static_cast<double>(grains) * std::min(coarse, fine) / (coarse + fine);
       if (least >= kLeastGrains) continue;
-      t.mistake(t.has("cut_diameters") ? "cut_diameters" : "ratio",
-                fmt::format("levels {} and {} ({}; {}) are too far apart for a packing of {} grains: with a share of "
-                            "fines of {:g} about {:.2g} would be {}: more grains ([grains] count), or levels closer to "
-                            "each other",
-                            k + 1, k + 2, text_of(levels[k]), text_of(levels[k + 1]), grains, share, least,
-                            coarse < fine ? "coarse" : "fine"));
+      t.add_error(
+          t.has("cut_diameters") ? "cut_diameters" : "ratio",
+          fmt::format("levels {} and {} ({}; {}) are too far apart for a packing of {} grains: with a share of "
+                      "fines of {:g} about {:.2g} would be {}: more grains ([grains] count), or levels closer to "
+                      "each other",
+                      k + 1, k + 2, text_of(levels[k]), text_of(levels[k + 1]), grains, share, least,
+                      coarse < fine ? "coarse" : "fine"));
       break;
     }
 }
@@ -234,15 +236,15 @@ class RoomForImages {
     return std::max(a.setup.spec.strain_end, b.setup.spec.strain_end + b.setup.spec.preload);
   }
 
-  /// Of grains in this packing, those asked for or more.
+  /// Number of grains in this packing: those asked for or more.
   std::int64_t enough(MacroSetup setup, const char* table, const char* key, const std::string& what) {
     constexpr std::int64_t kDearest = 5;  // times the default: what is dearer should be asked for
     const std::int64_t asked = setup.spec.bodies;
     const SceneTable t = root_.table_or_empty(table);
     const auto seed = scene_.material.seed;
     if (const std::string problem = room_problem(setup, seed, "grains"); t.has(key) && !problem.empty())
-      t.reject(key, fmt::format("{}: {} ([{}] {}); levels closer to each other ([levels] ratio) take fewer", what,
-                                problem, table, key));
+      t.throw_error(key, fmt::format("{}: {} ([{}] {}); levels closer to each other ([levels] ratio) take fewer", what,
+                                     problem, table, key));
     const std::string doubt = room_doubt(setup, seed, "grains");
     if (doubt.empty()) return asked;
     if (t.has(key)) {
@@ -253,8 +255,8 @@ class RoomForImages {
     while (setup.spec.bodies <= kDearest * asked && !room_doubt(setup, seed, "grains").empty())
       setup.spec.bodies += std::max<std::int64_t>(1, setup.spec.bodies / 10);
     if (setup.spec.bodies > kDearest * asked)
-      t.reject(key, fmt::format("{}: {} ([{}] {}); levels closer to each other ([levels] ratio) take fewer", what,
-                                doubt, table, key));
+      t.throw_error(key, fmt::format("{}: {} ([{}] {}); levels closer to each other ([levels] ratio) take fewer", what,
+                                     doubt, table, key));
     scene_.raised.push_back(
         fmt::format("{}: {} grains in place of the default {} ([{}] {}), for a periodic cell with room", what,
                     setup.spec.bodies, asked, table, key));
@@ -268,9 +270,9 @@ class RoomForImages {
 void read_mixtures(const SceneTable& t, RecipeScene& out) {
   out.mixtures = t.numbers("mixtures", Unit::none, Range{0.0, 1.0, true, true}, {0.2, 0.4, 0.6, 0.8});
   if (out.mixtures.size() < 3)
-    t.mistake("mixtures", "at least three shares are needed: w_inf and xi are fitted to them");
+    t.add_error("mixtures", "at least three shares are needed: w_inf and xi are fitted to them");
   if (std::adjacent_find(out.mixtures.begin(), out.mixtures.end(), std::greater_equal<>()) != out.mixtures.end())
-    t.mistake("mixtures", "shares must ascend");
+    t.add_error("mixtures", "shares must ascend");
 }
 
 void read_rest(const SceneTable& root, RecipeScene& out) {
@@ -286,7 +288,8 @@ void read_rest(const SceneTable& root, RecipeScene& out) {
   out.shells.levels = shells.count("levels", 2, 20, 4);
   out.shells.packings = shells.count("packings", 4, 1000, out.shells.packings);
   out.shells.ratio = shells.number("ratio", Unit::none, Range::closed(2.0, 20.0), out.shells.ratio);
-  if (shells.has("form")) out.shells.form = shells.choice<Crowd>("form", {Crowd::bag, Crowd::directional, Crowd::pair});
+  if (shells.has("form"))
+    out.shells.form = shells.choice<LawForm>("form", {LawForm::isotropic, LawForm::directional, LawForm::pair});
 }
 
 /// [law]: form of the equation of state, replicates, cells, shear.
@@ -337,25 +340,25 @@ RecipeScene read_recipe_scene(const Scene& scene) {
     read_material_tables(root, base);
     const SceneTable grains = root.table("grains");
     if (base.spec.test != MacroTest::oedometric)
-      root.table("test").mistake("test", "levels are measured in oedometric compression (and one of them in shear)");
+      root.table("test").add_error("test", "levels are measured in oedometric compression (and one of them in shear)");
     base.samples = root.count("samples", 1, 10000, base.samples);
     base.kept_states = read_kept_states(root, 0);
     out.constituents = read_constituents(root, base.spec.density);
     if (!out.constituents.empty())
       for (const char* key : {"sizes", "exponent", "radius_max", "ratio"})
-        if (grains.has(key)) grains.mistake(key, "goes without [[constituent]], which have sizes of their own");
+        if (grains.has(key)) grains.add_error(key, "goes without [[constituent]], which have sizes of their own");
     const double shear = read_law(root.table_or_empty("law"), out);
     read_rest(root, out);
     const SceneTable levels = root.table_or_empty("levels");
     read_mixtures(levels, out);
     const WantedCuts wanted = read_cuts(levels);
-    if (!root.sound()) return out;
+    if (root.has_errors()) return out;
     out.sizes = out.constituents.empty() ? sizes_of(base.spec) : mixed_sizes(out.constituents);
     const std::vector<double> cuts = cuts_of(levels, wanted, out.sizes);
-    if (!root.sound()) return out;
+    if (root.has_errors()) return out;
     out.levels = levels_of(out.sizes, cuts);
     require_levels(levels, out, base.spec.bodies);
-    if (!root.sound()) return out;
+    if (root.has_errors()) return out;
     make_variants(base, shear, out);
     require_material_memory(grains, base);
     RoomForImages(root, out).require();

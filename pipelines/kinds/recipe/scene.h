@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/data/crowd_measurements.h"
+#include "common/data/multi_contact_measurements.h"
 #include "pipelines/kinds/material_law/scene.h"
 #include "pipelines/kinds/recipe/levels.h"
 #include "pipelines/run/scene_kind.h"
@@ -15,9 +15,9 @@ namespace softgrain {
 /// One [[constituent]]: powder, sand, gravel.
 struct Constituent {
   std::string name;
-  double mass_share = 0.0;    ///< of all
-  double density = 0.0;       ///< of its grains [kg/m^3]
-  double volume_share = 0.0;  ///< of the solid volume of all
+  double mass_share = 0.0;    ///< share of the mass of all constituents
+  double density = 0.0;       ///< density of its grains [kg/m^3]
+  double volume_share = 0.0;  ///< share of the solid volume of all constituents
   std::optional<Grading> sizes;
 };
 
@@ -39,7 +39,7 @@ struct RecipeShells {
   std::int64_t levels = 0;  ///< 0: none
   std::int64_t packings = 4;
   double ratio = 10.0;  ///< largest over smallest radius of the grains of a level
-  Crowd form = Crowd::bag;
+  LawForm form = LawForm::isotropic;
 };
 
 /// Place among the variants of the second level, sheared at constant volume: behind it, whose packings it shares.
@@ -51,13 +51,13 @@ using MixtureVariants = std::vector<std::size_t>;
 struct RecipeScene {
   MaterialScene material;  ///< all packings that are measured, none twice
   std::vector<Constituent> constituents;
-  Grading sizes;                       ///< of the whole
+  Grading sizes;                       ///< sizes of the whole
   std::vector<RecipeLevel> levels;     ///< the coarsest first
   std::vector<double> mixtures;        ///< shares of the finer level by solid volume, ascending
-  std::vector<std::size_t> slice;      ///< of every level: its variant in `material`
-  std::vector<MixtureVariants> mixed;  ///< of every level but the finest
+  std::vector<std::size_t> slice;      ///< variant of each level in `material`
+  std::vector<MixtureVariants> mixed;  ///< mixtures of every level but the finest
   std::optional<std::size_t> checked;  ///< variant of the check
-  std::size_t checked_levels = 0;      ///< that it holds
+  std::size_t checked_levels = 0;      ///< number of levels in the check
   std::vector<std::string> raised;     ///< packings whose default number of grains was too small, and what they have
   std::vector<std::string> doubts;     ///< packings that may have no room when they are pressed
   RecipeCheck check;
@@ -66,7 +66,7 @@ struct RecipeScene {
   std::int64_t cells = 100;  ///< sites of the cells that friction is fitted with
 };
 
-/// Reads the whole scene. Throws BadInput, FileTrouble.
+/// Reads the whole scene. Throws InputError, IoError.
 RecipeScene read_recipe_scene(const Scene& scene);
 
 /// Solid volume of everything finer than a level, over that of the level.

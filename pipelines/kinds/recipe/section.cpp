@@ -95,7 +95,7 @@ std::string load_figure(const RecipeOutcome& r) {
       plot.svg(),
       "Material law: the equation of state from its onset. Cell law: grains of the coarsest level in cells of "
       "everything finer. Shell law, where there is one: the same grains with soft particles that keep their "
-      "shells between them: another matter, whose fines cannot leave the room that they were given.");
+      "shells between them: another material, whose fines cannot leave the room that they were given.");
 }
 
 std::string shell_table(const RecipeOutcome& r) {
@@ -118,7 +118,8 @@ std::string modulus_table(const RecipeOutcome& r) {
 
 std::string whole_text(const RecipeOutcome& r) {
   std::string text = fmt::format(
-      "The whole begins to bear at a solid fraction of {} ({}): {} by levels, {} by rods (gap {}; packings lie {} "
+      "The whole begins to carry pressure at a solid fraction of {} ({}): {} by levels, {} by rods (gap {}; packings "
+      "lie {} "
       "about "
       "them). At the start pressure it is {} ({}). Lateral over axial stress where the test ends: {} ({}).",
       format_number(r.onset->value, 4), range_of(r.onset->low, r.onset->high, 4),
@@ -136,7 +137,8 @@ std::string whole_text(const RecipeOutcome& r) {
 
 std::string check_text(const RecipeCheckSummary& c) {
   return fmt::format(
-      "Check: the {} coarsest levels with all their grains ({} of span {}) begin to bear at {}; put together from "
+      "Check: the {} coarsest levels with all their grains ({} of span {}) begin to carry pressure at {}; put together "
+      "from "
       "levels "
       "{} ({}): {}. By levels it is {}, by rods {}; {}.",
       c.levels, format_count(c.grains), format_number(c.span, 3), format_number(c.measured.value, 4),
@@ -159,7 +161,9 @@ std::string recipe_section(const RunData& run) {
   if (r.check) body += paragraph(check_text(*r.check));
   body += figure_row({onset_figure(r), load_figure(r)});
   body += modulus_table(r) + constituent_table(r) + level_table(r) + shell_table(r);
-  return section("recipe", "From the recipe to the law", body);
+  return section(
+      "recipe", "From the recipe to the law",
+      "From the particle size distribution to the law: the levels, their onset, and the check with all grains.", body);
 }
 
 }  // namespace softgrain::report

@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/contact/crowd_from_table.h"
-#include "common/contact/crowd_prediction.h"
-#include "common/contact/crowd_table_file.h"
+#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/multi_contact_prediction.h"
+#include "common/contact/multi_contact_table_file.h"
 #include "common/core/error.h"
 #include "common/core/limits.h"
 #include "common/packing/grading_parts.h"
 #include "pipelines/kinds/hierarchy/level.h"
-#include "pipelines/kinds/law_table/crowd_summary.h"
+#include "pipelines/kinds/law_table/multi_contact_summary.h"
 
 namespace softgrain {
 
@@ -59,7 +59,7 @@ HierarchySetup setup_of(const RecipeScene& scene, const RecipeLevel& level, cons
   std::string text = fmt::format(
       "kind = \"hierarchy\"\nseed = {}\n[material]\nE = {}\nnu = {}\nmu = {}\ndensity = {}\n[packing]\nshell_radius = "
       "{}\nbeta = 3.0\ntrials = 10000\nplacement = \"voids\"\n{}[hierarchy]\nlevels = 2\nform = \"{}\"\n"
-      "inner_radius = {}\ninner_radius_min = {}\nnext_volume = {}\nreplicates = 0\n[crowd]\nincrement = "
+      "inner_radius = {}\ninner_radius_min = {}\nnext_volume = {}\nreplicates = 0\n[multi_contact]\nincrement = "
       "0.005\ntolerance = 1e-2\npackings_min = "
       "{}\npackings_max = {}\n"
       "target = 0.05\npoints = 10\n",
@@ -77,12 +77,12 @@ HierarchySetup setup_of(const RecipeScene& scene, const RecipeLevel& level, cons
   return read_hierarchy_setup(Scene::parse(text, "shells of the recipe"));
 }
 
-double force_of_plane(const LawTableEntry& entry, Crowd form) {
-  const CrowdLaw* law = entry.find(form);
+double force_of_plane(const LawTableEntry& entry, LawForm form) {
+  const MultiContactLaw* law = entry.find(form);
   if (law == nullptr) return 0.0;
-  CrowdPartner plane;
+  MultiContactPartner plane;
   plane.direction[2] = 1.0;
-  return crowd_forces(crowd_model(*law), {plane}, {0.2})[0];
+  return multi_contact_forces(multi_contact_model(*law), {plane}, {0.2})[0];
 }
 
 }  // namespace
@@ -91,19 +91,19 @@ ShellLevels run_shells(const RecipeScene& scene, const Run& run) {
   const std::vector<RecipeLevel> decades = decades_of(scene);
   ShellLevels out;
   std::vector<HierarchyLevel> levels;
-  CrowdMeasurements below;
+  MultiContactMeasurements below;
   for (std::size_t k = 0; k < decades.size(); ++k) {
     const RecipeLevel& decade = decades[decades.size() - 1 - k];
     run.context.say(fmt::format("shells, level {} of {}", k + 1, decades.size()));
     const HierarchySetup setup = setup_of(scene, decade, k > 0 ? &decades[decades.size() - k] : nullptr);
     LevelContents contents(setup, run.seed);
-    CrowdMeasurements data;
+    MultiContactMeasurements data;
     HierarchyLevel level = run_level(setup, contents, static_cast<std::int64_t>(k),
                                      levels.empty() ? nullptr : &levels.back(), &below, data, run);
     for (const std::string& text : level.left_out) out.remarks.push_back(fmt::format("shells, level {}: {}", k, text));
-    const CrowdLaw* law = level.entry.find(scene.shells.form);
+    const MultiContactLaw* law = level.entry.find(scene.shells.form);
     if (law == nullptr || law->status == LawStatus::no_threshold_crossing)
-      throw NotUsable(fmt::format("shells, level {}: its law never crosses its threshold", k));
+      throw UnusableResult(fmt::format("shells, level {}: its law never crosses its threshold", k));
     if (law->status != LawStatus::good) {
       out.usable = false;
       out.remarks.push_back(fmt::format("shells, level {}: {}: {}", k, to_string(law->status), law->reason));

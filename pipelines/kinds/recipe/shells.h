@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "common/data/crowd_law.h"
+#include "common/data/multi_contact_law.h"
 #include "pipelines/kinds/recipe/scene.h"
 #include "pipelines/kinds/recipe/summary.h"
 #include "pipelines/run/run.h"
@@ -12,13 +12,13 @@ namespace softgrain {
 
 struct ShellLevels {
   std::vector<ShellLevelSummary> levels;  ///< the finest first
-  LawTable table;                         ///< of the coarsest
+  LawTable table;                         ///< law table of the coarsest level
   std::vector<std::string> remarks;
   bool usable = true;  ///< every level has a good law
 };
 
-/// Measures and fits all levels, each with its slice of the curve; writes law_table_level_K.toml, crowd_level_K.h5 and
-/// law_table.toml. Throws NotUsable when a level has no law.
+/// Measures and fits all levels, each with its slice of the curve; writes law_table_level_K.toml,
+/// multi_contact_level_K.h5 and law_table.toml. Throws UnusableResult when a level has no law.
 ShellLevels run_shells(const RecipeScene& scene, const Run& run);
 
 }  // namespace softgrain

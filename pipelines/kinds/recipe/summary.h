@@ -40,9 +40,9 @@ struct RecipeLevelSummary {
   std::int64_t level = 1;
   double diameter_low = 0.0;  ///< [m]
   double diameter_high = 0.0;
-  double share = 0.0;       ///< of the solid volume of all
-  double grains = 0.0;      ///< in a cubic metre of the whole
-  std::string packing;      ///< that was measured
+  double share = 0.0;       ///< share of the solid volume of all levels
+  double grains = 0.0;      ///< grains of the level in a cubic metre of the whole
+  std::string packing;      ///< name of the measured packing
   double onset = 0.0;       ///< phi_J of the level alone
   OnsetByForms with_finer;  ///< phi_J of it and everything finer
   /// Volume that everything finer takes up where it jams, over the voids of this level alone: above 1 its grains float
@@ -70,7 +70,7 @@ struct RecipeCheckSummary {
   Estimate measured;  ///< phi_J
   OnsetByForms predicted;
   bool weighs = true;          ///< whether it tells which form does better; else the value is in the middle
-  double share_of_rods = 0.5;  ///< in the value of the whole, see LevelForms::lean
+  double share_of_rods = 0.5;  ///< share of rods in the value of the whole, see LevelForms::lean
   double outside = 0.0;        ///< how far the measured one lies outside the interval, which intervals are widened by
 };
 
@@ -107,7 +107,7 @@ void fields(auto&& visit, Of<SecantModulus> auto& s) {
 struct RecipeCurve {
   std::string name;
   std::vector<double> strain, axial, lateral;
-  std::vector<double> low, high;  ///< of the axial stress; empty: not known
+  std::vector<double> low, high;  ///< band of the axial stress; empty: not known
   std::string problem;            ///< why it ends, or is not there
   std::optional<SecantModulus> modulus{};
 };
@@ -128,8 +128,8 @@ struct ShellLevelSummary {
   std::int64_t level = 0;  ///< 0: the finest
   double diameter_low = 0.0;
   double diameter_high = 0.0;
-  double force = 0.0;   ///< of one plane at h/Rs = 0.2, over E Rs^2
-  double grains = 0.0;  ///< that one soft particle stands for
+  double force = 0.0;   ///< force of one plane at h/Rs = 0.2, over E Rs^2
+  double grains = 0.0;  ///< number of grains that one soft particle represents
 };
 
 void fields(auto&& visit, Of<ShellLevelSummary> auto& s) {
@@ -144,14 +144,14 @@ struct RecipeOutcome {
   std::vector<ConstituentSummary> constituents;
   std::vector<RecipeLevelSummary> levels;
   double span = 1.0;
-  double gap = 0.0;             ///< of the rods
+  double gap = 0.0;             ///< gap of the rods
   double rods_deviation = 0.0;  ///< root mean square of the onsets about them
   std::optional<Estimate> onset;
-  std::optional<Estimate> solid_fraction;  ///< at the start pressure
+  std::optional<Estimate> solid_fraction;  ///< solid fraction at the start pressure
   Estimate lateral_ratio;                  ///< K0 at the end of the test
   double grains_per_cubic_metre = 0.0;
-  double resolved_grains = 0.0;       ///< of a sample with a hundred grains above a third of the largest radius
-  double resolved_evaluations = 0.0;  ///< of contacts, by what grains took here to be prepared and pressed
+  double resolved_grains = 0.0;       ///< grains of a sample with a hundred grains above a third of the largest radius
+  double resolved_evaluations = 0.0;  ///< contact evaluations of that sample, from those of preparation and test here
   std::optional<RecipeCheckSummary> check;
   std::vector<RecipeCurve> curves;
   std::vector<ShellLevelSummary> shells;

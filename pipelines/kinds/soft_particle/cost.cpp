@@ -23,7 +23,8 @@ struct Passes {
   double rotated = 0.0;
 };
 
-/// Of one degree at the usual speed: with real masses in steps of the published protocol, and with raised ones.
+/// Loop passes of one degree at the usual speed: with real masses in steps of the published protocol, and with raised
+/// ones.
 constexpr double kTurnPasses = 2.7e3;
 constexpr double kRaisedTurnPasses = kTurnPasses / 4.0;
 

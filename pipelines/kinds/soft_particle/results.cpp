@@ -57,7 +57,7 @@ std::vector<HeadLine> lines_of(const RunData& run) {
   std::vector<HeadLine> lines;
   if (run.measurements) lines.emplace_back("Measured", measured_line(*run.measurements));
   if (run.card)
-    for (const PairLaw& law : run.card->pairs) lines.emplace_back("Law", law_line(law, run.card->spec));
+    for (const PairLaw& law : run.card->pairs) lines.emplace_back("Single-contact law", law_line(law, run.card->spec));
   return lines;
 }
 

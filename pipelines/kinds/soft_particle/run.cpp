@@ -39,10 +39,10 @@ ExitStatus run_soft_particle_scene(const Scene& scene, const CommonOptions& opti
   summary.head.sizes = summaries_of(shell_sizes(setup.spec, result.data.packings));
   summary.measured.packings.broke_off = result.left_out.size();
   summary.head.files = {{"measurements", run.path("measurements.h5")}, {"report", run.path("report.html")}};
-  std::string people =
+  std::string console =
       fmt::format("{} packings, solid fraction {:.4f}, {} points measured in {:.1f} s\n", result.data.packings.size(),
                   summary.measured.packings.solid_fraction, summary.measured.measurement.points, result.wall_seconds);
-  return run.finish(json_of(summary), people);
+  return run.finish(json_of(summary), console);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include "common/core/solid_sphere.h"
 #include "common/io/poisson_range.h"
 #include "common/packing/grading_scene.h"
-#include "pipelines/kinds/soft_particle/kept_states.h"
+#include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 
 namespace softgrain {
 
@@ -30,11 +30,11 @@ void read_largest(const SceneTable& t, SoftParticleSpec& spec) {
     const double rmax = t.number("rmax", Unit::length, Range::positive());
     const std::vector<std::string> keys = t.keys();
     if (std::find(keys.begin(), keys.end(), "rmax_over_shell") != keys.end())
-      t.mistake("rmax_over_shell",
-                "contradicts rmax: give the radius of the largest grain, or that over shell_radius, not both");
+      t.add_error("rmax_over_shell",
+                  "contradicts rmax: give the radius of the largest grain, or that over shell_radius, not both");
     if (rmax >= spec.shell_radius)
-      t.mistake("rmax", "the shell (shell_radius = " + std::to_string(spec.shell_radius) +
-                            " m) must be larger than the largest grain");
+      t.add_error("rmax", "the shell (shell_radius = " + std::to_string(spec.shell_radius) +
+                              " m) must be larger than the largest grain");
     spec.rmax_over_shell = rmax / spec.shell_radius;
   } else {
     spec.rmax_over_shell = t.number("rmax_over_shell", Unit::none, Range{0.0, 1.0, true, true}, spec.rmax_over_shell);
@@ -42,22 +42,22 @@ void read_largest(const SceneTable& t, SoftParticleSpec& spec) {
 }
 
 /// What else depends on the smallest and largest grain of a distribution.
-void take_ends(const SceneTable& t, SoftParticleSpec& spec) {
+void set_size_limits(const SceneTable& t, SoftParticleSpec& spec) {
   spec.exponent = std::numeric_limits<double>::quiet_NaN();
   spec.polydispersity = spec.sizes->largest() / spec.sizes->smallest();
   spec.rmax_over_shell = spec.sizes->largest() / spec.shell_radius;
-  if (t.sound() && spec.rmax_over_shell >= 1.0)
-    t.mistake("sizes",
-              fmt::format("the largest grain, of radius {:g} m, must be smaller than the shell (shell_radius = "
-                          "{:g} m)",
-                          spec.sizes->largest(), spec.shell_radius));
+  if (!t.has_errors() && spec.rmax_over_shell >= 1.0)
+    t.add_error("sizes",
+                fmt::format("the largest grain, of radius {:g} m, must be smaller than the shell (shell_radius = "
+                            "{:g} m)",
+                            spec.sizes->largest(), spec.shell_radius));
 }
 
 void read_packing(const SceneTable& t, SoftParticleSpec& spec) {
   spec.shell_radius = t.number("shell_radius", Unit::length, Range::positive(), spec.shell_radius);
   spec.sizes = read_sizes(t, "sizes", {"exponent", "polydispersity", "rmax", "rmax_over_shell"});
   if (spec.sizes) {
-    take_ends(t, spec);
+    set_size_limits(t, spec);
   } else {
     spec.exponent = t.number("exponent", Unit::none, Range::above(1.0), spec.exponent);
     spec.polydispersity = t.number("polydispersity", Unit::none, Range::above(1.0), spec.polydispersity);
@@ -67,7 +67,7 @@ void read_packing(const SceneTable& t, SoftParticleSpec& spec) {
   spec.trials = t.count("trials", 1, 1000000000, spec.trials);
   spec.placement =
       t.choice("placement", {"trials", "voids"}, "trials") == "voids" ? Placement::voids : Placement::trials;
-  if (t.sound()) require_drawable(t, spec);
+  if (!t.has_errors()) require_drawable(t, spec);
 }
 
 void read_damped(const SceneTable& t, DampedProtocolOptions& o) {
@@ -78,7 +78,7 @@ void read_damped(const SceneTable& t, DampedProtocolOptions& o) {
   o.max_passes = t.count("max_passes", 10, 100000000, o.max_passes);
 }
 
-constexpr std::int64_t kMostPasses = 1000000;  ///< of one increment by least work
+constexpr std::int64_t kMostPasses = 1000000;  ///< largest number of passes of one increment by least work
 
 void read_least_work(const SceneTable& t, LeastWorkProtocolOptions& o) {
   o.increment = t.number("increment", Unit::none, Range::closed(1e-7, 0.1), o.increment);
@@ -110,22 +110,22 @@ void read_turn(const SceneTable& measure, const SoftParticleSpec& spec, Measurem
   constexpr double kFastest = 1e-2;
   plan.rotation_step_deg =
       measure.number("rotation_step_deg", Unit::angle_degree, Range::closed(1e-4, 5.0), plan.rotation_step_deg);
-  if (!measure.has("turn_speed") || !measure.sound()) return;
-  const double sound = std::sqrt(spec.youngs_modulus / spec.density);
-  plan.turn_speed =
-      measure.number("turn_speed", Unit::velocity, Range::closed(kSlowest * sound, kFastest * sound), plan.turn_speed);
+  if (!measure.has("turn_speed") || measure.has_errors()) return;
+  const double wave_speed = std::sqrt(spec.youngs_modulus / spec.density);
+  plan.turn_speed = measure.number("turn_speed", Unit::velocity,
+                                   Range::closed(kSlowest * wave_speed, kFastest * wave_speed), plan.turn_speed);
 }
 
 void require_ascending(const SceneTable& t, const std::string& key, const std::vector<double>& values) {
-  if (values.empty()) t.mistake(key, "at least one value is needed");
+  if (values.empty()) t.add_error(key, "at least one value is needed");
   for (std::size_t k = 1; k < values.size(); ++k)
-    if (values[k] <= values[k - 1]) t.mistake(key, "values must ascend");
+    if (values[k] <= values[k - 1]) t.add_error(key, "values must ascend");
 }
 
 void require_subset(const SceneTable& t, const std::vector<double>& some, const std::vector<double>& all) {
   for (const double x : some)
     if (std::none_of(all.begin(), all.end(), [x](double y) { return std::abs(x - y) < 1e-9; }))
-      t.mistake("tangential_deltas", std::to_string(x) + " is not among deltas");
+      t.add_error("tangential_deltas", std::to_string(x) + " is not among deltas");
 }
 
 /// Largest overlap that makes sense: at 1 the plane would have reached the centre of the shell.
@@ -137,12 +137,12 @@ MeasurementPlan read_plan(const SceneTable& t, const MeasurementPlan& common) {
   require_ascending(t, "deltas", plan.deltas);
   plan.angles_deg = t.numbers("angles_deg", Unit::angle_degree, Range::closed(-90.0, 90.0), {});
   for (const double a : plan.angles_deg)
-    if (a == 0.0) t.mistake("angles_deg", "0 is recorded anyway; leave it out");
+    if (a == 0.0) t.add_error("angles_deg", "0 is recorded anyway; leave it out");
   plan.tangential_deltas = t.numbers("tangential_deltas", Unit::none, kDeltaRange,
                                      plan.angles_deg.empty() ? std::vector<double>{} : plan.deltas);
   if (plan.angles_deg.empty() && !plan.tangential_deltas.empty())
-    t.mistake("tangential_deltas", "goes with angles_deg: nothing is rotated without angles");
-  if (t.sound()) require_subset(t, plan.tangential_deltas, plan.deltas);
+    t.add_error("tangential_deltas", "goes with angles_deg: nothing is rotated without angles");
+  if (!t.has_errors()) require_subset(t, plan.tangential_deltas, plan.deltas);
   return plan;
 }
 
@@ -158,8 +158,8 @@ void require_increments_used(const SceneTable& measure, Relaxation relaxation, b
   if (relaxation != Relaxation::slow_dynamics || least_work_too) return;
   const SceneTable t = measure.table_or_empty("least_work");
   if (t.has("increment_passes") && t.count("increment_passes", 0, kMostPasses) > 0)
-    t.mistake("increment_passes",
-              "relaxation = \"slow-dynamics\" makes no increment by least work: 0, or relaxation = \"least-work\"");
+    t.add_error("increment_passes",
+                "relaxation = \"slow-dynamics\" makes no increment by least work: 0, or relaxation = \"least-work\"");
 }
 
 MeasureSeries read_series(const SceneTable& t, Relaxation relaxation, std::int64_t packings,
@@ -175,7 +175,8 @@ MeasureSeries read_series(const SceneTable& t, Relaxation relaxation, std::int64
     series.kinds.push_back(PairKind::soft_soft);
     series.soft_soft = read_plan(t.table("soft_soft"), common);
   }
-  if (series.kinds.empty()) t.mistake("soft_solid", "neither soft_solid nor soft_soft is measured; give at least one");
+  if (series.kinds.empty())
+    t.add_error("soft_solid", "neither soft_solid nor soft_soft is measured; give at least one");
   return series;
 }
 
@@ -189,7 +190,7 @@ void refuse_idle_protocols(const SceneTable& measure, const std::vector<Relaxati
   const auto goes_with = [&](const char* table, bool used, const char* relaxation) {
     if (used || !measure.has(table)) return;
     if (measure.table_or_empty(table).keys().empty()) return;
-    measure.mistake(
+    measure.add_error(
         table, fmt::format("nothing is relaxed this way: goes with relaxation = {}; leave the table out", relaxation));
   };
   goes_with("damped", one_of({Relaxation::damped}), "\"damped\"");
@@ -198,7 +199,7 @@ void refuse_idle_protocols(const SceneTable& measure, const std::vector<Relaxati
             "\"least-work\" or \"slow-dynamics\"");
   if (rotates) return;
   for (const char* key : {"turn_speed", "rotation_step_deg", "shell_turns", "rotation"})
-    if (measure.has(key)) measure.mistake(key, "goes with angles_deg: nothing is rotated in this scene");
+    if (measure.has(key)) measure.add_error(key, "goes with angles_deg: nothing is rotated in this scene");
 }
 
 void require_drawable(const SceneTable& t, const SoftParticleSpec& spec) {
@@ -206,9 +207,10 @@ void require_drawable(const SceneTable& t, const SoftParticleSpec& spec) {
   if (spec.sizes) {
     const double all = spec.beta * cube(spec.shell_radius) / spec.sizes->mean_volume();
     if (all > kMost)
-      t.mistake("sizes", fmt::format("{:.3g} grains of these sizes have the volume of beta = {:g} shells, allowed are "
-                                     "at most 1e7",
-                                     all, spec.beta));
+      t.add_error("sizes",
+                  fmt::format("{:.3g} grains of these sizes have the volume of beta = {:g} shells, allowed are "
+                              "at most 1e7",
+                              all, spec.beta));
     return;
   }
   const double b = spec.exponent;
@@ -221,7 +223,7 @@ void require_drawable(const SceneTable& t, const SoftParticleSpec& spec) {
   std::ostringstream problem;
   problem << "beta = " << spec.beta << " with rmax_over_shell = " << spec.rmax_over_shell << ", polydispersity = " << p
           << " and exponent = " << b << " draws about " << grains << " grains per packing, allowed are at most 1e7";
-  t.mistake(t.has("polydispersity") ? "polydispersity" : "beta", problem.str());
+  t.add_error(t.has("polydispersity") ? "polydispersity" : "beta", problem.str());
 }
 
 std::int64_t MeasureSetup::packings() const {
@@ -279,18 +281,18 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
   if (root.has("reference")) {
     const SceneTable reference = root.table("reference");
     const Relaxation other = read_relaxation(reference, Relaxation::published, setup.least_work);
-    if (measure.sound() && other == setup.series[0].relaxation)
-      reference.mistake("relaxation", "the reference must differ from measure.relaxation");
+    if (!measure.has_errors() && other == setup.series[0].relaxation)
+      reference.add_error("relaxation", "the reference must differ from measure.relaxation");
     setup.series.push_back(read_series(reference, other, reference.count("count", 1, 100000, count), common));
   }
-  if (root.sound()) {
+  if (!root.has_errors()) {
     std::vector<Relaxation> relaxations;
     for (const MeasureSeries& s : setup.series) relaxations.push_back(s.relaxation);
     refuse_idle_protocols(measure, relaxations, setup.rotates());
     if (measure.has("rotation") && setup.rotates() && !setup.turns_on())
-      measure.mistake("rotation", "goes with two angles of one sign: there is nothing that a turn could go on from");
+      measure.add_error("rotation", "goes with two angles of one sign: there is nothing that a turn could go on from");
   }
-  if (root.sound())
+  if (!root.has_errors())
     require_increments_used(measure, setup.series.front().relaxation,
                             setup.series.back().relaxation == Relaxation::least_work);
   setup.kept_states = read_kept_states(root);

@@ -33,7 +33,7 @@ struct MeasureSetup {
   std::vector<MeasureSeries>
       series;  ///< the first one feeds the fit; a second one is the reference it is compared with
   std::uint64_t seed = 1;
-  std::int64_t kept_states = 0;  ///< of the first packing of every kind and relaxation, for pictures
+  std::int64_t kept_states = 0;  ///< kept states of the first packing of every kind and relaxation, for pictures
 
   [[nodiscard]] std::int64_t packings() const;  ///< largest number of packings of a series
   [[nodiscard]] bool rotates() const;           ///< whether any series turns soft particles
@@ -46,22 +46,22 @@ struct MeasureSetup {
   }
 };
 
-/// Throws BadInput at a key of `packing` when a packing of this kind would be drawn from more than 1e7 grains (or from
-/// a law whose mean volume is no number).
+/// Throws InputError at a key of `packing` when a packing of this kind would be drawn from more than 1e7 grains (or
+/// from a law whose mean volume is no number).
 void require_drawable(const SceneTable& packing, const SoftParticleSpec& spec);
 
 /// Refuses keys of the tables below [measure] that none of the relaxations takes, and those of rotations where nothing
 /// is rotated.
 void refuse_idle_protocols(const SceneTable& measure, const std::vector<Relaxation>& relaxations, bool rotates);
 
-/// Reads [material] and what [packing] says of the soft particle (not `count`). Throws BadInput.
+/// Reads [material] and what [packing] says of the soft particle (not `count`). Throws InputError.
 SoftParticleSpec read_soft_particle(const SceneTable& root);
 
 /// Reads seed, [material], [packing] and how [measure] relaxes, without what is measured: `plan` gets the rotations'
-/// settings, `relaxation` the name. Throws BadInput.
+/// settings, `relaxation` the name. Throws InputError.
 MeasureSetup read_measure_protocols(const SceneTable& root, Relaxation& relaxation, MeasurementPlan& plan);
 
-/// Reads [material], [packing], [measure], [reference] and [output]. Throws BadInput.
+/// Reads [material], [packing], [measure], [reference] and [output]. Throws InputError.
 MeasureSetup read_measure_setup(const SceneTable& root);
 
 /// A scene of kind "soft-particle".
@@ -70,7 +70,7 @@ struct SoftParticleScene {
   MeasureSetup measure;
 };
 
-/// Reads it to the last key. Throws BadInput.
+/// Reads it to the last key. Throws InputError.
 SoftParticleScene read_soft_particle_scene(const Scene& scene);
 
 /// The protocol of a name.

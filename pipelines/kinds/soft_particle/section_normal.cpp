@@ -17,8 +17,8 @@ namespace {
 
 double force_scale(const SoftParticleSpec& spec) { return spec.youngs_modulus * spec.shell_radius * spec.shell_radius; }
 
-/// In what the soft particle is not the published one, beside E and Rs, which scale, and how it was packed, which was
-/// not published; empty: in nothing.
+/// Text on how the soft particle differs from the published one; empty: not at all. E and Rs, which scale, and the
+/// packing method, which was not published, are left out.
 std::string unlike_published(const SoftParticleSpec& spec) {
   namespace law = published_soft_solid;
   SoftParticleSpec published = spec;
@@ -134,7 +134,12 @@ std::string normal_section(const RunData& run) {
   if (!run.measurements) return "";
   std::string body;
   for (const PairKind kind : kPairKinds) body += kind_body(run, kind);
-  return body.empty() ? "" : section("normal", "Normal force", body + published_note(run.measurements->spec));
+  return body.empty()
+             ? ""
+             : section(
+                   "normal", "Normal force",
+                   "Normal force against overlap: points are packings, the line is the fitted law with its 95 % band.",
+                   body + published_note(run.measurements->spec));
 }
 
 }  // namespace softgrain::report

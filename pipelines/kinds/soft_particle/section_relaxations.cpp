@@ -118,7 +118,7 @@ std::string relaxations_of(const RunData& run, PairKind kind) {
     const auto c = compare_relaxations(*run.measurements, reference, candidate, kind, run.angles(kind));
     return "<h3>" + escape(describe(kind)) + "</h3>\n" + figure_row({means_figure(c), ratio_figure(c)}) +
            ratio_table(c) + cost_table(c);
-  } catch (const BadInput& error) {
+  } catch (const InputError& error) {
     return paragraph(error.what());
   }
 }
@@ -129,7 +129,8 @@ std::string relaxations_section(const RunData& run) {
   if (!run.measurements) return "";
   std::string body;
   for (const PairKind kind : kPairKinds) body += relaxations_of(run, kind);
-  return section("relaxations", "Two ways to relax", body);
+  return section("relaxations", "Two ways to relax",
+                 "The same packings relaxed by two protocols, and how far their forces differ.", body);
 }
 
 }  // namespace softgrain::report

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kCurves = 4;
 
-/// At most kCurves overlaps, spread over those where a rotation meets a force, the largest included.
+/// Selects at most kCurves overlaps, spread over those where a rotation meets a force, the largest included.
 std::vector<long long> chosen_overlaps(const std::vector<const PackingRun*>& runs) {
   std::set<long long> all;
   for (const PackingRun* run : runs) {
@@ -92,7 +92,10 @@ std::string tangential_section(const RunData& run) {
                ? fmt::format(", slowly, its rim at {} m/s, while they moved on.",
                              format_number(run.measurements->turn_speed, 3))
                : ", all at once, nothing relaxing on the way (frozen turn): beyond 0.05° the force is too small.";
-  return body.empty() ? "" : section("tangential", "Tangential force", body + paragraph(turns));
+  return body.empty()
+             ? ""
+             : section("tangential", "Tangential force",
+                       "Tangential force against the angle of rotation, at each overlap.", body + paragraph(turns));
 }
 
 }  // namespace softgrain::report

@@ -16,7 +16,7 @@
 #include "common/state/system_io.h"
 #include "microsim/shell_packing.h"
 #include "microsim/soft_experiment.h"
-#include "pipelines/kinds/soft_particle/kept_states.h"
+#include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 
 namespace softgrain {
 
@@ -155,8 +155,8 @@ TaskOutcome run_task(const Stage& stage, const Task& task) {
   state.run.kind = task.kind;
   state.run.relaxation = to_string(task.series->relaxation);
   const MeasurementPlan& plan = task.series->plan(task.kind);
-  KeptStates states(stage.store, task.name(), static_cast<std::int64_t>(plan.deltas.size()),
-                    task.packing == 0 ? stage.setup.kept_states : 0);
+  SnapshotRecorder states(stage.store, task.name(), static_cast<std::int64_t>(plan.deltas.size()),
+                          task.packing == 0 ? stage.setup.kept_states : 0);
   stage.store.load(task.name(), [&](const h5::Group& g) { read_run(g, state); });
   TaskProgress mine(stage.progress, task.weight());
   mine.reach(static_cast<double>(state.run.normal.size()) / static_cast<double>(plan.deltas.size()));
@@ -170,7 +170,7 @@ TaskOutcome run_task(const Stage& stage, const Task& task) {
       const auto point = static_cast<std::int64_t>(number);
       if (states.wants(point)) states.add(named_state(recorded, task), point);
     });
-  } catch (const NotUsable& e) {  // this packing alone; after --resume it breaks off at the same place again
+  } catch (const UnusableResult& e) {  // this packing alone; after --resume it breaks off at the same place again
     mine.reach(1.0);
     return {{}, states.take(), break_off_text(task, state, e.what())};
   }
@@ -227,7 +227,8 @@ MeasureResult run_measure_stage(const MeasureSetup& setup, const Run& run) {
   collect(tasks, outcomes, result);
   for (const std::string& text : result.left_out) run.context.say(text);
   if (data.runs.empty())
-    throw NotUsable(fmt::format("not one of {} measurements came to its end; {}", tasks.size(), result.left_out[0]));
+    throw UnusableResult(
+        fmt::format("not one of {} measurements came to its end; {}", tasks.size(), result.left_out[0]));
   save(data, run.path("measurements.h5"), run.provenance);
   save_kept_states(joined(states), run.path("states_measurements.h5"), run.provenance);
   result.wall_seconds = start.seconds();

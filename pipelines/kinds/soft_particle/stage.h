@@ -17,7 +17,7 @@ struct MeasureResult {
   /// One sentence for each packing whose measurement broke off (a grain squeezed out of its shell...). It is left out
   /// of `data` as a whole: a mean over those that got further is a mean over the soft ones.
   std::vector<std::string> left_out;
-  bool enough_left = true;  ///< at least half of the packings of every relaxation and kind of pair
+  bool enough_left = true;  ///< whether at least half of the packings of every relaxation and kind of pair are left
   double wall_seconds = 0.0;
   double packing_seconds = 0.0;  ///< part of it that went into generating packings
 };

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "common/core/enum_names.h"
 #include "common/core/error.h"
 #include "common/core/limits.h"
-#include "common/core/words.h"
 #include "common/io/scene.h"
 #include "pipelines/python/binding/card_binding.h"
 
@@ -23,19 +23,19 @@ inline std::span<const double> view(const Array& array) {
 }
 inline std::span<double> view(Array& array) { return {array.mutable_data(), static_cast<std::size_t>(array.size())}; }
 
-/// The value behind a word. Throws BadInput that names the known words and the nearest.
-template <Worded Enum>
-Enum word_of(const std::string& key, const std::string& word) {
-  if (const auto value = from_word<Enum>(word)) return *value;
+/// The value behind a word. Throws InputError that names the known words and the nearest.
+template <NamedEnum Enum>
+Enum parse_choice(const std::string& key, const std::string& word) {
+  if (const auto value = parse_enum<Enum>(word)) return *value;
   std::vector<std::string> known;
   std::string list;
-  for (const char* one : all_words<Enum>()) {
+  for (const char* one : all_enum_names<Enum>()) {
     known.emplace_back(one);
     list += (list.empty() ? "\"" : ", \"") + known.back() + "\"";
   }
   const std::string near = nearest_word(word, known);
-  throw BadInput(key + " = \"" + word + "\": must be one of " + list +
-                 (near.empty() ? "" : "; nearest is \"" + near + "\""));
+  throw InputError(key + " = \"" + word + "\": must be one of " + list +
+                   (near.empty() ? "" : "; nearest is \"" + near + "\""));
 }
 
 }  // namespace softgrain::python

@@ -14,20 +14,21 @@ namespace softgrain::python {
 
 namespace {
 
-SoftContact contact_of(const LawCard& card, PairKind kind, double scale, bool secant, std::optional<Beyond> beyond) {
+SoftContact contact_of(const LawCard& card, PairKind kind, double scale, bool secant,
+                       std::optional<Extrapolation> beyond) {
   return make_soft_contact(card, kind, scale, 0.0, 0.0, secant, beyond);
 }
 
-/// Of a law that allows nothing beyond what was measured.
+/// Throws InputError for overlaps beyond what was measured, when the law does not allow them.
 void require_allowed(const LawRange& range, std::span<const double> delta) {
-  if (range.beyond != Beyond::error) return;
+  if (range.beyond != Extrapolation::error) return;
   constexpr double kRounding = 1e-12;
   for (const double d : delta)
     if (d > range.end * (1.0 + kRounding)) {
       std::ostringstream text;
       text << "delta = " << d << ": must be at most " << range.end
            << ", the end of what was measured (beyond = \"error\"; \"clamp\" and \"extrapolate\" go on)";
-      throw BadInput(text.str());
+      throw InputError(text.str());
     }
 }
 
@@ -40,12 +41,12 @@ LawPart part_for(LawOutput what, bool secant) {
 
 Array CardBinding::values(const std::string& kind, const std::string& what, const Array& delta, double scale,
                           bool secant, const std::optional<std::string>& beyond) const {
-  const LawOutput output = word_of<LawOutput>("what", what);
-  const PairKind pair = word_of<PairKind>("kind", kind);
+  const LawOutput output = parse_choice<LawOutput>("what", what);
+  const PairKind pair = parse_choice<PairKind>("kind", kind);
   const SoftContact contact = contact_of(card_, pair, scale, secant, beyond_of(beyond));
   if (output == LawOutput::tangential && !has_part(*card_.find(pair), part_for(output, secant)))
-    throw BadInput("slope = \"" + std::string(secant ? "secant" : "initial") +
-                   "\": the card has no such stiffness of " + kind + " contacts");
+    throw InputError("slope = \"" + std::string(secant ? "secant" : "initial") +
+                     "\": the card has no such stiffness of " + kind + " contacts");
   Array out = like(delta);
   const std::span<const double> in = view(delta);
   const std::span<double> to = view(out);
@@ -58,8 +59,8 @@ Array CardBinding::values(const std::string& kind, const std::string& what, cons
 std::optional<std::pair<Array, Array>> CardBinding::interval(const std::string& kind, const std::string& what,
                                                              const Array& delta, double scale, bool secant,
                                                              const std::optional<std::string>& beyond) const {
-  const LawOutput output = word_of<LawOutput>("what", what);
-  const PairKind pair = word_of<PairKind>("kind", kind);
+  const LawOutput output = parse_choice<LawOutput>("what", what);
+  const PairKind pair = parse_choice<PairKind>("kind", kind);
   const SoftContact contact = contact_of(card_, pair, scale, secant, beyond_of(beyond));
   const PairLaw& law = *card_.find(pair);
   const LawPart part = part_for(output, secant);

@@ -15,8 +15,8 @@ namespace softgrain::python {
 
 using Array = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 
-/// A policy by name, none for none. Throws BadInput.
-std::optional<Beyond> beyond_of(const std::optional<std::string>& name);
+/// A policy by name, none for none. Throws InputError.
+std::optional<Extrapolation> beyond_of(const std::optional<std::string>& name);
 
 class CardBinding {
  public:

@@ -16,10 +16,11 @@ Wide column(std::span<const double> overlap, std::size_t neighbours, std::size_t
 }
 
 template <class Law>
-class CrowdPass {
+class MultiContactPass {
  public:
-  CrowdPass(const law::CrowdContacts<Law>& contacts, const std::vector<law::CrowdNeighbour>& around, LawOutput what,
-            std::size_t first, std::size_t last)
+  MultiContactPass(const law::MultiContactContacts<Law>& contacts,
+                   const std::vector<law::MultiContactNeighbour>& around, LawOutput what, std::size_t first,
+                   std::size_t last)
       : contacts_(contacts), around_(around), what_(what), first_(first), last_(last) {}
 
   /// States begin .. end - 1.
@@ -29,7 +30,7 @@ class CrowdPass {
     std::vector<Wide> deep(around_.size());
     for (std::size_t at = begin; at < end; at += kWide) {
       for (std::size_t k = 0; k < around_.size(); ++k) deep[k] = column(overlap, around_.size(), k, at, states);
-      const law::CrowdMiddle<Law, Wide> middle(contacts_, around_, deep);
+      const law::MultiContactMiddle<Law, Wide> middle(contacts_, around_, deep);
       for (std::size_t k = first_; k < last_; ++k) {
         const Wide y = answer(middle, k);
         for (std::size_t lane = 0; lane < kWide && at + lane < end; ++lane)
@@ -39,15 +40,15 @@ class CrowdPass {
   }
 
  private:
-  [[nodiscard]] Wide answer(const law::CrowdMiddle<Law, Wide>& middle, std::size_t k) const {
+  [[nodiscard]] Wide answer(const law::MultiContactMiddle<Law, Wide>& middle, std::size_t k) const {
     if (what_ == LawOutput::volume) return middle.volume();
     const ContactResponse<3, Wide> response = middle.response(k);
     if (what_ == LawOutput::tangential) return contacts_.with(around_[k].kind).kt_ratio * response.normal_stiffness;
     return what_ == LawOutput::force ? response.elastic_force : response.normal_stiffness;
   }
 
-  const law::CrowdContacts<Law>& contacts_;
-  const std::vector<law::CrowdNeighbour>& around_;
+  const law::MultiContactContacts<Law>& contacts_;
+  const std::vector<law::MultiContactNeighbour>& around_;
   LawOutput what_;
   std::size_t first_;
   std::size_t last_;
@@ -80,13 +81,14 @@ void card_array(const SoftContact& contact, LawOutput what, std::span<const doub
   });
 }
 
-void crowd_array(const CrowdLaws& laws, const std::vector<law::CrowdNeighbour>& around, LawOutput what, int which,
-                 std::span<const double> overlap, std::span<double> out) {
+void multi_contact_array(const MultiContactLaws& laws, const std::vector<law::MultiContactNeighbour>& around,
+                         LawOutput what, int which, std::span<const double> overlap, std::span<double> out) {
   const std::size_t first = which < 0 ? 0 : static_cast<std::size_t>(which);
   const std::size_t last = which < 0 ? around.size() : first + 1;
-  law::with_crowd_contacts(laws, [&]<class Law>(const law::CrowdContacts<Law>& contacts) {
-    if constexpr (!Law::traits.memory_in_sums && !Law::traits.has_rolling) {  // as make_crowd_laws() was asked for
-      const CrowdPass<Law> pass(contacts, around, what, first, last);
+  law::with_multi_contact_contacts(laws, [&]<class Law>(const law::MultiContactContacts<Law>& contacts) {
+    if constexpr (!Law::traits.memory_in_sums &&
+                  !Law::traits.has_rolling) {  // as make_multi_contact_laws() was asked for
+      const MultiContactPass<Law> pass(contacts, around, what, first, last);
       in_stretches(overlap.size() / around.size(),
                    [&](std::size_t begin, std::size_t end) { pass.run(overlap, out, begin, end); });
     }

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/contact/soft_contact.h"
-#include "common/core/words.h"
-#include "pipelines/law/crowd_middle.h"
+#include "common/core/enum_names.h"
+#include "pipelines/law/multi_contact_middle.h"
 
 namespace softgrain::python {
 
@@ -16,7 +16,7 @@ enum class LawOutput {
   force,       ///< elastic, along the normal
   stiffness,   ///< d force / d overlap
   tangential,  ///< stiffness of the tangential spring
-  volume       ///< of crowds: the equivalent volume S, whatever the modulus
+  volume       ///< equivalent volume S of multi-contact laws, whatever the modulus
 };
 
 }  // namespace softgrain::python
@@ -24,11 +24,11 @@ enum class LawOutput {
 namespace softgrain {
 
 template <>
-inline constexpr auto words<python::LawOutput> =
-    word_list<python::LawOutput>({{python::LawOutput::force, "force"},
-                                  {python::LawOutput::stiffness, "stiffness"},
-                                  {python::LawOutput::tangential, "tangential"},
-                                  {python::LawOutput::volume, "volume"}});
+inline constexpr auto enum_names<python::LawOutput> =
+    enum_name_list<python::LawOutput>({{python::LawOutput::force, "force"},
+                                       {python::LawOutput::stiffness, "stiffness"},
+                                       {python::LawOutput::tangential, "tangential"},
+                                       {python::LawOutput::volume, "volume"}});
 
 }  // namespace softgrain
 
@@ -37,9 +37,10 @@ namespace softgrain::python {
 /// A law of a card at overlaps Delta = h/R; `out` has as many.
 void card_array(const SoftContact& contact, LawOutput what, std::span<const double> delta, std::span<double> out);
 
-/// Of one neighbour of a soft particle among others: overlaps [state][neighbour] over R in, one number per state out;
-/// of all neighbours (`which` < 0) [state][neighbour]. Laws without unloading and rolling.
-void crowd_array(const CrowdLaws& laws, const std::vector<law::CrowdNeighbour>& around, LawOutput what, int which,
-                 std::span<const double> overlap, std::span<double> out);
+/// Values for one neighbour of a soft particle among others: overlaps [state][neighbour] over R in, one number per
+/// state out. For all neighbours (`which` < 0) the output is [state][neighbour]. Laws are without unloading and
+/// rolling.
+void multi_contact_array(const MultiContactLaws& laws, const std::vector<law::MultiContactNeighbour>& around,
+                         LawOutput what, int which, std::span<const double> overlap, std::span<double> out);
 
 }  // namespace softgrain::python

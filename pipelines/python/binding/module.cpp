@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "common/core/error.h"
-#include "common/data/crowd_replicates.h"
+#include "common/data/multi_contact_replicates.h"
 #include "common/io/provenance.h"
-#include "microsim/crowd_arrangements.h"
+#include "microsim/multi_contact_arrangements.h"
 #include "pipelines/commands/complaints.h"
 #include "pipelines/law/law_file_kind.h"
 #include "pipelines/python/binding/binding_tools.h"
@@ -17,9 +17,9 @@
 
 namespace softgrain::python {
 
-std::optional<Beyond> beyond_of(const std::optional<std::string>& name) {
+std::optional<Extrapolation> beyond_of(const std::optional<std::string>& name) {
   if (!name) return std::nullopt;
-  return word_of<Beyond>("beyond", *name);
+  return parse_choice<Extrapolation>("beyond", *name);
 }
 
 namespace {
@@ -56,9 +56,9 @@ TableBinding load_table(const std::string& path) {
 }
 
 py::tuple arrangement(const std::string& name, double shallow) {
-  const auto which = word_of<Arrangement>("arrangement", name);
+  const auto which = parse_choice<Arrangement>("arrangement", name);
   if (which == Arrangement::scattered)
-    throw BadInput("arrangement = \"scattered\": is drawn for measurements; give directions of your own");
+    throw InputError("arrangement = \"scattered\": is drawn for measurements; give directions of your own");
   std::vector<std::array<double, 3>> directions;
   for (const Vec3& d : directions_of(which)) directions.push_back(d.v);
   return py::make_tuple(directions, depth_shares(which, shallow));

@@ -6,16 +6,16 @@
 #include <utility>
 #include <vector>
 
-#include "common/data/crowd_law.h"
+#include "common/data/multi_contact_law.h"
 #include "pipelines/python/binding/card_binding.h"
 
 namespace softgrain::python {
 
-/// Which law of a table.
+/// Choice of a law of a table.
 struct TableChoice {
   std::optional<std::string> form;       ///< none: the best of the entry
   std::optional<double> solid_fraction;  ///< none: that of the main entry
-  std::string range = "reject";          ///< of solid fractions outside the table
+  std::string range = "reject";          ///< policy for solid fractions outside the table
   std::optional<std::string> beyond;     ///< none: what the table says
 };
 

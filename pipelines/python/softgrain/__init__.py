@@ -9,13 +9,14 @@
     state = run.snapshots(last=True)[0]
     state.position, state.contacts.normal_force
 """
-from softgrain.errors import BadInput, FileTrouble, Interrupted, Mistake, NotUsable, SoftgrainError
+from softgrain.errors import (BadInput, FileTrouble, InputError, Interrupted, IoError, Mistake, NotUsable, SoftgrainError,  # noqa: F401
+                              UnusableResult)
 from softgrain.law import CardLaw, Law, PairLaw, TableLaw, ThresholdPowerLaw
 from softgrain.results import (MacroCurve, MeasuredRun, Quantity, Run, read_macro, read_measurements, read_summary)
 from softgrain.running import Findings, check, command_of, run
 from softgrain.snapshot import Contacts, Snapshot, read_snapshots
 
-__all__ = ["BadInput", "CardLaw", "Contacts", "FileTrouble", "Findings", "Interrupted", "Law", "MacroCurve", "MeasuredRun", "Mistake",
-           "NotUsable", "PairLaw", "Quantity", "Run", "Snapshot", "SoftgrainError", "TableLaw", "ThresholdPowerLaw", "check",
+__all__ = ["CardLaw", "Contacts", "Findings", "InputError", "Interrupted", "IoError", "Law", "MacroCurve", "MeasuredRun", "Mistake",
+           "PairLaw", "Quantity", "Run", "Snapshot", "SoftgrainError", "TableLaw", "ThresholdPowerLaw", "UnusableResult", "check",
            "command_of", "read_macro", "read_measurements", "read_snapshots", "read_summary", "run"]
 __version__ = "0.2.0"

@@ -44,17 +44,17 @@ class SoftgrainError(Exception):
     nearest = property(lambda self: self._first("nearest"), doc="Of the first mistake.")
 
 
-class BadInput(SoftgrainError, ValueError):
+class InputError(SoftgrainError, ValueError):
     """A scene, card or option is wrong: nothing was run."""
 
 
-class NotUsable(SoftgrainError):
+class UnusableResult(SoftgrainError):
     """It ran, but the result must not be used as it is. run: what was written, None where there is nothing."""
 
     run = None
 
 
-class FileTrouble(SoftgrainError, OSError):
+class IoError(SoftgrainError, OSError):
     """A file could not be read or written, or its content is damaged."""
 
     def __str__(self):  # that of OSError is about errno
@@ -72,7 +72,10 @@ class Interrupted(KeyboardInterrupt):
         return type(self), (str(self), self.directory)
 
 
-_OF_STATUS = {2: BadInput, 3: NotUsable, 4: FileTrouble}
+# Their names before version 0.3.
+BadInput, NotUsable, FileTrouble = InputError, UnusableResult, IoError
+
+_OF_STATUS = {2: InputError, 3: UnusableResult, 4: IoError}
 _KNOWN = {f.name for f in fields(Mistake)}
 
 

@@ -10,7 +10,7 @@ import sys
 from functools import lru_cache
 from pathlib import Path
 
-from softgrain.errors import FileTrouble
+from softgrain.errors import IoError
 
 _HERE = Path(__file__).resolve().parent
 
@@ -38,12 +38,12 @@ def _candidates():
 
 
 def program():
-    """Path of the program. FileTrouble when there is none."""
+    """Path of the program. IoError when there is none."""
     tried = list(_candidates())
     for path in tried:
         if path.is_file() and os.access(path, os.X_OK):
             return str(path)
-    raise FileTrouble(["the program softgrain was not found" + (f" (tried {', '.join(map(str, tried))})" if tried else "")
+    raise IoError(["the program softgrain was not found" + (f" (tried {', '.join(map(str, tried))})" if tried else "")
                        + ": install it, build it (./softgrain setup), or name it in SOFTGRAIN_PROGRAM"])
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from softgrain import installation
-from softgrain.errors import BadInput
+from softgrain.errors import InputError
 from softgrain.figures import Drawn, new_figure
 
 
@@ -45,7 +45,7 @@ def _scalar_or_array(values, shape):
 
 
 def _overlaps(values, name="delta"):
-    """Overlaps as floats, and the mask of what is masked (None: nothing is). BadInput for what is no number, and for flags, which
+    """Overlaps as floats, and the mask of what is masked (None: nothing is). InputError for what is no number, and for flags, which
     would count as 0 and 1."""
     masked = np.ma.isMaskedArray(values)
     hint = ""
@@ -56,7 +56,7 @@ def _overlaps(values, name="delta"):
         hint = f"; flags choose elements: {name}[flags]" if array.dtype.kind == "b" else ""
     except (TypeError, ValueError):
         pass
-    raise BadInput([f"{name} = {values!r:.60}: must be a number or an array of numbers{hint}"])
+    raise InputError([f"{name} = {values!r:.60}: must be a number or an array of numbers{hint}"])
 
 
 def _masked(values, mask):
@@ -74,17 +74,17 @@ class Law(Drawn):
 
     @staticmethod
     def load(path):
-        """A card (law.toml) or a table (law_table.toml), or that of a run directory. BadInput with file and line for wrong content,
-        and for a card of the cell law, which has no forces at contacts; FileTrouble for files."""
+        """A card (law.toml) or a table (law_table.toml), or that of a run directory. InputError with file and line for wrong content,
+        and for a card of the cell law, which has no forces at contacts; IoError for files."""
         path = Path(os.fspath(path))
         if path.is_dir():
             names = [n for n in ("law_table.toml", "law.toml", "cell_law.toml") if (path / n).is_file()]
             if not names:
-                raise BadInput([f"{path}: a directory without law_table.toml, law.toml or cell_law.toml"])
+                raise InputError([f"{path}: a directory without law_table.toml, law.toml or cell_law.toml"])
             path = path / names[0]
         kind = installation.laws().kind_of_file(str(path))
         if kind == "cells":
-            raise BadInput([f"{path}: a card of the cell law has no forces at contacts: softgrain law show tells its numbers"])
+            raise InputError([f"{path}: a card of the cell law has no forces at contacts: softgrain law show tells its numbers"])
         return CardLaw(path) if kind == "card" else TableLaw(path)
 
     def __reduce__(self):  # in another process the file is read again
@@ -95,7 +95,7 @@ class Law(Drawn):
         modulus = self.youngs_modulus if modulus is None else float(modulus)
         for name, value in (("radius", radius), ("modulus", modulus)):
             if not (np.isfinite(value) and value > 0.0):
-                raise BadInput([f"{name} = {value}: must be above 0"])
+                raise InputError([f"{name} = {value}: must be above 0"])
         return {"force": modulus * radius**2, "stiffness": modulus * radius, "tangential": modulus * radius, "volume": 1.0}
 
 
@@ -120,8 +120,8 @@ class CardLaw(Law):
     def force(self, delta, kind="soft-solid", *, radius=None, modulus=None, beyond=None):
         """Normal force [N] at Delta, a number or an array of any shape; 0 below the threshold.
 
-        beyond: above the largest Delta that was measured "clamp" it, "extrapolate" or refuse ("error": BadInput); as the card says
-        unless given. BadInput too when the card has no usable law of this kind."""
+        beyond: above the largest Delta that was measured "clamp" it, "extrapolate" or refuse ("error": InputError); as the card says
+        unless given. InputError too when the card has no usable law of this kind."""
         return self._values(kind, "force", delta, radius, modulus, False, beyond)
 
     def stiffness(self, delta, kind="soft-solid", *, radius=None, modulus=None, beyond=None):
@@ -184,7 +184,7 @@ class CardLaw(Law):
 class TableLaw(Law):
     """Laws of soft particles that know about all their contacts [law table].
 
-    form: "pair", "bag" or "directional"; the best of the table unless given. solid_fraction: that of the contents; of the main packing
+    form: "pair", "isotropic" or "directional"; the best of the table unless given. solid_fraction: that of the contents; of the main packing
     unless given. range: outside the measured solid fractions "reject" or "clamp". partner: "plane", "solid" or "soft" neighbours of
     `ratio` times the radius. arrangement: how neighbours of one kind stand around the particle, all pressed in by Delta: "one",
     "opposite", "cube"... (softgrain law eval --help lists them).
@@ -205,7 +205,7 @@ class TableLaw(Law):
     def force(self, delta, partner="plane", *, ratio=1.0, arrangement="one", radius=None, modulus=None, **choice):
         """Normal force [N] on the first of the neighbours, all pressed in by Delta = h/R: a number or an array of any shape.
 
-        choice: form, solid_fraction, range, beyond. BadInput for a solid fraction that was not measured, or no such law."""
+        choice: form, solid_fraction, range, beyond. InputError for a solid fraction that was not measured, or no such law."""
         return self._even("force", delta, partner, ratio, arrangement, radius, modulus, choice)
 
     def stiffness(self, delta, partner="plane", *, ratio=1.0, arrangement="one", radius=None, modulus=None, **choice):
@@ -238,7 +238,7 @@ class TableLaw(Law):
         direction = np.atleast_2d(_overlaps(direction, "direction")[0])
         count = len(direction)
         if (overlap.shape[-1] if overlap.ndim else 1) != count:
-            raise BadInput([f"overlap: shape {overlap.shape}: must have one column per neighbour, {count}"])
+            raise InputError([f"overlap: shape {overlap.shape}: must have one column per neighbour, {count}"])
         kinds = [partner] * count if isinstance(partner, str) else list(partner)
         ratios = np.broadcast_to(np.asarray(ratio, dtype=float), count).tolist()
         around = installation.laws().Neighbours(kinds, ratios, direction.tolist())
@@ -294,7 +294,7 @@ def _choice(form=None, solid_fraction=None, range="reject", beyond=None):  # pyl
 
 def _is_secant(slope):
     if slope not in ("initial", "secant"):
-        raise BadInput([f'slope = "{slope}": must be "initial" or "secant"'])
+        raise InputError([f'slope = "{slope}": must be "initial" or "secant"'])
     return slope == "secant"
 
 

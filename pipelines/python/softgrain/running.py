@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from softgrain import installation
-from softgrain.errors import BadInput, FileTrouble, Interrupted, NotUsable, SoftgrainError, error_of
+from softgrain.errors import InputError, IoError, Interrupted, UnusableResult, SoftgrainError, error_of
 from softgrain.figures import Drawn
 from softgrain.results import Run
 from softgrain.toml_text import scene_text, settings
@@ -44,7 +44,7 @@ def _scene_file(scene):
     try:
         file = tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=".", prefix=".softgrain-", suffix=".toml", delete=False)
     except OSError as e:
-        raise FileTrouble([f"a scene that is a dict needs a file in the working directory: {e}"]) from e
+        raise IoError([f"a scene that is a dict needs a file in the working directory: {e}"]) from e
     try:
         with file:
             file.write(text)
@@ -224,7 +224,7 @@ def _raise_for(ended, given, paths, directory=None):
         how = f"by signal {-ended.status}" if ended.status < 0 else f"with status {ended.status}"
         if ended.status == 3:
             remarks = next((o.get("remarks") for o in ended.objects), None)
-            raise NotUsable([f"not usable: {r}" for r in remarks or []] or ["ran, but the result is not usable as it is"])
+            raise UnusableResult([f"not usable: {r}" for r in remarks or []] or ["ran, but the result is not usable as it is"])
         raise SoftgrainError([f"the program ended {how}" + (f"; see {directory}/log.txt" if directory else "")])
     error = error_of(ended.status, errors)
     if paths is not None:
@@ -254,7 +254,7 @@ def run(scene, *, set=None, out=None, law=None, threads=None, seed=None, resume=
         bands=None, progress=True, unusable="raise", options=()):
     """Runs a scene and gives what came out, a Run.
 
-    scene: a file, or a dict of what would stand in one (numbers, texts with units, lists, dicts; numpy arrays are lists). Paths in a
+    scene: a file, or a dict of its content (numbers, texts with units, lists, dicts; numpy arrays are lists). Paths in a
     dict are relative to the working directory.
     set: changes to it, {"packing.count": 4} or {"packing": {"count": 4}}.
     out: run directory; results/NAME of the file, results/KIND of a dict. One that another run has written is written anew, unless
@@ -263,12 +263,12 @@ def run(scene, *, set=None, out=None, law=None, threads=None, seed=None, resume=
     line, ["--law-cache", DIR].
     progress: True shows it, False does not, and a function gets (share, text) as it goes: share from 0 to 1 of what the run is at, None
     with a line of its log. It is called from another thread.
-    unusable: "raise" NotUsable for a result that must not be used as it is (its attribute `run` has what was written), or "return" it.
+    unusable: "raise" UnusableResult for a result that must not be used as it is (its attribute `run` has what was written), or "return" it.
 
-    Raises BadInput before anything runs, with all mistakes at once; FileTrouble; Interrupted (a KeyboardInterrupt) after Ctrl-C, once
+    Raises InputError before anything runs, with all mistakes at once; IoError; Interrupted (a KeyboardInterrupt) after Ctrl-C, once
     what was computed is saved."""
     if unusable not in ("raise", "return"):
-        raise BadInput([f'unusable = "{unusable}": must be "raise" or "return"'])
+        raise InputError([f'unusable = "{unusable}": must be "raise" or "return"'])
     kind = _kind(scene, set)
     directory = Path(out) if out is not None else _directory(scene, kind)
     with _scene_file(scene) as (file, paths):
@@ -280,11 +280,11 @@ def run(scene, *, set=None, out=None, law=None, threads=None, seed=None, resume=
             return Run(directory)
         try:
             _raise_for(ended, file, paths, directory)
-        except BadInput as e:
+        except InputError as e:
             if e.key == "kind":
                 check(scene, set=set)  # knows all kinds, not those of one command alone
             raise
-        except NotUsable as e:
+        except UnusableResult as e:
             if (directory / "summary.json").exists():
                 e.run = Run(directory)
             if unusable == "raise" or e.run is None:
@@ -338,8 +338,8 @@ class Findings(Drawn):
 
 
 def check(scene, *, set=None, law=None):  # pylint: disable=redefined-builtin
-    """What follows from a scene, a law, a result or a run directory, without running it: Findings. Raises BadInput with all mistakes at
-    once, FileTrouble."""
+    """What follows from a scene, a law, a result or a run directory, without running it: Findings. Raises InputError with all mistakes at
+    once, IoError."""
     with _scene_file(scene) as (file, paths):
         ended = execute(["check", file, *settings(set), *_option("--law", law)])
         if ended.status != 0:

@@ -6,7 +6,7 @@ from pathlib import PurePath
 
 import numpy as np
 
-from softgrain.errors import BadInput, Mistake
+from softgrain.errors import InputError, Mistake
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
@@ -27,7 +27,7 @@ def _quoted(text):
 
 
 def _refuse(path, value, allowed="must be a number, a text, True or False, or a list or dict of these"):
-    raise BadInput([Mistake(f"{path} = {value!r}: {allowed}", file="<scene>", key=path.rpartition(".")[2], path=path,
+    raise InputError([Mistake(f"{path} = {value!r}: {allowed}", file="<scene>", key=path.rpartition(".")[2], path=path,
                             value=repr(value), allowed=allowed)])
 
 
@@ -89,7 +89,7 @@ class _Writer:
 
 def scene_text(scene):
     """TOML of a dict, and what stands in which line (counted from 1): {3: "packing.shell_radius"}. Keys that are None are left
-    out. BadInput for what TOML cannot say."""
+    out. InputError for what TOML cannot say."""
     writer = _Writer()
     writer.table(scene, "", "")
     return "\n".join(writer.lines) + "\n", writer.paths

@@ -1,5 +1,5 @@
 // Plots of a report: values under the pointer, and legend entries that hide and show their curves. The drawings are
-// complete without it; what it needs stands in their attributes data-* (svg_draw.cpp).
+// complete without it; what it needs is in their attributes data-* (svg_draw.cpp). Print has all tables unfolded.
 "use strict";
 (() => {
   const reach = 22; // how far from a curve the pointer may be [px of the view box]
@@ -206,4 +206,5 @@
 
   for (const svg of document.querySelectorAll("svg.plot")) new PlotView(svg);
   addEventListener("scroll", () => (tip.hidden = true), { passive: true });
+  addEventListener("beforeprint", () => document.querySelectorAll("details.table").forEach((d) => (d.open = true)));
 })();

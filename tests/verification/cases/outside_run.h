@@ -33,7 +33,7 @@ struct OutsideRun {
 /// more than one, or more than one contact of it.
 const ContactHistory& only_contact(const OutsideRun& run);
 
-/// A scene from its text, through the program's own reader; throws BadInput, and std::runtime_error when the run was
+/// A scene from its text, through the program's own reader; throws InputError, and std::runtime_error when the run was
 /// not usable.
 OutsideRun run_text(const std::string& text, const Overrides& overrides = {});
 

@@ -1,4 +1,4 @@
-// Writes the page of results/verification: runs every outside case, README.md with a table, and a plot of each.
+// Runs every outside case and writes what results/verification has of them: cases.csv, cases.md and a plot of each.
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -14,16 +14,10 @@ namespace {
 using namespace softgrain;
 using namespace softgrain::verification;
 
-constexpr const char* kHead = R"(# Outside cases
+constexpr const char* kHead = R"(# Outside cases: remarks and pictures
 
-Scenes of kind `particles` against closed forms and what others measured or computed. The cases are `tests/verification/cases/`, and
-`tests/verification/test_*.cpp` hold them to bounds close to what is printed here; in every family the built program runs one of them too.
-This page and its pictures are written by
-
-    cmake --preset release && cmake --build build/release --target verification_page
-    build/release/tests/verification_page results/verification
-
-Errors are relative unless they carry a unit. No random numbers are drawn.)";
+Written by `verification_page`, which the [page](README.md) explains; all numbers are in [cases.csv](cases.csv). Errors are relative unless
+they carry a unit. No random numbers are drawn.)";
 
 void write(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out(file);
@@ -33,10 +27,10 @@ void write(const std::filesystem::path& file, const std::string& text) {
 }
 
 std::string table_of(const std::vector<PageSection>& sections) {
-  TextTable table{{"case", "quantity", "closed form, or by others", "here", "error", "step"}, {}};
+  TextTable table{{"case", "quantity", "reference", "here", "error", "step"}, {}};
   for (const PageSection& s : sections)
     for (const PageRow& r : s.rows) table.rows.push_back({r.what, r.quantity, r.reference, r.here, r.error, r.step});
-  return as_markdown(table);
+  return as_csv(table);
 }
 
 std::string text_of(const PageSection& section) {
@@ -49,19 +43,20 @@ void write_page(const std::filesystem::path& directory) {
   const std::vector<PageSection> sections{impact_section(), oblique_section(), rolling_section(), restitution_section(),
                                           chain_section(),  lattice_section(), energy_section()};
   std::filesystem::create_directories(directory);
-  std::string page = kHead + (" Version " + build_provenance().version + ".\n\n") + table_of(sections);
+  std::string page = kHead + (" Version " + build_provenance().version + ".\n");
   for (const PageSection& s : sections) {
     page += text_of(s);
     for (const PageFigure& f : s.figures) write(directory / (f.file + ".svg"), f.svg + "\n");
   }
-  write(directory / "README.md", page);
+  write(directory / "cases.md", page);
+  write(directory / "cases.csv", table_of(sections));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 2) {
-    std::fprintf(stderr, "verification_page DIR: writes README.md and its pictures\n");
+    std::fprintf(stderr, "verification_page DIR: writes cases.csv, cases.md and its pictures\n");
     return 2;
   }
   try {

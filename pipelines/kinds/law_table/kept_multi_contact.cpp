@@ -1,0 +1,73 @@
+#include "pipelines/kinds/law_table/kept_multi_contact.h"
+
+#include "common/state/system_io.h"
+
+namespace softgrain {
+
+namespace {
+
+void write_target(const h5::Group& group, const std::string& name, const MultiContactTarget& target) {
+  std::vector<double> values = target.overlap;
+  values.push_back(target.slide);
+  values.push_back(target.roll);
+  group.write(name, values);
+}
+
+MultiContactTarget read_target(const h5::Group& group, const std::string& name) {
+  std::vector<double> values = group.doubles(name);
+  if (values.size() < 2) throw IoError("saved state: '" + name + "' is too short");
+  const double roll = values.back();
+  values.pop_back();
+  const double slide = values.back();
+  values.pop_back();
+  return {std::move(values), slide, roll};
+}
+
+void write_place(const h5::Group& group, const MultiContactPlace& place, const MultiContactExperiment& e) {
+  group.attribute("stage", static_cast<std::int64_t>(place.stage));
+  group.attribute("leg", static_cast<std::int64_t>(place.leg));
+  group.attribute("increments", place.increments);
+  write_target(group, "stage_from", place.stage_from);
+  write_target(group, "leg_from", place.leg_from);
+  write_target(group, "now", e.now());
+  write_multi_contact_runs(group.create("run"), {place.run});
+  write_system(group.create("system"), e.system);
+}
+
+MultiContactPlace read_place(const h5::Group& group, MultiContactExperiment& e) {
+  MultiContactPlace place;
+  place.stage = static_cast<std::size_t>(group.integer("stage"));
+  place.leg = static_cast<std::size_t>(group.integer("leg"));
+  place.increments = group.integer("increments");
+  place.stage_from = read_target(group, "stage_from");
+  place.leg_from = read_target(group, "leg_from");
+  MultiContactTarget now = read_target(group, "now");
+  e.overlap = std::move(now.overlap);
+  e.slide = now.slide;
+  e.roll = now.roll;
+  place.run = read_multi_contact_runs(group.open("run")).at(0);
+  read_system(group.open("system"), e.system);
+  return place;
+}
+
+}  // namespace
+
+MultiContactRun run_kept_multi_contact(const TaskStore& store, const std::string& name,
+                                       MultiContactExperiment& experiment, const MultiContactPlan& plan,
+                                       const MultiContactOptions& options,
+                                       const std::function<void(double share)>& progress) {
+  const std::string task = name + "-under-way";
+  MultiContactPlace start;
+  store.load(task, [&](const h5::Group& g) { start = read_place(g, experiment); });
+  RunControl<MultiContactUnderWay> control;
+  control.seconds = store.seconds();
+  control.save = [&](const MultiContactUnderWay& now) {
+    store.save(task, [&](const h5::Group& g) { write_place(g, now.place, now.experiment); });
+  };
+  if (progress) control.progress = [&](const MultiContactUnderWay&, double share) { progress(share); };
+  MultiContactRun run = run_multi_contact(experiment, plan, options, control, std::move(start));
+  store.remove(task);
+  return run;
+}
+
+}  // namespace softgrain

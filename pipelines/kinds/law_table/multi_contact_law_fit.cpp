@@ -1,0 +1,150 @@
+#include "pipelines/kinds/law_table/multi_contact_law_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/error.h"
+#include "common/data/multi_contact_choice.h"
+#include "pipelines/kinds/law_table/multi_contact_summary.h"
+#include "pipelines/law/law_json.h"
+
+namespace softgrain {
+
+namespace {
+
+bool all_converged(const MultiContactMeasurements& data) {
+  for (const MultiContactRun& run : data.runs)
+    for (const MultiContactPoint& p : run.points)
+      if (!p.converged) return false;
+  return true;
+}
+
+/// Entries ascend in solid fraction; two at the same one could not be told apart.
+void insert(LawTable& table, LawTableEntry entry) {
+  constexpr double kSame = 1e-6;
+  const auto at = std::find_if(table.entries.begin(), table.entries.end(),
+                               [&](const LawTableEntry& e) { return e.solid_fraction > entry.solid_fraction - kSame; });
+  if (at != table.entries.end() && at->solid_fraction < entry.solid_fraction + kSame)
+    throw InputError(
+        fmt::format("law table: two measurements have the same solid fraction {:.6f}; every entry needs its own",
+                    entry.solid_fraction));
+  table.entries.insert(at, std::move(entry));
+}
+
+nlohmann::json estimate_json(const Estimate& e) {
+  return {{"value", e.value}, {"standard_error", e.standard_error}, {"low", e.low}, {"high", e.high}};
+}
+
+nlohmann::json slide_json(const SlideLaw& s) {
+  nlohmann::json out{{"kt_ratio", estimate_json(s.kt_ratio)}, {"friction", estimate_json(s.friction)}};
+  if (s.rolls) {
+    out["rolling"] = estimate_json(s.rolling);
+    out["rolling_friction"] = estimate_json(s.rolling_friction);
+  }
+  if (s.has_unloading) out["retreat"] = estimate_json(s.unloading);
+  return out;
+}
+
+nlohmann::json law_json(const MultiContactLaw& law) {
+  nlohmann::json out = verdict_json(law);
+  out["criterion"] = law.criterion;
+  out["reason"] = law.reason;
+  out["replicates_failed"] = law.replicates_failed;
+  for (const MultiContactParameterName& p : kMultiContactParameters) out[p.key] = estimate_json(law.*p.estimate);
+  return out;
+}
+
+nlohmann::json entry_json(const LawTableEntry& entry) {
+  nlohmann::json out = verdict_json(entry);
+  out["slide_plane"] = slide_json(entry.slide_plane);
+  out["slide_solid"] = slide_json(entry.slide_solid);
+  out["slide_soft"] = slide_json(entry.slide_soft);
+  out["retreat"] = estimate_json(entry.unloading);
+  for (const MultiContactLaw& law : entry.laws) out["laws"].push_back(law_json(law));
+  return out;
+}
+
+std::string law_line(const LawTableEntry& entry, const MultiContactLaw& law) {
+  return fmt::format("  {}: {}off by {:.1f} % on what it was fitted to, {}, {}\n", form_label(entry, law),
+                     law.status == LawStatus::good ? "" : to_string(law.status) + ", ", 100.0 * law.error_fitted,
+                     held_out_text(law), cross_text(law));
+}
+
+}  // namespace
+
+std::string held_out_text(const MultiContactLaw& law) {
+  if (std::isnan(law.error_held_out)) return "nothing held out";
+  return fmt::format("{:.1f} % on what was held out", 100.0 * law.error_held_out);
+}
+
+std::string cross_text(const MultiContactLaw& law) {
+  if (std::isnan(law.error_cross)) return "nothing to leave out";
+  return fmt::format("{:.1f} % leaving one out", 100.0 * law.error_cross);
+}
+
+MultiContactFitOptions read_multi_contact_fit(const SceneTable& t) {
+  MultiContactFitOptions o;
+  o.discrepancy = t.number("discrepancy", Unit::none, Range{0.0, 1.0, true, false}, o.discrepancy);
+  o.replicates = static_cast<int>(t.count("replicates", 0, 100000, o.replicates));
+  o.min_packings = static_cast<int>(t.count("min_packings", 2, 100000, o.min_packings));
+  if (t.has("best")) o.best = t.choice<LawForm>("best");
+  o.largest_error = t.number("largest_error", Unit::none, Range::positive(), o.largest_error);
+  return o;
+}
+
+void require_law_of_multi_contact(const SceneTable& root, const MultiContactSetup& setup, const SceneTable& calibrate,
+                                  const MultiContactFitOptions& fit) {
+  if (!calibrate.has_errors() && setup.packings_max < fit.min_packings)
+    root.table_or_empty("multi_contact")
+        .add_error("packings_max",
+                   fmt::format("below min_packings = {} of [calibrate{}]: there would be no fit", fit.min_packings,
+                               root.table_or_empty("calibrate").has("multi_contact") ? ".multi_contact" : ""));
+  const auto& all = setup.configurations;
+  if (std::none_of(all.begin(), all.end(), [](const MultiContactConfiguration& c) {
+        return c.partners.size() == 1 && c.partners[0].kind == PartnerKind::plane && !c.held_out && !c.centre_free;
+      }))
+    root.add_error("configuration", "a law table needs one plane alone (arrangement \"one\", partner \"plane\")");
+}
+
+void add_entry(MultiContactLawFit& fit, const MultiContactMeasurements& data, const MultiContactFitOptions& options,
+               double target) {
+  const LawTableEntry entry = fit_multi_contact_laws(data, options);
+  fit.usable = fit.usable && all_converged(data);
+  for (const std::string& r : multi_contact_remarks(data, target))
+    fit.remarks.push_back(fmt::format("solid fraction {:.3f}: {}", entry.solid_fraction, r));
+  std::string failed;
+  for (const MultiContactLaw& law : entry.laws)
+    if (law.replicates_failed > 0)
+      failed += fmt::format("{}{} law {} of {}", failed.empty() ? "" : ", ", to_string(law.form), law.replicates_failed,
+                            law.replicates_failed + static_cast<int>(law.replicates.size()));
+  if (!failed.empty())
+    fit.remarks.push_back(
+        fmt::format("solid fraction {:.3f}: refits to drawn packings that did not come to a minimum, left out of the "
+                    "intervals: {}",
+                    entry.solid_fraction, failed));
+  for (const MultiContactLaw& law : entry.laws) {
+    if (law.status == LawStatus::good) continue;
+    fit.usable = fit.usable && law.form != entry.best;
+    fit.remarks.push_back(to_string(law.form) + " law: " + to_string(law.status) + ": " + law.reason);
+  }
+  insert(fit.table, entry);
+}
+
+nlohmann::json entries_json(const LawTable& table) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const LawTableEntry& entry : table.entries) out.push_back(entry_json(entry));
+  return out;
+}
+
+std::string entries_text(const LawTable& table) {
+  std::string text;
+  for (const LawTableEntry& entry : table.entries) {
+    text += fmt::format("laws at solid fraction {:.3f} ({} packings):\n", entry.solid_fraction, entry.packings);
+    for (const MultiContactLaw& law : entry.laws) text += law_line(entry, law);
+  }
+  return text;
+}
+
+}  // namespace softgrain

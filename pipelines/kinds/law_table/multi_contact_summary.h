@@ -1,0 +1,37 @@
+// What multi-contact measurements say in numbers: mean forces, how well they are known, where force sets in, what they
+// cost.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "common/data/multi_contact_measurements.h"
+#include "pipelines/kinds/law_table/multi_contact_scene.h"
+
+namespace softgrain {
+
+/// Mean over runs of the force per neighbour, averaged over the neighbours, in units of E Rs^2.
+struct MeanForce {
+  double mean = 0.0;
+  double standard_error = 0.0;  ///< infinite for less than two runs
+  std::int64_t runs = 0;
+};
+
+/// Mean force at the end of the loading that the configuration begins with (its largest overlap).
+MeanForce mean_end_force(const MultiContactConfiguration& configuration, const std::vector<MultiContactRun>& runs);
+
+/// Whether the standard error is within `target` times the mean.
+bool met(const MeanForce& force, double target);
+
+/// Numbers per configuration, and totals: packings used, mean force and standard error at the largest overlap, onset,
+/// share of converged points, cost.
+nlohmann::json multi_contact_json(const MultiContactMeasurements& data, double target);
+
+/// Sentences about what must not be overlooked: targets missed, points that did not converge.
+std::vector<std::string> multi_contact_remarks(const MultiContactMeasurements& data, double target);
+
+/// A line per configuration.
+std::string multi_contact_text(const MultiContactMeasurements& data);
+
+}  // namespace softgrain
