@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <string>
 
@@ -12,9 +13,11 @@ namespace softgrain {
 
 namespace {
 
-volatile std::sig_atomic_t requested = 0;
+/// Set by the handler, which runs on one thread, and read by all of them: sig_atomic_t would be a race.
+std::atomic<bool> requested = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a handler must not wait for a lock");
 
-extern "C" void softgrain_note_signal(int) { requested = 1; }
+extern "C" void softgrain_note_signal(int) { requested = true; }
 
 /// Says why, unless that would have to wait for somebody to read it.
 extern "C" void softgrain_end_at_once(int) {
@@ -39,9 +42,9 @@ void install(void (*handler)(int)) {
 void install_interrupt_handler() { install(softgrain_note_signal); }
 void end_at_once_on_signals() { install(softgrain_end_at_once); }
 
-bool interrupt_requested() { return requested != 0; }
-void request_interrupt() { requested = 1; }
-void clear_interrupt() { requested = 0; }
+bool interrupt_requested() { return requested; }
+void request_interrupt() { requested = true; }
+void clear_interrupt() { requested = false; }
 
 void stop_if_interrupted(const char* doing) {
   if (interrupt_requested())

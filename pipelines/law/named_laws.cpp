@@ -108,12 +108,19 @@ void require_same_material(const LawTableEntry& entry, const MacroSpec& spec) {
                     measured.poisson_ratio, measured.friction, spec.poisson_ratio, spec.friction));
 }
 
-/// Hash of everything that forces depend on, however it came about.
+/// Hash of everything that forces depend on, however it came about. Names count as earlier versions wrote them, so that
+/// the hash of a law does not change with the name of its form.
 std::string hash_of(const SoftLaws& l) {
-  return short_hash(laws_text({{"soft-solid", l.soft_solid},
-                               {"solid-soft", l.solid_soft},
-                               {"soft-wall", l.soft_wall},
-                               {"soft-soft", l.soft_soft}}));
+  std::string text = laws_text({{"soft-solid", l.soft_solid},
+                                {"solid-soft", l.solid_soft},
+                                {"soft-wall", l.soft_wall},
+                                {"soft-soft", l.soft_soft}});
+  for (const auto& [before, now] : kOldNames) {
+    const std::string name = fmt::format("\"{}\"", now);
+    for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1))
+      text.replace(at, name.size(), fmt::format("\"{}\"", before));
+  }
+  return short_hash(text);
 }
 
 LawIdentity identity_of(LawForm form, double solid_fraction, const MacroSpec& spec, const SoftParticleSpec& measured,

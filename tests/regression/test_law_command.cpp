@@ -8,6 +8,7 @@
 
 #include "pipelines/law/law_difference.h"
 #include "pipelines/law/law_show.h"
+#include "pipelines/law/named_laws.h"
 #include "pipelines/law/terminal_plot.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
@@ -42,6 +43,17 @@ TEST(LawCommand, ShowsTheCommittedLawsAsBefore) {
   const law::LawFile a = committed(kCard);
   const law::LawFile b = committed(kTable);
   EXPECT_EQ(law::differences_text(a, b, law::law_differences(a, b), false), reference("difference.txt"));
+}
+
+/// By this number runs, reports and comparisons of all versions tell whether two laws are the same.
+TEST(LawCommand, TheNumberOfALawStays) {
+  LawSources sources;
+  sources.table = load_law_table(kRoot + "/" + kTable);
+  sources.forms = {LawForm::isotropic};
+  MacroSpec spec;
+  spec.poisson_ratio = sources.table->entries.front().spec.poisson_ratio;
+  spec.friction = sources.table->entries.front().spec.friction;
+  EXPECT_EQ(scene_law(sources, spec, 0.0, "law").identity.hash, "d708eed99b3e9fe7");
 }
 
 TEST(LawCommand, NothingIsWiderThan80Columns) {
