@@ -99,8 +99,8 @@ void write_entry(Out out, const LawTableEntry& e) {
   fmt::format_to(out, "overlap_max = {}  # and overlap with a plane, h/Rs\n", real(e.overlap_max));
   fmt::format_to(out, "grain_overlap_max = {}  # of grains over the smaller radius in that range\n",
                  real(e.grain_overlap_max));
-  fmt::format_to(out, "retreat = {}  # s of the unloading branch of planes\n", estimate_text(e.unloading));
-  fmt::format_to(out, "retreat_measured = {}\n", e.unloading_measured);
+  fmt::format_to(out, "unloading = {}  # s of the unloading branch of planes\n", estimate_text(e.unloading));
+  fmt::format_to(out, "unloading_measured = {}\n", e.unloading_measured);
   for (const SlideName& slide : kSlides) {
     const SlideLaw& law = e.*slide.law;
     fmt::format_to(out,
@@ -112,7 +112,7 @@ void write_entry(Out out, const LawTableEntry& e) {
                      "rolling = {}  # moment over E R^2 R12 per angle\nrolling_friction = {}  # largest over F R\n",
                      estimate_text(law.rolling), estimate_text(law.rolling_friction));
     if (law.has_unloading)
-      fmt::format_to(out, "retreat = {}  # s of the unloading branch\n", estimate_text(law.unloading));
+      fmt::format_to(out, "unloading = {}  # s of the unloading branch\n", estimate_text(law.unloading));
   }
   fmt::format_to(out, "\n[entry.measurement]\n{}", spec_text(e.spec));
   for (const MultiContactLaw& law : e.laws) write_law(out, law);
@@ -199,8 +199,8 @@ LawTableEntry read_entry(const SceneTable& t) {
     (e.*slide.law).friction = read_estimate_text(of_kind.table("friction"), Range::closed(0.0, kLargestShare));
     // Where it is not said: what stands in for a measurement has no error.
     (e.*slide.law).measured = of_kind.flag("measured", std::isfinite((e.*slide.law).friction.standard_error));
-    if (of_kind.has("retreat")) {
-      (e.*slide.law).unloading = read_estimate_text(of_kind.table("retreat"), Range::closed(1.0, kLargestShare));
+    if (of_kind.has("unloading")) {
+      (e.*slide.law).unloading = read_estimate_text(of_kind.table("unloading"), Range::closed(1.0, kLargestShare));
       (e.*slide.law).has_unloading = true;
     }
     if (!of_kind.has("rolling") && !of_kind.has("rolling_friction")) continue;
@@ -209,8 +209,8 @@ LawTableEntry read_entry(const SceneTable& t) {
         read_estimate_text(of_kind.table("rolling_friction"), Range::closed(0.0, kLargestShare));
     (e.*slide.law).rolls = true;
   }
-  e.unloading = read_estimate_text(t.table("retreat"), Range::closed(1.0, kLargestShare));
-  e.unloading_measured = t.flag("retreat_measured", std::isfinite(e.unloading.standard_error));
+  e.unloading = read_estimate_text(t.table("unloading"), Range::closed(1.0, kLargestShare));
+  e.unloading_measured = t.flag("unloading_measured", std::isfinite(e.unloading.standard_error));
   e.spec = read_spec_text(t.table("measurement"), false);
   for (const SceneTable& law : t.tables("law")) e.laws.push_back(read_law(law));
   if (e.find(e.best) == nullptr) t.throw_error("best", "is no form that the entry has");

@@ -23,6 +23,28 @@ struct OldKey {
 };
 
 constexpr std::array kOldKeys{OldKey{"", "crowd", "multi_contact"}, OldKey{"calibrate", "crowd", "multi_contact"}};
+/// Of law tables, at any depth.
+constexpr std::array kOldMembers{OldKey{"", "retreat", "unloading"},
+                                 OldKey{"", "retreat_measured", "unloading_measured"}};
+
+void rename_key(toml::table& table, const OldKey& key, const std::string& name) {
+  toml::node* old = table.get(key.before);
+  if (old == nullptr) return;
+  if (table.contains(key.now))
+    throw InputError(name + ":" + std::to_string(old->source().begin.line) + ": " + std::string(key.before) +
+                     " is an earlier name of " + std::string(key.now) + "; leave one of them out");
+  old->visit([&](auto& node) { table.insert(key.now, std::move(node)); });  // moved: a copy forgets its line
+  table.erase(key.before);
+}
+
+void rename_members(toml::node& node, const std::string& name) {
+  if (toml::table* table = node.as_table()) {
+    for (const OldKey& key : kOldMembers) rename_key(*table, key, name);
+    for (auto&& [key, child] : *table) rename_members(child, name);
+  } else if (toml::array* array = node.as_array()) {
+    for (toml::node& child : *array) rename_members(child, name);
+  }
+}
 
 }  // namespace
 
@@ -30,14 +52,9 @@ void rename_old_keys(SceneDocument& document) {
   toml::table& root = *document.content;
   for (const OldKey& key : kOldKeys) {
     toml::table* table = key.table.empty() ? &root : root.get_as<toml::table>(key.table);
-    toml::node* old = table == nullptr ? nullptr : table->get(key.before);
-    if (old == nullptr) continue;
-    if (table->contains(key.now))
-      throw InputError(document.name + ":" + std::to_string(old->source().begin.line) + ": " + std::string(key.before) +
-                       " is an earlier name of " + std::string(key.now) + "; leave one of them out");
-    old->visit([&](auto& node) { table->insert(key.now, std::move(node)); });  // moved: a copy forgets its line
-    table->erase(key.before);
+    if (table != nullptr) rename_key(*table, key, document.name);
   }
+  rename_members(root, document.name);
 }
 
 std::string current_key(const std::string& path) {

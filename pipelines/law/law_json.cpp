@@ -59,7 +59,7 @@ json slide_json(const SlideLaw& slide) {
     put(out, "rolling", slide.rolling);
     put(out, "rolling_friction", slide.rolling_friction);
   }
-  if (slide.has_unloading) put(out, "retreat", slide.unloading);
+  if (slide.has_unloading) put(out, "unloading", slide.unloading);
   return out;
 }
 
@@ -103,7 +103,7 @@ json law_table_json(const LawTable& table) {
     one["main"] = &e == &main_entry(table);
     one["relaxation"] = e.relaxation;
     one["beyond"] = to_string(e.beyond);
-    put(one, "retreat", e.unloading);
+    put(one, "unloading", e.unloading);
     one["slides"] = {
         {"plane", slide_json(e.slide_plane)}, {"solid", slide_json(e.slide_solid)}, {"soft", slide_json(e.slide_soft)}};
     one["laws"] = json::array();

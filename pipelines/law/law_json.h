@@ -97,7 +97,7 @@ void fields(auto&& visit, Of<PairLawSummary> auto& s) {
 /// Laws of a card, by the kind of contact.
 std::map<std::string, PairLawSummary> summary_of(const LawCard& card);
 
-/// { "entries": [ { "solid_fraction", "packings", "best", "volume_max", "overlap_max", "beyond", "retreat", "slides",
+/// { "entries": [ { "solid_fraction", "packings", "best", "volume_max", "overlap_max", "beyond", "unloading", "slides",
 /// "laws": [ { "form", "status", "a", ..., "partners", "error_fitted", ... } ] } ] }, dimensionless; estimates as in
 /// estimate_fields().
 nlohmann::json law_table_json(const LawTable& table);

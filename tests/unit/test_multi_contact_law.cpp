@@ -187,7 +187,7 @@ TEST_F(MultiContactLawIo, NumbersOutOfRangeAreRefusedWhereTheyStand) {
   expect_refused("[[entry.law]]", "delta = { value = 0.08", "delta = { value = 1.0", {"value = 1", "below 1"});
   expect_refused("[[entry.law]]", "b = { value = 2.8", "b = { value = -2.8", {"value = -2.8"});
   expect_refused("[[entry.law.partner]]", "weight = { value = 0.7", "weight = { value = 0", {"value = 0"});
-  expect_refused("retreat", "value = 1.5", "value = 0.5", {"value = 0.5"});
+  expect_refused("unloading", "value = 1.5", "value = 0.5", {"value = 0.5"});
   expect_refused("[[entry]]", "solid_fraction = 0.7", "solid_fraction = 1.7", {"solid_fraction = 1.7"});
 }
 

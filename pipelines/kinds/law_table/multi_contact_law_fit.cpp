@@ -43,7 +43,7 @@ nlohmann::json slide_json(const SlideLaw& s) {
     out["rolling"] = estimate_json(s.rolling);
     out["rolling_friction"] = estimate_json(s.rolling_friction);
   }
-  if (s.has_unloading) out["retreat"] = estimate_json(s.unloading);
+  if (s.has_unloading) out["unloading"] = estimate_json(s.unloading);
   return out;
 }
 
@@ -61,7 +61,7 @@ nlohmann::json entry_json(const LawTableEntry& entry) {
   out["slide_plane"] = slide_json(entry.slide_plane);
   out["slide_solid"] = slide_json(entry.slide_solid);
   out["slide_soft"] = slide_json(entry.slide_soft);
-  out["retreat"] = estimate_json(entry.unloading);
+  out["unloading"] = estimate_json(entry.unloading);
   for (const MultiContactLaw& law : entry.laws) out["laws"].push_back(law_json(law));
   return out;
 }
