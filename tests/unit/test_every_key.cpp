@@ -26,6 +26,8 @@ const std::map<std::string, std::string> kElsewhere{
     {"disks material.powder.rigid",
      "describes the material; a remark says that no contact of it has a law that goes by it"},
     {"disks contact.1.pair", "its order does not matter, and without one of the two a contact has no law"},
+    {"particles-drawn material.soft.rigid",
+     "describes the material; a remark says that no contact of it has a law that goes by it"},
     {"particles-drawn particle.0.inside", "there is no sphere that they could be inside: \"none\" is all it takes"},
     {"particles-drawn particle.1.inside", "there is no sphere that they could be inside: \"none\" is all it takes"},
     {"particles-drawn contact.0.pair", "its order does not matter, and without one of the two a contact has no law"},

@@ -120,6 +120,8 @@ TEST(Stages, WhatContradictsIsNamed) {
       {stage("kind = \"axes\""), "no axis is driven"},
       {stage("kind = \"axes\"\nstrain_x = 0.1\nstress_x = 5"), "contradicts strain_x"},
       {load + stage("kind = \"reload\""), "nothing was unloaded before"},
+      {stage("kind = \"consolidation\"\nstress = 100\n") + stage("kind = \"reload\"\nstress = 200\nstrain = 0.1"),
+       "goes by stress"},
       {load + stage("kind = \"unload\"\nstrain = -0.01"), "above 0"},
       {load + stage("kind = \"hold\"\nstrain = 0.1"), "nothing is driven"},
       {load + stage("kind = \"hold\"\nby = \"weight\""), "stress"},

@@ -205,6 +205,8 @@ class StageReader {
   void reload(const SceneTable& t) {
     if (refuse_axes(t)) return;
     MacroStage& stage = stages_.back();
+    if (stage.record.way == StageKind::consolidation && t.has("strain"))
+      return t.add_error("strain", "the consolidation that this stage repeats goes by stress: give stress");
     if (t.has("strain") || t.has("stress")) return drive(t, stage.record.way, 1.0);
     std::int64_t from = here() - 1;
     while (from >= 0 && stages_[static_cast<std::size_t>(from)].record.kind == StageKind::hold) --from;
