@@ -305,8 +305,7 @@ std::string message_of(const StateFit& fit) {
   if (!(factor < kWidestFactor))
     text += fmt::format(
         "; K is not determined (95 %: {:.2g} to {:.2g}): it goes with n, and both say pressures within the range of "
-        "the "
-        "fit alone",
+        "the fit alone",
         fit.modulus.low, fit.modulus.high);
   else if (!(factor < kWideFactor))
     text += fmt::format("; K is known to a factor of {:.2g} alone: it goes with n", factor);

@@ -289,8 +289,7 @@ void require_data(const MultiContactMeasurements& data, const std::vector<MultiC
   if (!(force > 0.0))
     throw UnusableResult(
         "multi-contact laws: no configuration with one plane crossed its threshold (no force at any recorded overlap); "
-        "press "
-        "deeper");
+        "press deeper");
 }
 
 void describe_packings(const MultiContactMeasurements& data, LawTableEntry& entry) {

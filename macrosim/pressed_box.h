@@ -19,7 +19,7 @@ namespace softgrain {
 /// shells move with their shell); a periodic cell likewise about the origin. Generalised force P_k V - W_k, W_k =
 /// sum F_k (x_k - c_k) over all bodies, walls among them, or the virial of the contacts in a periodic cell; mass
 /// 4/3 sum of the contact stiffness of a body times its radius squared, twice what the contacts of an axis resist with.
-/// A body that nothing pushes stops at once: it would hit its neighbours again and again while they come to rest.
+/// A body that nothing pushes stops at once: it would hit its neighbours again and again while they relax.
 class PressedBox : public RelaxingFrame<3> {
  public:
   /// `watch` is told how far the relaxation is, now and then.

@@ -1,5 +1,5 @@
 // One soft particle with several neighbours at once [SP 1.7, 1.7.1]: planes, solid spheres or other soft particles that
-// are pressed in along a given path while the grains come to rest.
+// are pressed in along a given path while the grains relax.
 #pragma once
 
 #include <string>
@@ -26,7 +26,7 @@ struct InnerLaws {
   double solid_fraction = 1.0;
 };
 
-/// How neighbours move and states come to rest.
+/// How neighbours move and states are relaxed.
 struct MultiContactOptions {
   /// slow_dynamics: molecular dynamics all along the way, masses of the quickest grains raised (the means of the
   /// published protocol within their errors, see results/relaxation). damped: increments, each relaxed without inertia

@@ -14,7 +14,7 @@ LAYERS = ["common", "microsim", "calibrate", "macrosim", "pipelines"]
 SHORT = 40  # lines
 PAGE = 15  # lines of a README of a folder
 # The edge, where words come from texts and go to them.
-EDGE = re.compile(r"/(scene\w*|program|law_file|crowd_law_io|law_card_read|card_text|run_data|section\w*|xdmf|run_files|text\w*)\.(cpp|h)$|/lammps\w*/")
+EDGE = re.compile(r"/(scene\w*|program|law_file|multi_contact_law_io|law_card_read|card_text|run_data|section\w*|xdmf|run_files|text\w*)\.(cpp|h)$|/lammps\w*/")
 COMPARED = re.compile(r'[=!]=\s*"[^"]*"|"[^"]*"\s*[=!]=')
 
 

@@ -163,8 +163,7 @@ std::string off_the_entries(const LawTableEntry& at, const LawTableEntry& below,
       if (force >= low - kSlack * high && force <= (1.0 + kSlack) * high) continue;
       return fmt::format(
           "the {} law at solid fraction {:.4f} is not between those of the entries at {:.4f} and {:.4f} (force on a "
-          "plane "
-          "at h/Rs = {:.3g}: {:.3g} E Rs^2, theirs {:.3g} and {:.3g}): take one of them",
+          "plane at h/Rs = {:.3g}: {:.3g} E Rs^2, theirs {:.3g} and {:.3g}): take one of them",
           to_string(at.laws[k].form), at.solid_fraction, below.solid_fraction, above.solid_fraction, d, force,
           force_on_plane(below.laws[k], d), force_on_plane(above.laws[k], d));
     }

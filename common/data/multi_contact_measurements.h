@@ -12,6 +12,10 @@
 
 namespace softgrain {
 
+/// Name in a run directory, and that of earlier versions, which is still read.
+inline constexpr const char* kMultiContactFile = "multi_contact.h5";
+inline constexpr const char* kEarlierMultiContactFile = "crowd.h5";
+
 /// What presses on the soft particle that is measured.
 enum class PartnerKind { plane, solid, soft };
 

@@ -23,7 +23,7 @@ struct OldKey {
 };
 
 constexpr std::array kOldKeys{OldKey{"", "crowd", "multi_contact"}, OldKey{"calibrate", "crowd", "multi_contact"}};
-/// Of law tables, at any depth.
+/// In the entries of law tables, at any depth.
 constexpr std::array kOldMembers{OldKey{"", "retreat", "unloading"},
                                  OldKey{"", "retreat_measured", "unloading_measured"}};
 
@@ -54,7 +54,7 @@ void rename_old_keys(SceneDocument& document) {
     toml::table* table = key.table.empty() ? &root : root.get_as<toml::table>(key.table);
     if (table != nullptr) rename_key(*table, key, document.name);
   }
-  rename_members(root, document.name);
+  if (toml::node* entries = root.get("entry")) rename_members(*entries, document.name);
 }
 
 std::string current_key(const std::string& path) {

@@ -1,4 +1,4 @@
-// A packing of cells, periodic or between planes: its sites come to rest at every strain, quasi-statically, the room
+// A packing of cells, periodic or between planes: its sites relax at every strain, quasi-statically, the room
 // with them where it is held by stress.
 #pragma once
 
@@ -43,7 +43,7 @@ struct CellState {
 };
 
 /// Sites, contents and springs in one room. Strains are diagonal: every axis is stretched by a factor, sites go along
-/// (affine guess) and then come to rest at fixed strain; or the lengths of axes that are held by stress do with them,
+/// (affine guess) and then relax at fixed strain; or the lengths of axes that are held by stress do with them,
 /// their logarithmic strains as coordinates (as in PressedBox). The relaxation takes steps of the tangent (CellTangent)
 /// that are mixed (StepMixer), two to five tessellations in all. Where these do not converge, it uses Fire, with the
 /// stiffness of the faces of each site as its mass. Trial states leave the springs alone; they are kept where the
@@ -65,7 +65,7 @@ class CellPacking {
   /// not above 0, and UnusableResult where even a small part of the strain leaves a cell without pores.
   CellPoint strain(const Vec3& stretch, const CellRelaxation& options = {});
 
-  /// Stretches as strain() does. Then the sites come to rest together with the lengths of the axes that `control` holds
+  /// Stretches as strain() does. Then the sites relax together with the lengths of the axes that `control` holds
   /// by stress.
   CellPoint press(const Vec3& stretch, const BoxControl& control, const CellRelaxation& options = {});
 

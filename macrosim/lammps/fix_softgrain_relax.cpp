@@ -39,6 +39,18 @@ void limit_length(double* v, double longest) {
   for (int k = 0; k < 3; ++k) v[k] *= longest / std::sqrt(size2);
 }
 
+/// The present name of a keyword, which may be that of an earlier version.
+std::string current_key(const std::string& key) {
+  constexpr std::array<std::array<const char*, 2>, 5> kOld{{{"restless", "unbalanced_fraction"},
+                                                            {"lead", "max_displacement_ratio"},
+                                                            {"alike", "isotropic"},
+                                                            {"lists", "log_lists"},
+                                                            {"follow", "track_box"}}};
+  for (const auto& [before, now] : kOld)
+    if (key == before) return now;
+  return key;
+}
+
 }  // namespace
 
 FixSoftgrainRelax::FixSoftgrainRelax(LAMMPS* engine, int count, char** words) : Fix(engine, count, words) {
@@ -55,18 +67,6 @@ FixSoftgrainRelax::FixSoftgrainRelax(LAMMPS* engine, int count, char** words) : 
   note_box();
   FixSoftgrainRelax::grow_arrays(atom->nmax);
   atom->add_callback(Atom::GROW);
-}
-
-/// Names of earlier versions are read too.
-std::string current_key(const std::string& key) {
-  constexpr std::array<std::array<const char*, 2>, 5> kOld{{{"restless", "unbalanced_fraction"},
-                                                            {"lead", "max_displacement_ratio"},
-                                                            {"alike", "isotropic"},
-                                                            {"lists", "log_lists"},
-                                                            {"follow", "track_box"}}};
-  for (const auto& [before, now] : kOld)
-    if (key == before) return now;
-  return key;
 }
 
 /// One key and what belongs to it; how many words that were.
@@ -341,7 +341,7 @@ void FixSoftgrainRelax::end_of_step() {
   passes_ += 1.0;
   if (pressed()) {
     take_box_sums();
-    // A body that nothing pushes would hit its neighbours again and again while they come to rest.
+    // A body that nothing pushes would hit its neighbours again and again while they relax.
     for (int i = 0; i < atom->nlocal; ++i)
       if (norm2(atom->f[i]) == 0.0) std::fill(atom->v[i], atom->v[i] + 3, 0.0);
   }

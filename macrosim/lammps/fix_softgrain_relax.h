@@ -17,7 +17,7 @@
 // y, z [Pa].
 //
 // `stress` holds the simulation box by stress [Pa, compression positive] along the axes that have a number: its faces
-// come to rest together with the bodies, which they carry along (macrosim/pressed_box.h), at `stress_tolerance` times
+// relax together with the bodies, which they carry along (macrosim/pressed_box.h), at `stress_tolerance` times
 // the largest stress asked for, which counts as `least_stress` at least. `isotropic`: all axes strain equally, by the
 // mean of their stresses. A logarithmic strain beyond `farthest` since the run began ends it as capped: the stress is
 // out of reach. The box has walls in all faces (boundary f f f and fix softgrain/wall box) or is periodic (p p p); the

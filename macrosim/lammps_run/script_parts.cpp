@@ -194,7 +194,7 @@ std::string test_loop(const ScriptScene& s) {
       "variable k loop $((v_point==0)+(v_point>0)*v_increments)\n"
       "label increment\n"
       "# the box is strained, bodies move with it, springs of contacts go along; then all\n"
-      "# come to rest\n";
+      "# relax\n";
   text += one_increment();
   text +=
       fmt::format("if \"${{end}} == 3\" then &\n  'print \"${{point}} $(v_strain:%.17g)\" file {}' &\n  \"quit 0\"\n",

@@ -140,7 +140,7 @@ std::string stage_loop(const ScriptScene& s) {
   text += counting();
   text +=
       "label pressed\n"
-      "# then all come to rest, with the axes that go by stress\n"
+      "# then all relax, with the axes that go by stress\n"
       "fix_modify relax stress ${pressx} ${pressy} ${pressz} isotropic ${isotropic} &\n"
       "  tolerance $(v_rest:%.17g) stress_tolerance $(v_rest/3:%.17g)\n"
       "run ${max_passes} post no\n";

@@ -29,7 +29,7 @@ constexpr std::int64_t kTrials = 20000;  // per grain
 constexpr double kLowestDrawn = -0.99;   // of nu: scatter must not make a grain infinitely stiff in shear
 constexpr double kFirstStep = 1e-2;      // strain of the loose box per step
 constexpr double kDenserThanAny = 0.80;  // solid fraction at which a pack of these grains must long have jammed
-// A box that has not come to rest after so many passes is close to jamming; what is left is small, and the least-work
+// A box that has not reached equilibrium after so many passes is close to jamming; what is left is small, and the least-work
 // solver finds the equilibrium of the box that is handed on.
 constexpr std::int64_t kLoosePasses = 6000;
 // Share of the first wanted pressure at which the box is handed on, reached in steps of kPressedStep: barely jammed

@@ -23,7 +23,7 @@ struct BoxMove {
   [[nodiscard]] bool has_servo() const;
 };
 
-/// An increment that did not come to rest and was taken back.
+/// An increment that did not reach equilibrium and was taken back.
 struct FailedTry {
   Vec3 strain{};          ///< strain that was tried
   double residual = 0.0;  ///< residual at which it ended

@@ -34,7 +34,7 @@ MultiContactSettings read_multi_contact_settings(const SceneTable& t) {
 /// The report draws the first measurement beside its laws; it may lie in the run directory already.
 void keep_for_report(const MultiContactMeasurements& data, const std::string& source, const RunContext& context,
                      const Provenance& provenance) {
-  const std::string path = context.path("multi_contact.h5");
+  const std::string path = context.path(kMultiContactFile);
   if (!fs::exists(path) || !fs::equivalent(path, source)) save_multi_contact(data, path, provenance);
 }
 
@@ -53,7 +53,7 @@ nlohmann::json summarise(const MultiContactLawFit& fit, const std::vector<MultiC
                         {"target", settings.target},
                         {"seed", settings.fit.seed}};
   summary["remarks"] = fit.remarks;
-  for (const char* file : {"multi_contact.h5", "law_table.toml", "law_table.h5", "report.html"})
+  for (const char* file : {kMultiContactFile, "law_table.toml", "law_table.h5", "report.html"})
     summary["files"][file] = context.path(file);
   return summary;
 }

@@ -79,7 +79,7 @@ RunData load_run(const std::string& directory) {
   if (exists("summary.json")) run.summary = parse_summary(file("summary.json")), any = true;
   if (exists("measurements.h5")) run.measurements = load_measurements(file("measurements.h5")), any = true;
   if (exists("law.toml")) run.card = load_card(file("law.toml")), any = true;
-  for (const char* name : {"multi_contact.h5", "crowd.h5"})  // the latter of earlier versions
+  for (const char* name : {kMultiContactFile, kEarlierMultiContactFile})
     if (!run.multi_contact && exists(name)) run.multi_contact = load_multi_contact(file(name)), any = true;
   if (exists("law_table.toml")) run.law_table = load_law_table(file("law_table.toml")), any = true;
   if (exists("macro.h5")) run.macro = load_macro(file("macro.h5")), any = true;

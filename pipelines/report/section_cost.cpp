@@ -100,11 +100,14 @@ std::string cost_section(const RunData& run) {
   // comparisons of laws show it first thing
   const std::string plot = run.macro_scenes.empty() ? error_cost_figure(run) : "";
   const std::string figures = plot.empty() ? "" : figure_row({plot});
-  if (table.empty()) return section("cost", "Cost", "Where the time of the run went.", figures + tail);
-  return section("cost", "Cost", "Where the time of the run went.",
-                 figures + table.html() + tail +
-                     paragraph("A loop pass evaluates all contacts of a system once; times are wall times of the "
-                               "threads that did the work, added up."));
+  std::string body = figures;
+  if (!table.empty()) body += table.html();
+  body += tail;
+  if (!table.empty())
+    body += paragraph(
+        "A loop pass evaluates all contacts of a system once; times are wall times of the threads that did the work, "
+        "added up.");
+  return section("cost", "Cost", "Where the time of the run went.", body);
 }
 
 }  // namespace softgrain::report

@@ -40,7 +40,7 @@ std::string packing_section(const RunData& run) {
   const std::optional<std::string> three = three_js();
   const std::string heading = "Packing in 3D";
   if (!three)
-    return section("packing", heading, "One of the measured packings; drag to turn it.",
+    return section("packing", heading, "The recorded states in three dimensions.",
                    paragraph(std::string("Left out: three.js is not installed (Debian package libjs-three, ") + kThree +
                              "). With it, softgrain report writes this page again with the packing."));
   const std::vector<std::string> left_out = fit_into(series, kBudget);
@@ -55,7 +55,7 @@ std::string packing_section(const RunData& run) {
   for (const std::string& sentence : left_out) body += paragraph(sentence);
   body += "<script type=\"application/json\" id=\"packing-data\">" + packing_json(series) + "</script>\n" + *three;
   body += script(assets::packing_data_js()) + script(assets::packing_scene_js()) + script(assets::packing_view_js());
-  return section("packing", heading, "One of the measured packings; drag to turn it.", body);
+  return section("packing", heading, "The recorded states in three dimensions; drag to turn them.", body);
 }
 
 }  // namespace softgrain::report

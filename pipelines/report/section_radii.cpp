@@ -105,6 +105,9 @@ std::string packing_facts(const Measurements& data) {
                   data.packings.size(), text(grains), text(fraction), text(contacts)));
 }
 
+constexpr const char* kPackingsLead =
+    "Solid fraction of the measured packings, and how the radii of their grains are distributed.";
+
 }  // namespace
 
 std::string radii_section(const RunData& run) {
@@ -112,9 +115,7 @@ std::string radii_section(const RunData& run) {
   const Measurements& data = *run.measurements;
   const SizeRange range = size_range(data);
   if (!(range.low > 0.0 && range.low < range.high))
-    return section("radii", "Packings",
-                   "Number of grains by radius in the measured packings, beside the distribution asked for.",
-                   packing_facts(data));
+    return section("radii", "Packings", kPackingsLead, packing_facts(data));
   Plot plot({.id = "radii",
              .title = "Size distribution of the packed grains",
              .x = {.label = "grain radius over shell radius, r/Rs", .scale = Scale::logarithmic},
@@ -132,9 +133,7 @@ std::string radii_section(const RunData& run) {
   const std::string caption =
       "Lines are normalised over the range of radii that is shown. b is the mean over packings of the "
       "maximum-likelihood exponent.";
-  return section("radii", "Packings",
-                 "Number of grains by radius in the measured packings, beside the distribution asked for.",
-                 packing_facts(data) + figure_row({figure(plot.svg(), caption)}));
+  return section("radii", "Packings", kPackingsLead, packing_facts(data) + figure_row({figure(plot.svg(), caption)}));
 }
 
 namespace {
@@ -174,9 +173,10 @@ std::string sizes_section(const RunData& run) {
   std::vector<std::string> figures;
   for (const SizesSummary& one : run.summary_as<AnySummary>().sizes)
     if (const std::string drawn = passing_figure(one, figures.size()); !drawn.empty()) figures.push_back(drawn);
-  return figures.empty() ? ""
-                         : section("sizes", "Sizes: asked and obtained",
-                                   "Sizes asked for beside those that were drawn.", figure_row(figures));
+  return figures.empty()
+             ? ""
+             : section("sizes", "Sizes: requested and drawn",
+                       "The requested distribution of sizes beside the sizes that were drawn.", figure_row(figures));
 }
 
 }  // namespace softgrain::report

@@ -32,7 +32,7 @@ std::string path_data(const std::vector<double>& x, const std::vector<double>& y
   return data;
 }
 
-/// Values at or below zero on a logarithmic axis come to rest on its lower end: bands and error bars stay closed.
+/// Values at or below zero on a logarithmic axis are drawn at its lower end: bands and error bars stay closed.
 double lifted(double value, const Axis& axis) {
   return std::isfinite(value) && !axis.drawable(value) ? axis.low() : value;
 }

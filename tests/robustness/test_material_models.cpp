@@ -76,7 +76,7 @@ TEST(MaterialModelsRun, WritesItsTableAndSaysWhatCouldNotBe) {
   EXPECT_LT(scores["cells"]["axial"].get<double>(), 0.35);
   EXPECT_GT(scores["coarse"]["axial"].get<double>(), 0.5);  // a material is not its coarse grains
   const std::string page = read_text(out + "/report.html");
-  for (const char* part : {"Models beside the truth", "models-cost", "models-material"})
+  for (const char* part : {"Models compared with the resolved material", "models-cost", "models-material"})
     EXPECT_NE(page.find(part), std::string::npos) << part;
   EXPECT_NE(read_text(out + "/models.csv").find("density,cells,no,"), std::string::npos);
 }

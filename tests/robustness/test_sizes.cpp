@@ -124,7 +124,7 @@ TEST_F(Sizes, WhatCameOutStandsBesideWhatWasAsked) {
     EXPECT_NEAR(one["asked"].back().get<double>(), 1.0, 1e-12);
     EXPECT_NEAR(one["obtained"].back().get<double>(), 1.0, 1e-12);
     EXPECT_EQ(run_the_program("report '" + directory_.file("out") + "'").status, 0);
-    EXPECT_NE(read_text(directory_.file("out/report.html")).find("Sizes: asked and obtained"), std::string::npos);
+    EXPECT_NE(read_text(directory_.file("out/report.html")).find("Sizes: requested and drawn"), std::string::npos);
     std::filesystem::remove_all(directory_.file("out"));
   }
 }

@@ -343,6 +343,12 @@ TEST(OldNames, AreReadUnderTheirPresentOnes) {
   EXPECT_EQ(message_of([&] { (void)parse("[crowd]\n[multi_contact]\n"); }),
             "scene.toml:1: crowd is an earlier name of multi_contact; leave one of them out");
   EXPECT_EQ(parse_enum<LawForm>("bag"), LawForm::isotropic);
+  const Scene table_of_laws =
+      parse("[[entry]]\nretreat = 1.5\n[[entry.law]]\nretreat = 2.0\n[material.retreat]\nE = 1\n");
+  const SceneTable entry = table_of_laws.root().tables("entry").at(0);
+  EXPECT_EQ(entry.number("unloading", Unit::none), 1.5);
+  EXPECT_EQ(entry.tables("law").at(0).number("unloading", Unit::none), 2.0);
+  EXPECT_TRUE(table_of_laws.root().table("material").has("retreat")) << "a name that a scene gives stays";
 }
 
 TEST(NearestWord, FindsTyposAndStaysSilentOtherwise) {

@@ -121,7 +121,7 @@ TEST(Stages, WhatContradictsIsNamed) {
       {stage("kind = \"axes\"\nstrain_x = 0.1\nstress_x = 5"), "contradicts strain_x"},
       {load + stage("kind = \"reload\""), "nothing was unloaded before"},
       {stage("kind = \"consolidation\"\nstress = 100\n") + stage("kind = \"reload\"\nstress = 200\nstrain = 0.1"),
-       "goes by stress"},
+       "goes to a stress"},
       {load + stage("kind = \"unload\"\nstrain = -0.01"), "above 0"},
       {load + stage("kind = \"hold\"\nstrain = 0.1"), "nothing is driven"},
       {load + stage("kind = \"hold\"\nby = \"weight\""), "stress"},

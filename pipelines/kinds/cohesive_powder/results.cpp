@@ -20,7 +20,7 @@ void check_powder_file(const std::string& path, Findings& out) {
   const auto unusable =
       std::count_if(run.samples.begin(), run.samples.end(), [](const PowderSample& s) { return !s.usable; });
   out.add("kind", "powders", fmt::format("cohesive powders: {} samples", run.samples.size()));
-  if (unusable > 0) out.warn(fmt::format("{} samples did not come to rest", unusable));
+  if (unusable > 0) out.warn(fmt::format("{} samples did not reach equilibrium", unusable));
 }
 
 std::vector<HeadLine> lines_of(const report::RunData& run) {
@@ -54,8 +54,7 @@ std::vector<RunValue> values_of(const report::RunData& run) {
 NextSteps next_of(const report::RunData& run) {
   return {
       "How sure the means are: more samples (`--set samples=8`); what they depend on: `softgrain sweep SCENE.toml "
-      "--over "
-      "contact.mu=0.1,0.3,0.5`.",
+      "--over contact.mu=0.1,0.3,0.5`.",
       "Packings with their forces elsewhere: `softgrain export " + run.directory + " --to vtp`."};
 }
 

@@ -44,7 +44,7 @@ std::vector<DrawnSizes> drawn_sizes(const PowderSetup& setup, std::uint64_t seed
 PowderSetup read_powder(const Scene& scene);
 
 /// Runs all samples; writes powder.h5 (final states and the course of each assembly) and summary.json. Status
-/// not_usable when a sample did not come to rest: the summary says which criterion was unmet.
+/// not_usable when a sample did not reach equilibrium: the summary says which criterion was unmet.
 ExitStatus run_powder_ensemble(const PowderSetup& setup, const Run& run);
 
 /// Scene kind "cohesive-powder": runs the ensemble of a scene, or of each of its variants.

@@ -59,8 +59,7 @@ std::string stress_figures(const Packs& packs) {
             .y = {.label = "share of contacts", .low = 0.0}},
            [](const BoxPoint& p) { return p.sliding_share; }, 1.0,
            "Contacts with |Q| at the Coulomb limit mu P of the state, of all that carry force. From the moment "
-           "friction "
-           "is on."),
+           "friction is on."),
        strain_figure(
            packs,
            {.id = "box-coordination",
@@ -285,7 +284,7 @@ std::string grain_box_section(const RunData& run) {
   const Packs& packs = *found;
   const std::string view = pack_view(packs.front());
   return section("grain-boxes", "Packs",
-                 "Stress, elastic moduli and sliding contacts of every pack during the loading.",
+                 "How every pack was generated, its state at the end, and the stress during the loading.",
                  generation_table(packs) + end_table(packs) + stress_figures(packs)) +
          section(
              "moduli", "Moduli", "Bulk and shear modulus against pressure, with the exponents of their growth.",
@@ -293,7 +292,7 @@ std::string grain_box_section(const RunData& run) {
                  paragraph(
                      "Mean over the intervals within 10 % of the stress, with the standard error of their scatter.") +
                  arrangements_tables(packs)) +
-         section("pack-view", "Inside", "Grains of a pack and the forces between them.",
+         section("pack-view", "Section through a pack", "Grains of a pack and the forces between them.",
                  view.empty()
                      ? ""
                      : figure_row({figure(

@@ -137,7 +137,7 @@ std::vector<std::string> grain_box_remarks(const std::vector<GrainBoxResult>& re
     if (!r.usable) remarks.push_back(fmt::format("pack '{}' broke off: {}", r.spec.name, r.reason));
     if (!r.state.failures.empty())
       remarks.push_back(
-          fmt::format("pack '{}': {} tries of increments did not come to rest and were halved or repeated; "
+          fmt::format("pack '{}': {} tries of increments did not reach equilibrium and were halved or repeated; "
                       "they are listed in grain_box.h5",
                       r.spec.name, r.state.failures.size()));
     const double shear = largest_over_pressure(r, &BoxPoint::shear);

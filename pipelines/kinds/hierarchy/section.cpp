@@ -86,7 +86,7 @@ std::string hierarchy_section(const RunData& run) {
                       law_figure(levels, &LevelCurves::cube, "cube", "Six planes")});
   body += change_table(levels);
   if (summary.check) body += paragraph(summary.check->text) + check_table(summary.check->result.points);
-  return section("hierarchy", "Level upon level",
+  return section("hierarchy", "Hierarchy of levels",
                  "Soft particles of each level hold soft particles of the level below. The curves show how the law "
                  "changes from level to level.",
                  body);

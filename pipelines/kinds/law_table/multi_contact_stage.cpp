@@ -374,7 +374,7 @@ MultiContactMeasurements run_multi_contact_stage(const MultiContactSetup& setup,
   MultiContactRunner runner(setup, run, filled, level);
   data.runs = measure_all(setup, runner, run);
   left_out.insert(left_out.end(), runner.left_out().begin(), runner.left_out().end());
-  save_multi_contact(data, run.path(level != nullptr ? level->file : "multi_contact.h5"), run.provenance);
+  save_multi_contact(data, run.path(level != nullptr ? level->file : kMultiContactFile), run.provenance);
   return data;
 }
 

@@ -18,8 +18,8 @@ struct MultiContactLevel {
   std::function<SoftContent(const ShellPacking&, std::int64_t packing)>
       fill;  ///< the content that is made of a packing of grains alone; empty: that packing
   InnerLaws laws;
-  std::string tag;                        ///< all that decides `fill` and `laws`, for the cache
-  std::string file = "multi_contact.h5";  ///< name of the file in the run directory
+  std::string tag;                       ///< all that decides `fill` and `laws`, for the cache
+  std::string file = kMultiContactFile;  ///< name of the file in the run directory
 };
 
 /// Measures and saves DIR/multi_contact.h5 (or the file of the level). All configurations use the packings 0, 1, ... of

@@ -56,7 +56,7 @@ nlohmann::json summarise(const LawTableSetup& setup, const LawTableRun& result, 
   summary["remarks"] = result.fit.remarks;
   if (setup.multi_contact.spec.sizes)
     summary["sizes"] = json_of(summaries_of(shell_sizes(setup.multi_contact.spec, result.data.packings)));
-  for (const char* file : {"multi_contact.h5", "law_table.toml", "law_table.h5", "report.html"})
+  for (const char* file : {kMultiContactFile, "law_table.toml", "law_table.h5", "report.html"})
     summary["files"][file] = run.path(file);
   return summary;
 }

@@ -140,9 +140,8 @@ std::string parameter_table(const LawTableEntry& entry) {
 std::string entry_body(const LawTableEntry& entry, const std::optional<MultiContactMeasurements>& multi_contact) {
   std::string body = paragraph(fmt::format(
       "Solid fraction {:.4f} ± {:.4f}, {} packings. Taken where none is named: the {} law. Measured up to h/Rs = "
-      "{:.2f} "
-      "and an equivalent lost volume of {:.3f}; grains overlap there by up to {:.1f} of the smaller radius. Sliding, "
-      "{}; {}.",
+      "{:.2f} and an equivalent lost volume of {:.3f}; grains overlap there by up to {:.1f} of the smaller radius. "
+      "Sliding, {}; {}.",
       entry.solid_fraction, entry.solid_fraction_error, entry.packings, to_string(entry.best), entry.overlap_max,
       entry.volume_max, entry.grain_overlap_max, slides_text(entry), unloading_text(entry)));
   for (const MultiContactLaw& law : entry.laws)
@@ -179,7 +178,7 @@ std::string law_table_section(const RunData& run) {
         run.multi_contact && !run.multi_contact->packings.empty() && measured_here(entry, *run.multi_contact);
     body += entry_body(entry, here ? run.multi_contact : std::nullopt);
   }
-  return section("law-table", "Laws of soft particles with several neighbours",
+  return section("law-table", "Multi-contact laws",
                  "Force on one neighbour while others press too: measured means and the fitted laws.", body);
 }
 

@@ -20,8 +20,7 @@ double first_mean_stress(const MacroCurve& c) {
 const char* why(const MacroCurve& c) {
   if (c.soft == 0)
     return "the preparation stops at preparation_tolerance, and contacts open when the test relaxes the packing to its "
-           "own "
-           "tolerance: a smaller preparation_tolerance or a larger start_pressure";
+           "own tolerance: a smaller preparation_tolerance or a larger start_pressure";
   if (c.twin())
     return "the preparation presses whole bodies, the twin begins with grains that do not yet touch behind their "
            "shells";

@@ -228,9 +228,9 @@ std::string macro_section(const RunData& run) {
     body += stage_parts(curves, test);
     body += comparison_part(laws, twins) + bodies_table(curves) + law_paragraph(curves);
   }
-  return section("macro", "Macro scene",
-                 "Stress against strain by each engine, and the difference between the law and the resolved twin.",
-                 body);
+  return section(
+      "macro", "Macro scene",
+      "Stress against strain by each engine and, where there is a resolved twin, its difference from the law.", body);
 }
 
 }  // namespace softgrain::report

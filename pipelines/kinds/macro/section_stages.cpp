@@ -113,10 +113,9 @@ std::string tables_of_stages(const std::vector<MacroCurve>& curves) {
              "Moduli are over logarithmic strains: constrained Δσz/Δεz, Young Δσz/Δεz at constant lateral stress, bulk "
              "Δp/Δεv, shear Δ(σz − σx)/2Δ(εz − εx). The secant is taken between two values of that stress (p of bulk, "
              "(σz − σx)/2 of shear), which modulus_stress of the scene chooses. The tangent is that of a parabola "
-             "through the first points; of an unloading it is the unloading modulus. "
-             "The second table has what there is at the end of each stage, and the largest q/p with the axial strain "
-             "where "
-             "it is; q = √(3J₂), p the mean stress. Mean over usable samples ± standard error; one sample has none.");
+             "through the first points; of an unloading it is the unloading modulus. The second table has what there "
+             "is at the end of each stage, and the largest q/p with the axial strain where it is; q = √(3J₂), p the "
+             "mean stress. Mean over usable samples ± standard error; one sample has none.");
 }
 
 }  // namespace

@@ -104,7 +104,6 @@ class StageReader {
     if (is(StageKind::axes) || is(StageKind::hold))
       refuse(t, {"strain", "stress"},
              is(StageKind::hold) ? "nothing is driven while all is held" : "give strain_x or stress_x, and so on");
-    if (is(StageKind::consolidation)) refuse(t, {"strain"}, "a consolidation goes to a stress");
   }
 
   [[nodiscard]] std::int64_t here() const { return static_cast<std::int64_t>(stages_.size()) - 1; }
@@ -132,7 +131,10 @@ class StageReader {
   void drive(const SceneTable& t, StageKind way, double sign) {
     MacroStage& stage = stages_.back();
     if (way == StageKind::axes) return read_axes(t, stage);
-    if (way == StageKind::consolidation) return by_stress(stage, way, read_stresses(t));
+    if (way == StageKind::consolidation) {
+      refuse(t, {"strain"}, "a consolidation goes to a stress, and so does a stage that unloads or repeats it");
+      return by_stress(stage, way, read_stresses(t));
+    }
     const bool strain = t.has("strain");
     const bool stress = t.has("stress");
     if (strain == stress) {
@@ -205,8 +207,6 @@ class StageReader {
   void reload(const SceneTable& t) {
     if (refuse_axes(t)) return;
     MacroStage& stage = stages_.back();
-    if (stage.record.way == StageKind::consolidation && t.has("strain"))
-      return t.add_error("strain", "the consolidation that this stage repeats goes by stress: give stress");
     if (t.has("strain") || t.has("stress")) return drive(t, stage.record.way, 1.0);
     std::int64_t from = here() - 1;
     while (from >= 0 && stages_[static_cast<std::size_t>(from)].record.kind == StageKind::hold) --from;

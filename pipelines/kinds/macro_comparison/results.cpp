@@ -54,8 +54,7 @@ NextSteps next_of(const RunData&) {
       "Take the law that comes closest in scenes like these: `softgrain macrosim SCENE.toml --law LAW_TABLE.toml --set "
       "form=NAME`.",
       "What to measure next for it: `softgrain law plan LAW_TABLE.toml --for SCENE.toml`; twins are kept for other "
-      "laws by "
-      "`--twin-cache DIR`."};
+      "laws by `--twin-cache DIR`."};
 }
 
 }  // namespace

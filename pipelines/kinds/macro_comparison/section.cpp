@@ -124,10 +124,8 @@ std::string macro_scenes_section(const RunData& run) {
   if (!body.empty())
     body += paragraph(
         "Stress error: square root of ∫(engine − twin)² over ∫ twin² along the strain, of tests in stages stage by "
-        "stage without those that impose it. Coordination, fabric (zz − xx) "
-        "and "
-        "forces are those between bodies at the end, a soft particle being one body. Mean over samples +- standard "
-        "error.");
+        "stage without those that impose it. Coordination, fabric (zz − xx) and forces are those between bodies at the "
+        "end, a soft particle being one body. Mean over samples +- standard error.");
   return section("macro-scenes", "Laws and resolved twins",
                  "How far each law is from the resolved twin, scene by scene, and what it costs.", body);
 }

@@ -67,11 +67,9 @@ std::vector<RunCurve> curves_of_run(const RunData& run) { return stress_curves(t
 NextSteps next_of(const RunData&) {
   return {
       "How far from converged: `softgrain run SCENE.toml --seeds 1..8` for the scatter, `softgrain sweep SCENE.toml "
-      "--over "
-      "grains.count=1000,2000,4000` for the size.",
+      "--over grains.count=1000,2000,4000` for the size.",
       "A law of this material for larger spans: `softgrain run pipelines/material_law.toml` with the same [material] "
-      "and "
-      "[grains]; models beside it: `softgrain run pipelines/material_vs_models.toml`."};
+      "and [grains]; models beside it: `softgrain run pipelines/material_vs_models.toml`."};
 }
 
 }  // namespace

@@ -31,8 +31,7 @@ NextSteps next_of_law(const report::RunData& run) {
   return {"Take it in a scene with cells of fines: `softgrain macrosim SCENE.toml --law " + run.directory +
               "/cell_law.toml`.",
           "How good it is on mixtures that it has not seen: `softgrain run pipelines/material_vs_models.toml`, whose "
-          "variants "
-          "in `blind` the law does not know."};
+          "variants in `blind` the law does not know."};
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ std::string material_models_section(const RunData& run) {
   std::vector<std::string> figures;
   for (const MaterialVariantSummary& v : summary.material.variants) figures.push_back(stress_figure_of(run, v));
   body += figure_row(figures);
-  return section("material-models", "Models beside the truth",
+  return section("material-models", "Models compared with the resolved material",
                  "Stress of each model against the material with every grain resolved: error against cost.", body);
 }
 
@@ -138,8 +138,7 @@ std::vector<RunValue> values_of(const report::RunData& run) {
 NextSteps next_of(const report::RunData&) {
   return {
       "Take the model whose error is smallest at the cost you can afford: of cells `softgrain macrosim SCENE.toml "
-      "--law "
-      "cell_law.toml`.",
+      "--law cell_law.toml`.",
       "Whether its error is beyond scatter: more samples (`--set samples=6`), or other packings of the same material "
       "(`--seeds 1..4`)."};
 }

@@ -51,8 +51,10 @@ std::string particles_section(const RunData& run) {
       table_of(summary.particles, {"particle", "position [m]", "velocity [m/s]", "spin [rad/s]"}, grain_row);
   const std::string contacts = table_of(summary.contacts.value_or(std::vector<PairSummary>{}),
                                         {"pair", "duration [s]", "largest force [N]", "largest overlap [m]"}, pair_row);
-  return section("particles", "Particles at the end", "Positions of the particles at the end of the run.", states) +
-         section("contacts", "Contacts", "Forces and overlaps of the contacts at the end of the run.", contacts);
+  return section("particles", "Particles at the end",
+                 "Position, velocity and spin of every particle at the end of the run.", states) +
+         section("contacts", "Contacts", "How long every contact lasted, with its largest force and overlap.",
+                 contacts);
 }
 
 }  // namespace softgrain::report

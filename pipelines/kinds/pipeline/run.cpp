@@ -188,7 +188,7 @@ PipelineSummary summarise(const PipelineSetup& setup, const PipelineResult& r, c
   for (const char* file : {"measurements.h5", "law.toml", "law.h5", "macro.h5", "macro_initial.h5", "report.html"})
     s.head.files[file] = run.path(file);
   if (!r.multi_contact_fit.table.entries.empty())
-    for (const char* file : {"multi_contact.h5", "law_table.toml", "law_table.h5"}) s.head.files[file] = run.path(file);
+    for (const char* file : {kMultiContactFile, "law_table.toml", "law_table.h5"}) s.head.files[file] = run.path(file);
   s.bands = r.bands;
   s.band_ends = banded_ends(r.curves);
   s.head.sizes = summaries_of(shell_sizes(r.measured.data.spec, r.measured.data.packings));

@@ -119,9 +119,8 @@ std::string modulus_table(const RecipeOutcome& r) {
 std::string whole_text(const RecipeOutcome& r) {
   std::string text = fmt::format(
       "The whole begins to carry pressure at a solid fraction of {} ({}): {} by levels, {} by rods (gap {}; packings "
-      "lie {} "
-      "about "
-      "them). At the start pressure it is {} ({}). Lateral over axial stress where the test ends: {} ({}).",
+      "lie {} about them). At the start pressure it is {} ({}). Lateral over axial stress where the test ends: {} "
+      "({}).",
       format_number(r.onset->value, 4), range_of(r.onset->low, r.onset->high, 4),
       format_number(r.levels.front().with_finer.levels, 4), format_number(r.levels.front().with_finer.rods, 4),
       format_number(r.gap, 3), format_number(r.rods_deviation, 2), format_number(r.solid_fraction->value, 4),
@@ -138,9 +137,7 @@ std::string whole_text(const RecipeOutcome& r) {
 std::string check_text(const RecipeCheckSummary& c) {
   return fmt::format(
       "Check: the {} coarsest levels with all their grains ({} of span {}) begin to carry pressure at {}; put together "
-      "from "
-      "levels "
-      "{} ({}): {}. By levels it is {}, by rods {}; {}.",
+      "from levels {} ({}): {}. By levels it is {}, by rods {}; {}.",
       c.levels, format_count(c.grains), format_number(c.span, 3), format_number(c.measured.value, 4),
       format_number(c.predicted.onset.value, 4), range_of(c.predicted.onset.low, c.predicted.onset.high, 4),
       c.outside > 0.0 ? "outside by " + format_number(c.outside, 2) + ", and all intervals here are widened by that"
@@ -161,9 +158,10 @@ std::string recipe_section(const RunData& run) {
   if (r.check) body += paragraph(check_text(*r.check));
   body += figure_row({onset_figure(r), load_figure(r)});
   body += modulus_table(r) + constituent_table(r) + level_table(r) + shell_table(r);
-  return section(
-      "recipe", "From the recipe to the law",
-      "From the particle size distribution to the law: the levels, their onset, and the check with all grains.", body);
+  return section("recipe", "From the recipe to the law",
+                 "From the particle size distribution to the law: the levels, their onset and, where it was made, the "
+                 "check with all grains.",
+                 body);
 }
 
 }  // namespace softgrain::report

@@ -134,12 +134,11 @@ std::string normal_section(const RunData& run) {
   if (!run.measurements) return "";
   std::string body;
   for (const PairKind kind : kPairKinds) body += kind_body(run, kind);
-  return body.empty()
-             ? ""
-             : section(
-                   "normal", "Normal force",
-                   "Normal force against overlap: points are packings, the line is the fitted law with its 95 % band.",
-                   body + published_note(run.measurements->spec));
+  return body.empty() ? ""
+                      : section("normal", "Normal force",
+                                "Normal force against overlap: points are means over packings, the line is the fitted "
+                                "law, where there is one.",
+                                body + published_note(run.measurements->spec));
 }
 
 }  // namespace softgrain::report

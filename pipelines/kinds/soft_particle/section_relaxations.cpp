@@ -129,7 +129,7 @@ std::string relaxations_section(const RunData& run) {
   if (!run.measurements) return "";
   std::string body;
   for (const PairKind kind : kPairKinds) body += relaxations_of(run, kind);
-  return section("relaxations", "Two ways to relax",
+  return section("relaxations", "Relaxation protocols compared",
                  "The same packings relaxed by two protocols, and how far their forces differ.", body);
 }
 

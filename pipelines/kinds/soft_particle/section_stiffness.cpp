@@ -51,8 +51,8 @@ std::string stiffness_section(const RunData& run) {
     if (run.relaxation(kind).empty()) continue;
     body += figure_row({stiffness_figure(run, kind, true), stiffness_figure(run, kind, false)});
   }
-  return section("stiffness", "Tangential stiffness", "Tangential stiffness against overlap, measured and fitted.",
-                 body);
+  return section("stiffness", "Tangential stiffness",
+                 "Tangential stiffness against overlap, measured and, where there is a law, fitted.", body);
 }
 
 }  // namespace softgrain::report

@@ -137,8 +137,7 @@ std::string break_off_text(const Task& task, const MeasurementState& state, cons
       state.run.normal.empty() ? "from rest" : fmt::format("beyond Delta = {:.4g}", state.run.normal.back().delta);
   return fmt::format(
       "packing {} of {} by {} is left out: it broke off {} on the way to Delta = {:.4g}: {}; smaller overlaps{} may "
-      "keep it "
-      "whole",
+      "keep it whole",
       task.packing, to_string(task.kind), to_string(task.series->relaxation), last, deltas[next], why,
       task.series->relaxation == Relaxation::damped ? "" : " or relaxation = \"damped\"");
 }
