@@ -64,7 +64,7 @@ class Photographer:
     def head(self):
         self.browser.execute_script("scrollTo(0, 0)")
         time.sleep(0.4)
-        x, y, width, height = self.box(self.find("#remarks"))
+        x, y, width, height = self.box(self.find(".remarks"))
         self.take("head", x - 20, 0, width + 40, y + height + 15)
 
     def normal(self):

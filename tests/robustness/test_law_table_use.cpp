@@ -367,7 +367,7 @@ TEST_F(LawTableUse, LawTableScenesThatCannotEndInALawAreRefused) {
   refused("min_packings = 2", "min_packings = 3\n[[variant]]\nbeta = 4\npackings = 2", {"packings", "min_packings"});
 }
 
-/// The law of all neighbours at once stands beside the pair law of the run, each on the same bodies, and it is the one
+/// The multi-contact law is run beside the pair law of the run, each on the same bodies, and it is the one
 /// that the macro command takes from the same table.
 TEST_F(LawTableUse, APipelineShowsTheLawOfATableBesideItsOwn) {
   std::string text = kTinyPipeline;

@@ -32,7 +32,7 @@ TEST_P(ReportEnds, EveryKindNamesItsMaterialAndSaysWhatToDoNext) {
   EXPECT_TRUE(has("<dt>Material</dt>") || has("<dt>Grains</dt>") || has("Rs = ")) << "of what it is made";
   if (runs.kind().name == "macro" || runs.kind().name == "macro-comparison") {
     EXPECT_TRUE(has("<dt>Law used</dt>"));
-    EXPECT_TRUE(has("numbers ")) << "the hash";
+    EXPECT_TRUE(has("hash ")) << "which law";
   }
   const std::set<std::string> bodies{"macro", "particles", "disks", "powder", "grain-box", "soft-particle"};
   if (bodies.contains(runs.kind().name)) {

@@ -334,7 +334,7 @@ TEST(CompareSides, TwoLawsOnOtherSamplesAreComparedAndSaidToBe) {
   const CompareResult result = compare_sides(side_of(stated("law")), side_of(other));
   const std::string said = all_of(result.differences);
   EXPECT_NE(said.find("bodies start elsewhere: another seed"), std::string::npos) << said;
-  EXPECT_NE(said.find("numbers law 1; against directional law at solid fraction 0.7000"), std::string::npos) << said;
+  EXPECT_NE(said.find("hash law 1; against directional law at solid fraction 0.7000"), std::string::npos) << said;
   EXPECT_NE(all_of(result.macro.at(0).result.left_out).find("reference has no such sample"), std::string::npos);
   const CompareResult reverse = compare_sides(side_of(other), side_of(stated("law")));
   EXPECT_NE(all_of(reverse.macro.at(0).result.left_out).find("sample 1: the candidate has no such sample"),

@@ -73,7 +73,7 @@ TEST(ReportMacro, NamesTheLawOfItsCurves) {
   report::RunData run;
   run.macro = curves_with(LawForm::directional);
   EXPECT_TRUE(has_text(report::macro_section(run), "directional law at solid fraction 0.7000"));
-  EXPECT_TRUE(has_text(report::macro_section(run), "mu = 0.3, taken with E = 500000 Pa; numbers numbers"));
+  EXPECT_TRUE(has_text(report::macro_section(run), "mu = 0.3, used with E = 500000 Pa; hash numbers"));
   run.macro = synthetic::macro();
   EXPECT_TRUE(has_text(report::macro_section(run), "not recorded"));
 }

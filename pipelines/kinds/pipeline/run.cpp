@@ -231,8 +231,8 @@ std::string console_summary(const PipelineSetup& setup, const PipelineResult& r)
     text +=
         fmt::format("macro{} against its resolved twin: {}, {} times fewer contact evaluations, {} times less time\n",
                     !multi_contact         ? ""
-                    : setup.measured_table ? ", law of all neighbours at once (measured above),"
-                                           : ", law of all neighbours at once (from the table),",
+                    : setup.measured_table ? ", multi-contact law (measured above),"
+                                           : ", multi-contact law (from the table),",
                     difference_text(*r.comparison), rounded(r.comparison->speedup_contact_evaluations),
                     rounded(r.comparison->speedup_seconds));
   if (multi_contact)
@@ -281,7 +281,7 @@ void check_pipeline(const Scene& scene, const std::string&, Findings& out) {
 NextSteps next_of(const report::RunData& run) {
   if (run.law_table)
     return {
-        "Take the law of all neighbours in a scene of your own, with error bars: `softgrain macrosim SCENE.toml "
+        "Take the multi-contact law in a scene of your own, with error bars: `softgrain macrosim SCENE.toml "
         "--law " +
             run.directory + "/law_table.toml --bands 20`.",
         "It is measured on a few packings: an hour's worth of them is in `results/law_table`, your own material by "
