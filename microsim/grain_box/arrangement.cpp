@@ -29,13 +29,16 @@ constexpr std::int64_t kTrials = 20000;  // per grain
 constexpr double kLowestDrawn = -0.99;   // of nu: scatter must not make a grain infinitely stiff in shear
 constexpr double kFirstStep = 1e-2;      // strain of the loose box per step
 constexpr double kDenserThanAny = 0.80;  // solid fraction at which a pack of these grains must long have jammed
-// A box that has not reached equilibrium after so many passes is close to jamming; what is left is small, and the least-work
-// solver finds the equilibrium of the box that is handed on.
+// A box that has not reached equilibrium after so many passes is close to jamming; what is left is small, and the
+// least-work solver finds the equilibrium of the box that is handed on.
 constexpr std::int64_t kLoosePasses = 6000;
-// Share of the first wanted pressure at which the box is handed on, reached in steps of kPressedStep: barely jammed
-// packs are nearly floppy, which costs a solver without inertia much and changes nothing in the end.
-constexpr double kHandOver = 0.2;
+// Share of the first wanted pressure up to which the box is pressed here, in steps of kPressedStep. Barely jammed packs
+// are nearly floppy: where they rearrange, a solver without inertia follows a long valley of energy and may not find
+// its end. For the same reason pressed states are relaxed further than loose ones.
+constexpr double kHandOver = 0.9;
 constexpr double kPressedStep = 3e-4;
+constexpr double kPressedTolerance = 1e-4;  // largest net force over mean contact force
+constexpr std::int64_t kPressedPasses = 60000;
 
 /// Normal numbers by Box and Muller, cut at three deviations.
 double cut_normal(RandomStream& random) {
@@ -260,10 +263,13 @@ CompactedPack compact_until_stress(const GrainBoxSpec& spec, GrainPack loose) {
     step *= 0.5;
   }
   const double enough = std::max(first_stress, kHandOver * spec.generation.pressures().front());
+  options.tolerance = kPressedTolerance;
+  options.max_passes = kPressedPasses;
+  DampedRelaxation<3> pressed(options);
   while (mean_wall_stress(s) < enough) {
     if (interrupt_requested()) throw Interrupted("interrupted while compacting; go on with --resume");
     shrink(s, kPressedStep);
-    relaxation.relax(s);
+    pressed.relax(s);
     ++out.steps;
   }
   out.loop_passes = s.cost.loop_passes;
