@@ -244,8 +244,9 @@ bool rattlers_turn(std::int64_t iteration) {
 }
 
 /// Whether a pack would be in balance but for a few grains, which every step of all grains knocks out of place again.
-bool loose_grains_hold_up(const LeastWorkResult& result, const PackForces& forces) {
-  if (result.iterations < kManySteps || forces.contacts == 0) return false;
+/// So it is without friction, which leaves grains looser.
+bool loose_grains_hold_up(const LeastWorkResult& result, const GrainPack& pack, const PackForces& forces) {
+  if (pack.friction > 0.0 || result.iterations < kManySteps || forces.contacts == 0) return false;
   const double rms = std::sqrt(dot(forces.force, forces.force) / static_cast<double>(forces.largest2.size()));
   return rms < kBalanced * forces.contact_force / static_cast<double>(forces.contacts);
 }
@@ -261,7 +262,8 @@ LeastWorkResult minimise_fast(PackProblem& problem, Unknowns& theta, const Least
   for (;; ++result.iterations) {
     stop_if_interrupted("looking for equilibrium");
     const PackForces& forces = stepper.forces();
-    if (rattlers_turn(result.iterations) && (result.worst_residual < kMixBelow || loose_grains_hold_up(result, forces)))
+    if (rattlers_turn(result.iterations) &&
+        (result.worst_residual < kMixBelow || loose_grains_hold_up(result, problem.pack(), forces)))
       stepper.relax_rattlers(residual_floor(scales, forces), options.residual_tolerance);
     result.worst_residual = worst_residual(forces, problem.pack(), problem.stride(), residual_floor(scales, forces));
     if (!std::isfinite(result.worst_residual)) {
