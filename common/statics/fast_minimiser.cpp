@@ -22,9 +22,7 @@ constexpr int kSearchPasses = 8;                 // per step
 constexpr std::int64_t kLinearIterations = 400;  // per step
 constexpr std::size_t kMemory = 5;               // steps that are mixed
 constexpr double kMixBelow = 0.1;                // worst residual from which steps are mixed
-constexpr std::int64_t kManySteps = 50;          // after which a few loose grains may be what holds up the pack
-constexpr double kBalanced = 1e-2;     // root mean square net force of a pack but for them, in mean contact forces
-constexpr double kFirstSpring = 1e-4;  // holding spring, in the stiffness of the grain's own contacts
+constexpr double kFirstSpring = 1e-4;            // holding spring, in the stiffness of the grain's own contacts
 constexpr double kLeastSpring = 1e-7;
 constexpr double kMostSpring = 1e-2;
 constexpr double kLinearReduction = 0.1;  // of the residual of a linear system, and its least value
@@ -243,14 +241,6 @@ bool rattlers_turn(std::int64_t iteration) {
   return iteration > 0 && (iteration / kTurn) % 2 == 0;
 }
 
-/// Whether a pack would be in balance but for a few grains, which every step of all grains knocks out of place again.
-/// So it is without friction, which leaves grains looser.
-bool loose_grains_hold_up(const LeastWorkResult& result, const GrainPack& pack, const PackForces& forces) {
-  if (pack.friction > 0.0 || result.iterations < kManySteps || forces.contacts == 0) return false;
-  const double rms = std::sqrt(dot(forces.force, forces.force) / static_cast<double>(forces.largest2.size()));
-  return rms < kBalanced * forces.contact_force / static_cast<double>(forces.contacts);
-}
-
 }  // namespace
 
 LeastWorkResult minimise_fast(PackProblem& problem, Unknowns& theta, const LeastWorkOptions& options) {
@@ -262,8 +252,7 @@ LeastWorkResult minimise_fast(PackProblem& problem, Unknowns& theta, const Least
   for (;; ++result.iterations) {
     stop_if_interrupted("looking for equilibrium");
     const PackForces& forces = stepper.forces();
-    if (rattlers_turn(result.iterations) &&
-        (result.worst_residual < kMixBelow || loose_grains_hold_up(result, problem.pack(), forces)))
+    if (rattlers_turn(result.iterations) && result.worst_residual < kMixBelow)
       stepper.relax_rattlers(residual_floor(scales, forces), options.residual_tolerance);
     result.worst_residual = worst_residual(forces, problem.pack(), problem.stride(), residual_floor(scales, forces));
     if (!std::isfinite(result.worst_residual)) {
