@@ -116,7 +116,7 @@ std::vector<SmallForm> small_forms() {
        with(multi_contact,
             {{"configuration=[" + plane + "," + two + "," + soft + "]", "calibrate.replicates=2", "variant=[]",
               "multi_contact.orientations=2", R"(plan=[{configuration="opposite-plane",depth=0.6,packings=5}])"}}),
-       3, false},
+       0, false},
       {"macro_vs_resolved.toml", "run",
        with(
            {"packing.polydispersity=4", "packing.trials=300", "packing.count=2", "macro.bodies=8", "macro.samples=2"},
