@@ -8,6 +8,7 @@
 #include <map>
 
 #include "common/core/error.h"
+#include "common/data/soft_particle_schema.h"
 
 namespace softgrain {
 
@@ -21,19 +22,12 @@ struct Quantity {
 /// Everything that must agree before two files belong to one ensemble.
 std::vector<Quantity> conditions(const Measurements& m) {
   const SoftParticleSpec& s = m.spec;
-  return {{"shell_radius", s.shell_radius},
-          {"E", s.youngs_modulus},
-          {"nu", s.poisson_ratio},
-          {"mu", s.friction},
-          {"density", s.density},
-          {"restitution", s.restitution},
-          {"exponent", s.exponent},
-          {"polydispersity", s.polydispersity},
-          {"rmax_over_shell", s.rmax_over_shell},
-          {"beta", s.beta},
-          {"trials", static_cast<double>(s.trials)},
-          {"shell_turns", m.shell_turns ? 1.0 : 0.0},
-          {"approach_speed", m.approach_speed}};
+  std::vector<Quantity> out;
+  for (const SoftParticleNumber& number : soft_particle_numbers()) out.push_back({number.scene_key, s.*number.value});
+  out.insert(out.end(), {{"trials", static_cast<double>(s.trials)},
+                         {"shell_turns", m.shell_turns ? 1.0 : 0.0},
+                         {"approach_speed", m.approach_speed}});
+  return out;
 }
 
 bool rotates(const Measurements& m) {

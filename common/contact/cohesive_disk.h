@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "common/contact/contact_state.h"
 #include "common/contact/coulomb_spring.h"
@@ -40,6 +41,10 @@ struct CohesiveDisk {
   /// a: unused, b: eta.
   [[nodiscard]] PairConstants pair_constants(const PairBodies& bodies) const {
     return {0.0, damping * std::sqrt(4.0 * normal * bodies.effective_mass())};
+  }
+  /// Duration of an impact under the spring alone, pi sqrt(m12/K_N) at any speed: without adhesion and damping.
+  [[nodiscard]] double impact_time(const PairBodies& bodies, double /*speed*/) const {
+    return std::numbers::pi * std::sqrt(bodies.effective_mass() / normal);
   }
   /// Gap up to which a pair interacts.
   [[nodiscard]] double reach() const { return adhesion > 0.0 ? range : 0.0; }

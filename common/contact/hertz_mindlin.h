@@ -62,6 +62,15 @@ struct HertzMindlin {
     return {root, k.damping * std::sqrt(bodies.effective_mass() * (root * k.inverse_d))};
   }
 
+  /// Duration of an undamped impact at this speed [s]: 4/5 B(2/5, 1/2) h/v with the largest overlap
+  /// h = (5/4 m12 v^2 D/sqrt(R12))^(2/5) (Hertz 1882; Landau and Lifshitz, Theory of Elasticity, section 9).
+  [[nodiscard]] double impact_time(const PairBodies& bodies, double speed) const {
+    constexpr double kShape = 2.9432751843247047;  // 4/5 B(2/5, 1/2)
+    const double stiffness = pair_constants(bodies).a * k.inverse_d;
+    const double overlap = std::pow(1.25 * bodies.effective_mass() * speed * speed / stiffness, 0.4);
+    return kShape * overlap / speed;
+  }
+
   /// Work of the elastic force from touch to this overlap [J]: 2/5 F h.
   [[nodiscard]] double stored_energy(double overlap, const PairConstants& constants) const {
     return 0.4 * constants.a * k.inverse_d * overlap * overlap * std::sqrt(overlap);

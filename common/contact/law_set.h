@@ -31,7 +31,8 @@ using AnyLaw =
                  CohesiveDisk<true, false>, CohesiveDisk<true, true>>;
 
 /// What every law is: traits, constants of a pair, and a force for a number or for several side by side; and what it
-/// says of itself is there.
+/// says of itself is there. impact_time(bodies, speed) bounds the time step: how long two bodies touch that meet at
+/// this speed [s], infinite where the stiffness alone bounds it.
 template <class Law>
 concept ContactLaw = std::is_same_v<const LawTraits, decltype(Law::traits)> &&
                      (Law::traits.needs_velocity || !Law::traits.has_tangential) &&
@@ -39,6 +40,7 @@ concept ContactLaw = std::is_same_v<const LawTraits, decltype(Law::traits)> &&
                               const ContactState<Law::traits.dimension == 2 ? 2 : 3>& state,
                               MultiContactSum<Law::traits.dimension == 2 ? 2 : 3>& sum) {
   { law.pair_constants(bodies) } -> std::same_as<PairConstants>;
+  { law.impact_time(bodies, 1.0) } -> std::same_as<double>;
   { law.evaluate(state) } -> std::same_as<ContactResponse<Law::traits.dimension == 2 ? 2 : 3>>;
   requires !Law::traits.has_onset || requires {
     { law.onset(bodies) } -> std::same_as<double>;

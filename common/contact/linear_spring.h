@@ -32,6 +32,11 @@ struct LinearSpring {
     return {0.0, 2.0 * damping * std::sqrt(normal * bodies.effective_mass())};
   }
 
+  /// Duration of an undamped impact, pi sqrt(m12/kn) at any speed [s].
+  [[nodiscard]] double impact_time(const PairBodies& bodies, double /*speed*/) const {
+    return std::numbers::pi * std::sqrt(bodies.effective_mass() / normal);
+  }
+
   /// Work of the elastic force from touch to this overlap [J].
   [[nodiscard]] double stored_energy(double overlap, const PairConstants&) const {
     return 0.5 * normal * overlap * overlap;

@@ -8,6 +8,7 @@
 #include "common/contact/contact_state.h"
 #include "common/contact/coulomb_spring.h"
 #include "common/core/law_range.h"
+#include "common/core/limits.h"
 
 namespace softgrain {
 
@@ -57,6 +58,8 @@ struct SoftContact {
   [[nodiscard]] PairConstants pair_constants(const PairBodies& bodies) const {
     return {reference_radius(bodies), 2.0 * damping * std::sqrt(bodies.effective_mass())};
   }
+  /// No limit: steps of fitted laws are bounded by their stiffness alone.
+  [[nodiscard]] double impact_time(const PairBodies& /*bodies*/, double /*speed*/) const { return kInfinity; }
   /// Overlap below which the pair cannot interact [m].
   [[nodiscard]] double onset(const PairBodies& bodies) const { return delta * reference_radius(bodies); }
 

@@ -12,6 +12,7 @@
 #include "common/contact/coulomb_spring.h"
 #include "common/contact/multi_contact_form.h"
 #include "common/core/law_range.h"
+#include "common/core/limits.h"
 #include "common/core/monotone_curve.h"
 
 namespace softgrain {
@@ -71,6 +72,8 @@ struct SoftMultiContact {
 
   [[nodiscard]] SoftSides soft_sides() const { return {i_is_soft, j_is_soft}; }
 
+  /// No limit: steps of fitted laws are bounded by their stiffness alone.
+  [[nodiscard]] double impact_time(const PairBodies& /*bodies*/, double /*speed*/) const { return kInfinity; }
   /// {w, m} of the soft body; of soft-soft pairs those of i, the ones of j follow from the inverse ratio.
   [[nodiscard]] PairConstants pair_constants(const PairBodies& bodies) const {
     if (i_is_soft && j_is_soft)

@@ -1,6 +1,5 @@
 #include "common/data/card_text.h"
-#include "common/core/limits.h"
-#include "common/io/poisson_range.h"
+#include "common/data/soft_particle_schema.h"
 #include "common/io/text_encoding.h"
 #include "common/packing/grading_scene.h"
 
@@ -49,32 +48,6 @@ std::optional<Extrapolation> read_beyond(const SceneTable& table) {
 
 namespace {
 
-/// A number of the soft particle, its range and what it is; Rs and E are always known.
-struct SpecLine {
-  const char* key;
-  double SoftParticleSpec::*value;
-  Unit unit;
-  Range range;
-  const char* meaning;
-  bool always = false;
-};
-
-const std::vector<SpecLine>& spec_lines() {
-  using S = SoftParticleSpec;
-  static const std::vector<SpecLine> lines{
-      {"shell_radius", &S::shell_radius, Unit::length, Range::positive(), "Rs [m]", true},
-      {"youngs_modulus", &S::youngs_modulus, Unit::pressure, Range::positive(), "E [Pa]", true},
-      {"poisson_ratio", &S::poisson_ratio, Unit::none, kPoissonRange, "nu"},
-      {"friction", &S::friction, Unit::none, Range::not_negative(), "mu"},
-      {"density", &S::density, Unit::density, Range::positive(), "[kg/m^3]"},
-      {"restitution", &S::restitution, Unit::none, Range::closed(0.0, 1.0), ""},
-      {"exponent", &S::exponent, Unit::none, Range::any(), "b of P(r) ~ r^-b"},
-      {"polydispersity", &S::polydispersity, Unit::none, Range{1.0, kInfinity, false, false}, "rmax/rmin"},
-      {"rmax_over_shell", &S::rmax_over_shell, Unit::none, Range{0.0, 1.0, true, false}, "rmax/Rs"},
-      {"beta", &S::beta, Unit::none, Range::positive(), "volume of drawn grains over volume of the shell"}};
-  return lines;
-}
-
 /// Inline table of lines "key = value".
 std::string inline_table(const std::string& lines) {
   std::string text = "{";
@@ -87,7 +60,7 @@ std::string inline_table(const std::string& lines) {
 std::string spec_text(const SoftParticleSpec& s) {
   std::string text;
   const auto out = std::back_inserter(text);
-  for (const SpecLine& line : spec_lines()) {
+  for (const SoftParticleNumber& line : soft_particle_numbers()) {
     const std::string meaning = *line.meaning == '\0' ? "" : std::string("  # ") + line.meaning;
     if (is_known(s.*line.value)) fmt::format_to(out, "{} = {}{}\n", line.key, real(s.*line.value), meaning);
   }
@@ -103,7 +76,7 @@ std::string spec_text(const SoftParticleSpec& s) {
 SoftParticleSpec read_spec_text(const SceneTable& table, bool may_be_unknown) {
   SoftParticleSpec s = unknown_soft_particle(0.0, 0.0);
   s.sizes = read_sizes(table, "sizes", {"exponent"});
-  for (const SpecLine& line : spec_lines())
+  for (const SoftParticleNumber& line : soft_particle_numbers())
     if (line.always || !(may_be_unknown || (s.sizes && line.value == &SoftParticleSpec::exponent)) ||
         table.has(line.key))
       s.*line.value = table.number(line.key, line.unit, line.range);

@@ -10,7 +10,7 @@
 #include "common/core/error.h"
 #include "common/data/force_curve_rows.h"
 #include "common/data/force_scale.h"
-#include "common/io/poisson_range.h"
+#include "common/data/soft_particle_schema.h"
 
 namespace softgrain {
 
@@ -163,12 +163,13 @@ SoftParticleSpec spec_of(const CsvFile& file, const ForceCurveOptions& options) 
         ": E of the grains is needed to make the law dimensionless: --modulus \"0.5 MPa\", or a comment \"# E "
         "= 0.5 MPa\" (a law used with the same E gives back the measured forces)");
   SoftParticleSpec spec = unknown_soft_particle(*radius, *modulus);
-  const auto take = [&](double& value, const CsvNames& names, Unit unit, const Range& range) {
-    value = file.quantity(names, unit, range).value_or(value);
+  const auto take = [&](double SoftParticleSpec::*value, const CsvNames& names) {
+    const SoftParticleNumber& number = soft_particle_number(value);
+    spec.*value = file.quantity(names, number.unit, number.range).value_or(spec.*value);
   };
-  take(spec.poisson_ratio, kPoisson, Unit::none, kPoissonRange);
-  take(spec.friction, kFriction, Unit::none, Range::not_negative());
-  take(spec.density, kDensity, Unit::density, Range::positive());
+  take(&SoftParticleSpec::poisson_ratio, kPoisson);
+  take(&SoftParticleSpec::friction, kFriction);
+  take(&SoftParticleSpec::density, kDensity);
   return spec;
 }
 
@@ -193,28 +194,24 @@ void add_secant_points(ForceCurve& sample, double angle_deg) {
   all.insert(all.end(), added.begin(), added.end());
 }
 
-struct SpecName {
-  const char* name;
-  double SoftParticleSpec::*value;
-};
-constexpr SpecName kSaid[] = {{"Rs", &SoftParticleSpec::shell_radius},
-                              {"E", &SoftParticleSpec::youngs_modulus},
-                              {"nu", &SoftParticleSpec::poisson_ratio},
-                              {"mu", &SoftParticleSpec::friction},
-                              {"density", &SoftParticleSpec::density}};
+/// What files of an experiment say of the soft particle.
+constexpr double SoftParticleSpec::*kSaid[] = {&SoftParticleSpec::shell_radius, &SoftParticleSpec::youngs_modulus,
+                                               &SoftParticleSpec::poisson_ratio, &SoftParticleSpec::friction,
+                                               &SoftParticleSpec::density};
 
 void require_same(const std::string& a, const std::string& b, const SoftParticleSpec& s, const SoftParticleSpec& t) {
-  for (const SpecName& n : kSaid)
-    if (is_known(s.*n.value) && is_known(t.*n.value) && s.*n.value != t.*n.value)
-      throw InputError(fmt::format("{} and {}: {} differs: {} and {}", a, b, n.name, s.*n.value, t.*n.value));
+  for (double SoftParticleSpec::*n : kSaid)
+    if (is_known(s.*n) && is_known(t.*n) && s.*n != t.*n)
+      throw InputError(
+          fmt::format("{} and {}: {} differs: {} and {}", a, b, soft_particle_number(n).symbol, s.*n, t.*n));
 }
 
 /// What one file says holds for all.
 void share_spec(std::vector<ForceCurves>& curves) {
-  for (const SpecName& n : kSaid)
+  for (double SoftParticleSpec::*n : kSaid)
     for (const ForceCurves& from : curves)
       for (ForceCurves& to : curves)
-        if (!is_known(to.spec.*n.value)) to.spec.*n.value = from.spec.*n.value;
+        if (!is_known(to.spec.*n)) to.spec.*n = from.spec.*n;
 }
 
 }  // namespace
@@ -273,8 +270,8 @@ std::vector<ForceCurves> read_force_curve_files(const std::vector<std::string>& 
       if (!taken.insert(s.name).second) throw InputError(path + ": sample \"" + s.name + "\" was read before");
       same->samples.push_back(std::move(s));
     }
-    for (const SpecName& n : kSaid)
-      if (!is_known(same->spec.*n.value)) same->spec.*n.value = one.spec.*n.value;
+    for (double SoftParticleSpec::*n : kSaid)
+      if (!is_known(same->spec.*n)) same->spec.*n = one.spec.*n;
     same->has_errors = same->has_errors && one.has_errors;
     same->remarks.insert(same->remarks.end(), one.remarks.begin(), one.remarks.end());
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/data/fields.h"
+#include "common/data/soft_particle_schema.h"
 #include "common/data/spec_io.h"
 
 namespace softgrain {
@@ -91,11 +92,8 @@ std::vector<PackingRun> read_runs(const h5::Group& root, std::size_t packings) {
 SoftParticleSpec unknown_soft_particle(double shell_radius, double youngs_modulus) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   SoftParticleSpec s;
-  for (double SoftParticleSpec::*value :
-       {&SoftParticleSpec::poisson_ratio, &SoftParticleSpec::friction, &SoftParticleSpec::density,
-        &SoftParticleSpec::restitution, &SoftParticleSpec::exponent, &SoftParticleSpec::polydispersity,
-        &SoftParticleSpec::rmax_over_shell, &SoftParticleSpec::beta})
-    s.*value = kUnknown;
+  for (const SoftParticleNumber& number : soft_particle_numbers())
+    if (!number.always) s.*number.value = kUnknown;
   s.trials = 0;
   s.shell_radius = shell_radius;
   s.youngs_modulus = youngs_modulus;

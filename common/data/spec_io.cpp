@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "common/core/error.h"
-#include "common/core/poisson_ratio.h"
 #include "common/data/columns.h"
 #include "common/data/fields.h"
+#include "common/data/soft_particle_schema.h"
 #include "common/io/provenance.h"
 #include "common/packing/grading_scene.h"
 
@@ -13,25 +13,6 @@ namespace softgrain {
 
 namespace {
 
-struct SpecField {
-  const char* name;
-  double SoftParticleSpec::*value;
-  Limits limits;
-};
-
-constexpr double kLeast = std::numeric_limits<double>::min();  ///< above zero
-constexpr double kAny = std::numeric_limits<double>::max();
-
-constexpr SpecField kFields[] = {{"shell_radius", &SoftParticleSpec::shell_radius, {kLeast, kAny}},
-                                 {"youngs_modulus", &SoftParticleSpec::youngs_modulus, {kLeast, kAny}},
-                                 {"poisson_ratio", &SoftParticleSpec::poisson_ratio, {kPoissonLowest, kPoissonHighest}},
-                                 {"friction", &SoftParticleSpec::friction, {0.0, kAny}},
-                                 {"density", &SoftParticleSpec::density, {kLeast, kAny}},
-                                 {"restitution", &SoftParticleSpec::restitution, {0.0, 1.0}},
-                                 {"exponent", &SoftParticleSpec::exponent, {-kAny, kAny}},
-                                 {"polydispersity", &SoftParticleSpec::polydispersity, {1.0, kAny}},
-                                 {"rmax_over_shell", &SoftParticleSpec::rmax_over_shell, {kLeast, 1.0}},
-                                 {"beta", &SoftParticleSpec::beta, {kLeast, kAny}}};
 constexpr const char* kUnits = "shell_radius m, youngs_modulus Pa, density kg/m^3, all others 1";
 
 }  // namespace
@@ -39,8 +20,8 @@ constexpr const char* kUnits = "shell_radius m, youngs_modulus Pa, density kg/m^
 void write_spec(const h5::Group& root, const SoftParticleSpec& spec) {
   const h5::Group group = root.create("spec");
   group.attribute("units", kUnits);
-  for (const SpecField& field : kFields)
-    if (is_known(spec.*field.value)) group.attribute(field.name, spec.*field.value);
+  for (const SoftParticleNumber& number : soft_particle_numbers())
+    if (is_known(spec.*number.value)) group.attribute(number.key, spec.*number.value);
   if (spec.sizes) group.attribute("sizes", spec.sizes->text());
   if (!packing_known(spec)) return;
   group.attribute("trials", spec.trials);
@@ -55,9 +36,9 @@ SoftParticleSpec read_spec(const h5::Group& root) {
     spec.sizes = stored_grading(group.text("sizes"));
     spec.exponent = std::numeric_limits<double>::quiet_NaN();
   }
-  for (const SpecField& field : kFields)
-    if (!spec.sizes || field.value != &SoftParticleSpec::exponent)
-      spec.*field.value = read_attribute(group, field.name, field.limits);
+  for (const SoftParticleNumber& number : soft_particle_numbers())
+    if (!spec.sizes || number.value != &SoftParticleSpec::exponent)
+      spec.*number.value = read_attribute(group, number.key, limits_of(number.range));
   spec.trials = group.integer("trials");
   if (spec.trials < 1) throw IoError("attribute 'trials' is " + std::to_string(spec.trials) + "; allowed: at least 1");
   if (!group.has_attribute("placement")) return spec;

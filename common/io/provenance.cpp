@@ -22,6 +22,7 @@ void write_provenance(const h5::Group& root, const Provenance& provenance) {
   group.attribute("threads", static_cast<std::int64_t>(provenance.threads));
   group.attribute("seed", static_cast<std::int64_t>(provenance.seed));
   group.attribute("command", provenance.command);
+  if (!provenance.kind.empty()) group.attribute("kind", provenance.kind);
   group.attribute("scene", provenance.scene);
 }
 

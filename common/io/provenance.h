@@ -18,6 +18,7 @@ struct Provenance {
   int threads = 1;
   std::uint64_t seed = 0;
   std::string command;  ///< command line as given
+  std::string kind;     ///< kind of the scene; empty where no scene was run. A summary says it itself
   std::string scene;    ///< whole scene, overrides applied
 };
 

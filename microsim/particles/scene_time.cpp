@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <sstream>
-#include <type_traits>
 
 #include "common/core/error.h"
 #include "common/dynamics/stable_step.h"
@@ -51,25 +49,10 @@ double largest_relative_speed(const System<D>& s, double end) {
   return spread(s.particles.velocity) + fall;
 }
 
-template <Tangential kTangential, bool kDamped>
-double impact_time(const HertzMindlin<kTangential, kDamped>& law, const PairBodies& bodies, double speed) {
-  const double stiffness = law.pair_constants(bodies).a * law.k.inverse_d;
-  const double overlap = std::pow(1.25 * bodies.effective_mass() * speed * speed / stiffness, 0.4);
-  return 0.8 * std::beta(0.4, 0.5) * overlap / speed;
-}
-/// Fitted laws are judged by their stiffness alone, the others are linear.
-template <class Law>
-double impact_time(const Law& law, const PairBodies& bodies, double) {
-  if constexpr (Law::traits.is_fitted)
-    return kForever;
-  else
-    return std::numbers::pi * std::sqrt(bodies.effective_mass() / law.normal);
-}
-
 /// Impact of two equal spheres of radius r and mass 1/inverse_mass under one law.
 double impact_time(const AnyLaw& any, double r, double inverse_mass, double speed) {
   const PairBodies bodies{r, r, inverse_mass, inverse_mass};
-  return std::visit([&](const auto& law) { return impact_time(law, bodies, speed); }, any);
+  return std::visit([&](const auto& law) { return law.impact_time(bodies, speed); }, any);
 }
 
 /// Time in which a gap as wide as the shortest attraction closes.

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
+
+#include "common/data/soft_particle_schema.h"
 
 namespace softgrain {
 
@@ -113,17 +116,17 @@ Differences differences(const MacroCurve& candidate, const MacroCurve& reference
 
 Differences differences(const SoftParticleSpec& candidate, const SoftParticleSpec& reference) {
   Differences out;
-  note(out.said, "Rs [m]", candidate.shell_radius, reference.shell_radius);
-  note(out.said, "E of the grains [Pa]", candidate.youngs_modulus, reference.youngs_modulus);
-  note_known(out.obstacles, out.said, "nu of the grains", candidate.poisson_ratio, reference.poisson_ratio);
-  note_known(out.obstacles, out.said, "mu of the grains", candidate.friction, reference.friction);
-  if (candidate.sizes || reference.sizes)
-    note_sizes(candidate, reference, out);
-  else
-    note_known(out.obstacles, out.said, "exponent of the radii", candidate.exponent, reference.exponent);
-  note_known(out.obstacles, out.said, "polydispersity", candidate.polydispersity, reference.polydispersity);
-  note_known(out.obstacles, out.said, "largest grain over Rs", candidate.rmax_over_shell, reference.rmax_over_shell);
-  note_known(out.obstacles, out.said, "packing, beta", candidate.beta, reference.beta);
+  for (const SoftParticleNumber& number : soft_particle_numbers()) {
+    const double a = candidate.*number.value;
+    const double b = reference.*number.value;
+    if (std::string_view(number.compared).empty()) continue;
+    if (number.always)
+      note(out.said, number.compared, a, b);
+    else if (number.value == &SoftParticleSpec::exponent && (candidate.sizes || reference.sizes))
+      note_sizes(candidate, reference, out);
+    else
+      note_known(out.obstacles, out.said, number.compared, a, b);
+  }
   if (candidate.trials == 0 || reference.trials == 0) return out;  // how one was packed is not known
   note(out.obstacles, "packing, trials", candidate.trials, reference.trials);
   note(out.said, "packing, placement", to_string(candidate.placement), to_string(reference.placement));

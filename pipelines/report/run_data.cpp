@@ -4,8 +4,10 @@
 #include <filesystem>
 
 #include "common/core/error.h"
+#include "common/io/flat_scene.h"
 #include "common/io/text_file.h"
 #include "pipelines/results/result_files.h"
+#include "pipelines/results/summary.h"
 
 namespace softgrain::report {
 namespace {
@@ -41,6 +43,18 @@ std::vector<ComparedCurves> load_scenes(const std::string& directory) {
 }
 
 }  // namespace
+
+std::string RunData::kind() const {
+  const auto known = summary_as<AnySummary>();
+  if (!known.kind.empty() || !known.provenance || known.provenance->scene.empty()) return known.kind;
+  try {
+    const auto keys = flat_scene(known.provenance->scene, "scene");
+    const auto at = keys.find("kind");
+    return at == keys.end() ? "" : at->second;
+  } catch (const InputError&) {
+    return "";
+  }
+}
 
 const PairLaw* RunData::law(PairKind kind) const {
   const PairLaw* found = card ? card->find(kind) : nullptr;

@@ -37,6 +37,9 @@ struct RunData {
   std::vector<MacroCurve> macro;
   std::vector<ComparedCurves> macro_scenes;
 
+  /// Kind of the scene, as the summary says; of summaries that do not, that of the scene in the provenance. Empty where
+  /// no scene was run.
+  [[nodiscard]] std::string kind() const;
   /// The summary, or what there is of it, as a record of a kind; members that it does not hold keep their defaults.
   template <class Summary>
   [[nodiscard]] Summary summary_as() const {

@@ -1,25 +1,12 @@
 // What to do next, at the end of every report, in two lines.
 #include <algorithm>
 
-#include "common/io/flat_scene.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/sections.h"
 #include "pipelines/results/set_summary.h"
 
 namespace softgrain::report {
 namespace {
-
-/// The key `kind` of the scene that the run was made from; empty without.
-std::string kind_of_scene(const AnySummary& summary) {
-  if (!summary.provenance || summary.provenance->scene.empty()) return "";
-  try {
-    const auto keys = flat_scene(summary.provenance->scene, "scene");
-    const auto at = keys.find("kind");
-    return at == keys.end() ? "" : at->second;
-  } catch (const InputError&) {
-    return "";
-  }
-}
 
 NextSteps steps_of_set(const RunData& run) {
   const auto set = run.summary_as<SetSummary>();
@@ -43,9 +30,9 @@ NextSteps steps_of_card(const RunData& run) {
           "More samples at the largest overlaps narrow a and b, more near the threshold delta."};
 }
 
-NextSteps steps_of(const RunData& run, const AnySummary& summary) {
+NextSteps steps_of(const RunData& run) {
   if (is_set(run)) return steps_of_set(run);
-  const std::string kind = kind_of_scene(summary);
+  const std::string kind = run.kind();
   for (const KindResults& one : results_of_kinds())
     if (kind == one.kind && one.next != nullptr) return one.next(run);
   return run.card ? steps_of_card(run) : NextSteps{};
@@ -76,7 +63,7 @@ std::string marked_up(const std::string& text) {
 
 std::string next_section(const RunData& run) {
   const auto summary = run.summary_as<AnySummary>();
-  NextSteps steps = steps_of(run, summary);
+  NextSteps steps = steps_of(run);
   if (steps.empty()) return "";
   if (!summary.status.empty() && !is_good(summary.status))
     steps.insert(steps.begin(),

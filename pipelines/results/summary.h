@@ -101,6 +101,7 @@ void fields(auto&& visit, Of<EngineUse> auto& s) {
 struct AnySummary {
   std::string status;  ///< empty: no summary
   std::string title;
+  std::string kind;  ///< of the scene; empty: none was run, or the summary is of a version that did not write it
   std::string command;
   std::string version;
   std::string commit;
@@ -116,6 +117,7 @@ struct AnySummary {
 void fields(auto&& visit, Of<AnySummary> auto& s) {
   visit("status", s.status);
   visit("title", s.title);
+  visit("kind", s.kind);
   visit("command", s.command);
   visit("version", s.version);
   visit("commit", s.commit);

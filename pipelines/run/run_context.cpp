@@ -191,6 +191,7 @@ Provenance RunContext::provenance(const Scene& scene, std::uint64_t used_seed) c
   p.threads = threads_;
   p.seed = used_seed;
   p.command = options_.command_line;
+  p.kind = scene.root().text("kind");
   p.scene = scene.text();
   return p;
 }
@@ -218,6 +219,7 @@ void RunContext::finish(nlohmann::json summary, const std::string& console) cons
 }
 
 void RunContext::finish(nlohmann::json summary, const Provenance& provenance, const std::string& console) const {
+  if (!provenance.kind.empty()) summary["kind"] = provenance.kind;
   summary["provenance"] = json_of(provenance);
   finish(std::move(summary), console);
 }

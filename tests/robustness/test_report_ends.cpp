@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "pipelines/report/run_data.h"
 #include "pipelines/run/run_files.h"
 #include "tests/support/every_kind.h"
 #include "tests/support/process.h"
@@ -14,11 +15,24 @@ namespace {
 using namespace softgrain;
 using namespace softgrain::test;
 
+/// The summary names the kind of the scene; where it does not, as in those of earlier versions, the scene in it does.
+void summary_says_its_kind(const KindRuns& runs) {
+  const std::string path = runs.out("a") + "/summary.json";
+  const std::string kind = kind_of(Scene::parse(runs.kind().text, "scene")).name;
+  auto summary = nlohmann::json::parse(read_text(path));
+  EXPECT_EQ(summary.value("kind", ""), kind);
+  report::RunData earlier;
+  summary.erase("kind");
+  earlier.summary = summary;
+  EXPECT_EQ(earlier.kind(), kind);
+}
+
 class ReportEnds : public ::testing::TestWithParam<KindScene> {};
 
 TEST_P(ReportEnds, EveryKindNamesItsMaterialAndSaysWhatToDoNext) {
   const KindRuns runs(GetParam());
   ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("a"))), GetParam().status));
+  summary_says_its_kind(runs);
   const std::string html = read_text(runs.out("a") + "/report.html");
   const auto has = [&](const std::string& words) { return html.find(words) != std::string::npos; };
   const std::size_t next = html.find("<h2>What to do next</h2>");

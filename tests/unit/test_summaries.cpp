@@ -55,7 +55,6 @@ InverseSummary inverse() {
 PowderSummary powder() {
   PowderSummary s;
   s.head = head();
-  s.kind = "cohesive-powder";
   s.samples.resize(1);
   PackSummary& pack = s.samples[0];
   pack.contacts.shares = {0.1, 0.9};

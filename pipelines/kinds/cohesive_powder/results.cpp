@@ -37,8 +37,8 @@ std::vector<RunValue> values_of(const report::RunData& run) {
   std::vector<RunValue> out;
   for (const auto& [name, key] : kBeside) {
     const auto powder = run.summary_as<PowderSummary>();
-    const auto one = powder.statistics.is_object() && powder.kind == "cohesive-powder" ? powder.statistics.find(key)
-                                                                                       : powder.statistics.end();
+    const auto one = powder.statistics.is_object() && run.kind() == "cohesive-powder" ? powder.statistics.find(key)
+                                                                                      : powder.statistics.end();
     if (one != powder.statistics.end()) {
       QuantityMean m = record_of<QuantityMean>(*one);
       if (m.samples > 1) m.error = m.deviation / std::sqrt(static_cast<double>(m.samples));

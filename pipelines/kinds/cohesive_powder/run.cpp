@@ -194,7 +194,6 @@ ExitStatus run_powder_ensemble(const PowderSetup& setup, const Run& run) {
   const PowderStructures structures = structures_of(samples, setup.structure);
   save_samples(run.path("powder.h5"), samples, structures, setup.spec, run.provenance);
   PowderSummary summary;
-  summary.kind = "cohesive-powder";
   summary.head.title = setup.title;
   summary.head.files = {{"powder.h5", run.path("powder.h5")}, {"report", run.path("report.html")}};
   summary.head.sizes = summaries_of(drawn_sizes(setup, run.seed));

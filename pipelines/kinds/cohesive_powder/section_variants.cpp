@@ -173,7 +173,7 @@ std::string links(const std::vector<VariantEntry>& entries) {
 
 std::string powder_variants_section(const RunData& run) {
   const auto summary = run.summary_as<PowderVariantsSummary>();
-  if (summary.kind != "cohesive-powder" || summary.variants.empty()) return "";
+  if (run.kind() != "cohesive-powder" || summary.variants.empty()) return "";
   const std::vector<VariantEntry>& entries = summary.variants;
   std::vector<std::string> figures;
   for (const char* quantity : {"Phi", "z"})

@@ -190,7 +190,6 @@ void fields(auto&& visit, Of<ConsolidationFit> auto& s) {
 
 struct PowderSummary {
   SummaryHead head;
-  std::string kind;
   std::vector<PackSummary> samples;
   std::vector<double> seconds;  ///< seconds of each sample
   nlohmann::json statistics;    ///< mean, deviation and number of every scalar over the samples at rest
@@ -202,7 +201,6 @@ struct PowderSummary {
 
 void fields(auto&& visit, Of<PowderSummary> auto& s) {
   fields(visit, s.head);
-  visit("kind", s.kind);
   visit("samples", s.samples, kLeftOut);
   visit("seconds", s.seconds);
   visit("statistics", s.statistics);
@@ -291,13 +289,11 @@ void fields(auto&& visit, Of<VariantEntry> auto& s) {
 
 struct PowderVariantsSummary {
   SummaryHead head;
-  std::string kind;
   std::vector<VariantEntry> variants;
 };
 
 void fields(auto&& visit, Of<PowderVariantsSummary> auto& s) {
   fields(visit, s.head);
-  visit("kind", s.kind);
   visit("variants", s.variants);
 }
 

@@ -95,7 +95,6 @@ ExitStatus run_powder_variants(const Scene& scene, const CommonOptions& options)
     write_tables(entries, context);
   }
   const std::uint64_t seed = context.seed(variants.front().setup.seed);
-  summary.kind = "cohesive-powder";
   summary.head = {usable ? RunStatus::good : RunStatus::not_usable,
                   scene.root().text("title", ""),
                   remarks_on(entries),

@@ -68,7 +68,6 @@ ExitStatus run_grain_box_scene(const Scene& scene, const CommonOptions& options)
   for (const GrainBoxResult& r : results) usable = usable && r.usable;
   nlohmann::json summary;
   summary["status"] = usable ? "good" : "not usable";
-  summary["kind"] = "grain-box";
   summary["title"] = setup.title;
   summary["packs"] = grain_boxes_json(results);
   if (const nlohmann::json over = arrangements_json(results); !over.empty()) summary["over_arrangements"] = over;

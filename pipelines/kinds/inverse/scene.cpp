@@ -11,8 +11,8 @@
 #include "calibrate/response_surface.h"
 #include "common/core/error.h"
 #include "common/data/force_curves.h"
+#include "common/data/soft_particle_schema.h"
 #include "common/io/csv_file.h"
-#include "common/io/poisson_range.h"
 
 namespace softgrain {
 
@@ -27,14 +27,18 @@ struct KnownParameter {
 };
 
 const std::array<KnownParameter, 7>& known_parameters() {
-  static const std::array<KnownParameter, 7> known{
-      {{"beta", Range::above(1.0), true, &SoftParticleSpec::beta},
-       {"trials", Range::closed(1.0, 1e9), true, nullptr},
-       {"mu", Range::not_negative(), false, &SoftParticleSpec::friction},
-       {"nu", kPoissonRange, false, &SoftParticleSpec::poisson_ratio},
-       {"rmax_over_shell", Range{0.0, 1.0, true, true}, false, &SoftParticleSpec::rmax_over_shell},
-       {"exponent", Range::above(1.0), false, &SoftParticleSpec::exponent},
-       {"polydispersity", Range::above(1.0), true, &SoftParticleSpec::polydispersity}}};
+  using S = SoftParticleSpec;
+  const auto drawn = [](double S::*value, bool logarithmic) {
+    const SoftParticleNumber& number = soft_particle_number(value);
+    return KnownParameter{number.scene_key, number.drawn, logarithmic, value};
+  };
+  static const std::array<KnownParameter, 7> known{{drawn(&S::beta, true),
+                                                    {"trials", Range::closed(1.0, 1e9), true, nullptr},
+                                                    drawn(&S::friction, false),
+                                                    drawn(&S::poisson_ratio, false),
+                                                    drawn(&S::rmax_over_shell, false),
+                                                    drawn(&S::exponent, false),
+                                                    drawn(&S::polydispersity, true)}};
   return known;
 }
 
@@ -105,9 +109,9 @@ void read_points(const SceneTable& t, InverseSetup& s) {
 
 /// What the file says of the grains is what the scene says, where it is not what is searched.
 void require_same_grains(const SceneTable& t, const SoftParticleSpec& file, const InverseSetup& s) {
-  for (const auto& [name, member] : {std::pair{"nu", &SoftParticleSpec::poisson_ratio},
-                                     {"mu", &SoftParticleSpec::friction},
-                                     {"density", &SoftParticleSpec::density}}) {
+  for (double SoftParticleSpec::*member :
+       {&SoftParticleSpec::poisson_ratio, &SoftParticleSpec::friction, &SoftParticleSpec::density}) {
+    const char* name = soft_particle_number(member).scene_key;
     const bool searched = std::any_of(s.search.begin(), s.search.end(),
                                       [name = std::string(name)](const SearchParameter& p) { return p.name == name; });
     const double said = file.*member;

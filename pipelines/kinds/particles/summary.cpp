@@ -170,7 +170,6 @@ ParticlesSummary summary_of(const ParticlesSceneOf<D>& scene, const ParticlesRes
                                 guard_remarks(scene.guards, result.guards, s),
                                 {}},
                        .reason = result.reason,
-                       .kind = "particles",
                        .dimension = D,
                        .particle_count = s.particles.grains,
                        .time = s.time,

@@ -58,7 +58,6 @@ void fields(auto&& visit, Of<PairSummary> auto& s) {
 struct ParticlesSummary {
   SummaryHead head;
   std::string reason;  ///< why it is not usable
-  std::string kind;
   int dimension = 3;
   std::int64_t particle_count = 0;
   double time = 0.0;  ///< reached [s]
@@ -80,7 +79,6 @@ struct ParticlesSummary {
 void fields(auto&& visit, Of<ParticlesSummary> auto& s) {
   fields(visit, s.head);
   visit("reason", s.reason, kLeftOut);
-  visit("kind", s.kind);
   visit("dimension", s.dimension);
   visit("particle_count", s.particle_count);
   visit("time", s.time);

@@ -9,7 +9,7 @@
 
 #include "common/core/error.h"
 #include "common/core/solid_sphere.h"
-#include "common/io/poisson_range.h"
+#include "common/data/soft_particle_schema.h"
 #include "common/packing/grading_scene.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 
@@ -17,12 +17,17 @@ namespace softgrain {
 
 namespace {
 
+/// A number of the soft particle that packings can be made with; what the scene does not give stays as it is.
+void read_number(const SceneTable& t, double SoftParticleSpec::*value, SoftParticleSpec& spec) {
+  const SoftParticleNumber& number = soft_particle_number(value);
+  spec.*value = t.number(number.scene_key, number.unit, number.drawn, spec.*value);
+}
+
 void read_material(const SceneTable& t, SoftParticleSpec& spec) {
-  spec.youngs_modulus = t.number("E", Unit::pressure, Range::positive(), spec.youngs_modulus);
-  spec.poisson_ratio = t.number("nu", Unit::none, kPoissonRange, spec.poisson_ratio);
-  spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
-  spec.density = t.number("density", Unit::density, Range::positive(), spec.density);
-  spec.restitution = t.number("restitution", Unit::none, Range::closed(0.0, 1.0), spec.restitution);
+  for (double SoftParticleSpec::*value :
+       {&SoftParticleSpec::youngs_modulus, &SoftParticleSpec::poisson_ratio, &SoftParticleSpec::friction,
+        &SoftParticleSpec::density, &SoftParticleSpec::restitution})
+    read_number(t, value, spec);
 }
 
 void read_largest(const SceneTable& t, SoftParticleSpec& spec) {
@@ -37,7 +42,7 @@ void read_largest(const SceneTable& t, SoftParticleSpec& spec) {
                               " m) must be larger than the largest grain");
     spec.rmax_over_shell = rmax / spec.shell_radius;
   } else {
-    spec.rmax_over_shell = t.number("rmax_over_shell", Unit::none, Range{0.0, 1.0, true, true}, spec.rmax_over_shell);
+    read_number(t, &SoftParticleSpec::rmax_over_shell, spec);
   }
 }
 
@@ -54,16 +59,16 @@ void set_size_limits(const SceneTable& t, SoftParticleSpec& spec) {
 }
 
 void read_packing(const SceneTable& t, SoftParticleSpec& spec) {
-  spec.shell_radius = t.number("shell_radius", Unit::length, Range::positive(), spec.shell_radius);
+  read_number(t, &SoftParticleSpec::shell_radius, spec);
   spec.sizes = read_sizes(t, "sizes", {"exponent", "polydispersity", "rmax", "rmax_over_shell"});
   if (spec.sizes) {
     set_size_limits(t, spec);
   } else {
-    spec.exponent = t.number("exponent", Unit::none, Range::above(1.0), spec.exponent);
-    spec.polydispersity = t.number("polydispersity", Unit::none, Range::above(1.0), spec.polydispersity);
+    read_number(t, &SoftParticleSpec::exponent, spec);
+    read_number(t, &SoftParticleSpec::polydispersity, spec);
     read_largest(t, spec);
   }
-  spec.beta = t.number("beta", Unit::none, Range::above(1.0), spec.beta);
+  read_number(t, &SoftParticleSpec::beta, spec);
   spec.trials = t.count("trials", 1, 1000000000, spec.trials);
   spec.placement =
       t.choice("placement", {"trials", "voids"}, "trials") == "voids" ? Placement::voids : Placement::trials;
