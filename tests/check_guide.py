@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Holds the guide to the sources: every key that a reader of scenes asks for stands in a table of the page of its kind, every
-key in those tables is asked for by a reader, every link and picture is there. Results that are kept are small, or named as large.
+key in those tables is asked for by a reader, every link and picture is there, and every source that the pages for developers
+name. Results that are kept are small, or named as large.
 
 Keys are found in the sources by the calls that read them (t.number("key", ...), read_range(t, "key", ...)); which page a
 source belongs to is written down below, and a source that reads scenes and is in no list is an error.
@@ -138,6 +139,22 @@ def check_links(root):
     return problems
 
 
+# Pages that name files of the tree, and from where they name them.
+DEVELOPERS = ("developing.md", "decisions.md", "style.md")
+FOLDERS = ("", "pipelines")
+PATH = re.compile(r"`([\w.-]+(?:/[\w.-]+)+)`")
+
+
+def check_paths(root):
+    problems = []
+    for page in (root / GUIDE / name for name in DEVELOPERS):
+        for path in PATH.findall(page.read_text()) if page.exists() else []:
+            there = [root / folder / (path + ending) for folder in FOLDERS for ending in ("", ".h")]
+            if "NAME" not in path and not any(p.exists() for p in there):
+                problems.append(f"{page.relative_to(root)}: `{path}` is not in the tree")
+    return problems
+
+
 LARGEST_RESULT = 200_000  # bytes
 
 
@@ -154,7 +171,7 @@ def check_sizes(root, kept=None):
 
 
 def check(root):
-    problems = check_sources(root) + check_links(root) + check_sizes(root)
+    problems = check_sources(root) + check_links(root) + check_paths(root) + check_sizes(root)
     for name, page in PAGES.items():
         problems += check_page(root, name, *page)
     return problems
@@ -182,6 +199,8 @@ def self_test():
         page.write_text("[x](nowhere.md) [y](p.md#z) [z](https://example.org)")
         (root / "README.md").write_text("")
         assert check_links(root) == [f"{GUIDE}/p.md: nowhere.md is not there"]
+        (root / GUIDE / "style.md").write_text("`pipelines/guide/p.md`, `guide/p.md`, `kinds/NAME`, `common/gone.h` and `a.cpp`")
+        assert check_paths(root) == [f"{GUIDE}/style.md: `common/gone.h` is not in the tree"], check_paths(root)
         (root / "pipelines/new.cpp").write_text('int f(const SceneTable& t) { return t.flag("new", true); }')
         assert "pipelines/new.cpp reads scenes" in check_sources(root)[0]
 

@@ -192,10 +192,10 @@ std::vector<double> noted(const Table& table, const std::string& key, Unit unit,
 }  // namespace
 
 double SceneTable::number(const std::string& key, Unit unit, const Range& range) const {
-  return noted(
-      *impl_, key, unit, range,
-      value_of(
-          *impl_, key, [&](const toml::node& n) { return number_of(*impl_, key, n, unit, range); }, allowed_value(range)));
+  return noted(*impl_, key, unit, range,
+               value_of(
+                   *impl_, key, [&](const toml::node& n) { return number_of(*impl_, key, n, unit, range); },
+                   allowed_value(range)));
 }
 double SceneTable::number(const std::string& key, Unit unit, const Range& range, double fallback) const {
   return noted(*impl_, key, unit, range,

@@ -15,8 +15,8 @@
 #include "common/core/solid_sphere.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/verlet.h"
-#include "common/neighbours/verlet_list.h"
 #include "common/neighbours/spatial_order.h"
+#include "common/neighbours/verlet_list.h"
 #include "microsim/particles/xyzr_file.h"
 
 namespace softgrain::bench {

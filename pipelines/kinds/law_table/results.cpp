@@ -43,7 +43,8 @@ std::string table_line(const LawTableEntry& entry) {
 std::vector<HeadLine> lines_of(const RunData& run) {
   std::vector<HeadLine> lines;
   if (run.law_table)
-    for (const LawTableEntry& entry : run.law_table->entries) lines.emplace_back("Multi-contact law", table_line(entry));
+    for (const LawTableEntry& entry : run.law_table->entries)
+      lines.emplace_back("Multi-contact law", table_line(entry));
   return lines;
 }
 

@@ -52,8 +52,8 @@ std::string other_fines(const MaterialModel& model, const MacroSpec& spec);
 /// changes; by density phi_J is `onset` and p0 follows. Both forms of the card.
 MacroCurve mean_field(const CellCard& card, const MacroCurve& truth, double pressure, double onset);
 
-/// Stresses times [x_t/x_s]^n: the state x of the truth over that of the substitute at equal strains, both from the same
-/// start pressure.
+/// Stresses times [x_t/x_s]^n: the state x of the truth over that of the substitute at equal strains, both from the
+/// same start pressure.
 void map_by_state(const CellCard& card, const MacroCurve& truth, double pressure, MacroCurve& substitute);
 
 /// phi_J of the mixture by the card: 1/(1 + e), e the pores of fines and coarse grains over their solid volume.
