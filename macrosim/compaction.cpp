@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/time_step.h"
 #include "common/dynamics/verlet.h"

@@ -2,8 +2,8 @@
 
 #include <optional>
 
+#include "common/core/cost.h"
 #include "common/core/error.h"
-#include "common/core/stopwatch.h"
 #include "common/dynamics/contact_watch.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/residual.h"

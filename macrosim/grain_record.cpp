@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "common/dynamics/force_pass.h"
 
 namespace softgrain {

@@ -1,6 +1,6 @@
 #include "macrosim/hard_bodies.h"
 
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 
 namespace softgrain {
 

@@ -1,8 +1,8 @@
 // All bodies of a macro packing as hard grains in their box: what preparations move and press.
 #pragma once
 
-#include "common/core/stopwatch.h"
-#include "common/dynamics/contact_virial.h"
+#include "common/core/cost.h"
+#include "common/dynamics/contact_watch.h"
 #include "macrosim/box.h"
 #include "macrosim/macro_packing.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/core/error.h"
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "common/neighbours/spatial_order.h"
 #include "macrosim/hard_bodies.h"
 #include "macrosim/preparation.h"

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "common/core/error.h"
+#include "common/core/particles.h"
 #include "common/core/random.h"
-#include "common/core/solid_sphere.h"
 #include "common/neighbours/verlet_list.h"
 
 namespace softgrain {

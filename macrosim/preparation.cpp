@@ -7,7 +7,7 @@
 #include <string>
 
 #include "common/core/error.h"
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "common/io/interrupt.h"
 #include "macrosim/hard_bodies.h"

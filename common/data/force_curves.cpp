@@ -10,7 +10,7 @@
 #include "common/core/error.h"
 #include "common/data/force_curve_rows.h"
 #include "common/data/force_scale.h"
-#include "common/io/poisson_range.h"
+#include "common/io/scene.h"
 
 namespace softgrain {
 

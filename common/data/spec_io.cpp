@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
-#include "common/core/poisson_ratio.h"
+#include "common/core/material.h"
 #include "common/data/columns.h"
 #include "common/data/fields.h"
 #include "common/io/provenance.h"

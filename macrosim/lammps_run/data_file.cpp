@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/core/error.h"
-#include "common/io/atomic_rename.h"
+#include "common/io/file_safety.h"
 
 namespace softgrain::lammps {
 

@@ -8,7 +8,6 @@
 #include <type_traits>
 
 #include "common/core/error.h"
-#include "common/dynamics/stable_step.h"
 #include "common/dynamics/time_step.h"
 
 namespace softgrain {

@@ -1,7 +1,7 @@
 // What to do next, at the end of every report, in two lines.
 #include <algorithm>
 
-#include "common/io/flat_scene.h"
+#include "common/io/scene.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/sections.h"
 #include "pipelines/results/set_summary.h"

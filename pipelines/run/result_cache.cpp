@@ -7,7 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/data/spec_io.h"
-#include "common/io/file_seal.h"
+#include "common/io/file_safety.h"
 #include "common/io/text_file.h"
 
 namespace softgrain {

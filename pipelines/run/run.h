@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/core/stopwatch.h"
+#include "common/core/cost.h"
 #include "pipelines/run/run_context.h"
 #include "pipelines/run/task_store.h"
 

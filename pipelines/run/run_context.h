@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "common/core/error.h"
-#include "common/io/directory_lock.h"
+#include "common/io/file_safety.h"
+#include "common/io/progress.h"
 #include "common/io/provenance.h"
-#include "common/io/run_log.h"
 #include "common/io/scene.h"
 #include "common/state/checkpoint.h"
 

@@ -2,8 +2,8 @@
 
 #include <ctime>
 
-#include "common/core/one_thread.h"
-#include "common/core/stopwatch.h"
+#include "common/core/cost.h"
+#include "common/core/parallel_tasks.h"
 
 namespace softgrain {
 

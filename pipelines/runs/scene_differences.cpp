@@ -8,8 +8,8 @@
 #include <set>
 
 #include "common/core/error.h"
-#include "common/io/flat_scene.h"
 #include "common/io/hdf5_file.h"
+#include "common/io/scene.h"
 #include "common/io/text_file.h"
 
 namespace softgrain {

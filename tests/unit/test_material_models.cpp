@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/core/limits.h"
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "macrosim/grain_record.h"
 #include "pipelines/kinds/material_models/models.h"
 #include "pipelines/kinds/material_models/scores.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
-#include "common/io/flat_scene.h"
+#include "common/io/scene.h"
 #include "pipelines/runs/run_plan.h"
 
 namespace softgrain {

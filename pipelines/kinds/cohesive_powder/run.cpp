@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "common/core/cost.h"
 #include "common/core/error.h"
 #include "common/core/parallel_tasks.h"
-#include "common/core/stopwatch.h"
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
 #include "common/io/text_file.h"

@@ -12,7 +12,7 @@
 #include "common/core/error.h"
 #include "common/data/force_curves.h"
 #include "common/io/csv_file.h"
-#include "common/io/poisson_range.h"
+#include "common/io/scene.h"
 
 namespace softgrain {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "calibrate/rod_packing.h"
-#include "common/core/solid_sphere.h"
-#include "common/packing/grading_parts.h"
+#include "common/core/particles.h"
+#include "common/packing/grading.h"
 #include "macrosim/macro_packing.h"
 #include "macrosim/preparation.h"
 #include "pipelines/kinds/macro/stages.h"

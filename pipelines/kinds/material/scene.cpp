@@ -6,9 +6,9 @@
 #include <numeric>
 #include <set>
 
+#include "common/core/cost.h"
 #include "common/core/error.h"
-#include "common/core/stopwatch.h"
-#include "common/io/poisson_range.h"
+#include "common/io/scene.h"
 #include "common/packing/grading_scene.h"
 #include "macrosim/preparation.h"
 #include "microsim/particles/scene_memory.h"

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "common/core/error.h"
-#include "microsim/particles/frame_contacts.h"
 #include "microsim/particles/trajectory.h"
 #include "pipelines/kinds/particles/results.h"
 

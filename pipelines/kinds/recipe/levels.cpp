@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "common/core/limits.h"
-#include "common/core/solid_sphere.h"
-#include "common/packing/grading_parts.h"
+#include "common/core/particles.h"
+#include "common/packing/grading.h"
 
 namespace softgrain {
 

@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "common/core/error.h"
-#include "common/core/solid_sphere.h"
-#include "common/io/poisson_range.h"
+#include "common/core/particles.h"
+#include "common/io/scene.h"
 #include "common/packing/grading_scene.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 
