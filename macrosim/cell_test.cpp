@@ -9,7 +9,7 @@
 #include "common/core/cost.h"
 #include "common/core/error.h"
 #include "common/io/text_file.h"
-#include "macrosim/grain_record.h"
+#include "macrosim/body_contacts.h"
 #include "macrosim/staged_test.h"
 
 namespace softgrain {

@@ -11,11 +11,9 @@
 #include "common/dynamics/verlet.h"
 #include "common/io/interrupt.h"
 #include "common/neighbours/verlet_list.h"
-#include "macrosim/hard_bodies.h"
 #include "macrosim/placed_spheres.h"
 #include "macrosim/preparation.h"
 #include "macrosim/pressed_box.h"
-#include "macrosim/pressing.h"
 
 namespace softgrain {
 

@@ -8,10 +8,9 @@
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/residual.h"
 #include "macrosim/body_contacts.h"
-#include "macrosim/grain_record.h"
 #include "macrosim/pressed_box.h"
 #include "macrosim/staged_test.h"
-#include "macrosim/twin_motion.h"
+#include "macrosim/twin_places.h"
 
 namespace softgrain {
 

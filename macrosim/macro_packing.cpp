@@ -7,7 +7,6 @@
 #include "common/core/error.h"
 #include "common/core/particles.h"
 #include "common/neighbours/spatial_order.h"
-#include "macrosim/hard_bodies.h"
 #include "macrosim/preparation.h"
 
 namespace softgrain {

@@ -11,9 +11,9 @@
 
 namespace softgrain {
 
-/// F_perc, the largest threshold at which the pairs with |F| >= F_perc join a disk to its own periodic image, in the
-/// units of the sample: along an axis when the image lies any number of periods away along it, whatever the other axis
-/// does. Distant pairs count. None when no threshold does.
+/// How strong the chains are that span a powder: F_perc, the largest threshold at which the pairs with |F| >= F_perc
+/// join a disk to its own periodic image, in the units of the sample: along an axis when the image lies any number of
+/// periods away along it, whatever the other axis does. Distant pairs count. None when no threshold does.
 struct PowderPercolation {
   std::optional<double> x;
   std::optional<double> y;

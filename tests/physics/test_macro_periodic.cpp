@@ -11,7 +11,6 @@
 #include "macrosim/body_contacts.h"
 #include "macrosim/compression.h"
 #include "macrosim/constructed_packing.h"
-#include "macrosim/hard_bodies.h"
 #include "macrosim/preparation.h"
 #include "macrosim/pressed_box.h"
 #include "tests/support/multi_contact.h"

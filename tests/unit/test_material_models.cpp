@@ -5,7 +5,7 @@
 
 #include "common/core/limits.h"
 #include "common/core/particles.h"
-#include "macrosim/grain_record.h"
+#include "macrosim/body_contacts.h"
 #include "pipelines/kinds/material_models/models.h"
 #include "pipelines/kinds/material_models/scores.h"
 

@@ -8,7 +8,7 @@
 
 #include "calibrate/response_prediction.h"
 #include "common/core/error.h"
-#include "macrosim/grain_record.h"
+#include "macrosim/body_contacts.h"
 #include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/material/results.h"
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <map>
 
-#include "macrosim/grain_record.h"
+#include "macrosim/body_contacts.h"
 #include "pipelines/kinds/macro/results.h"
 #include "pipelines/kinds/material/results.h"
 #include "pipelines/kinds/material/summary.h"
