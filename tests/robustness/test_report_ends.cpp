@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <set>
 
-#include "pipelines/run/run_files.h"
+#include "pipelines/run/run_context.h"
 #include "tests/support/every_kind.h"
 #include "tests/support/process.h"
 #include "tests/support/program.h"

@@ -13,7 +13,6 @@
 #include "microsim/filled_shell.h"
 #include "microsim/multi_contact_arrangements.h"
 #include "pipelines/kinds/hierarchy/level.h"
-#include "pipelines/kinds/hierarchy/level_errors.h"
 #include "tests/support/multi_contact.h"
 #include "tests/support/synthetic_multi_contact.h"
 

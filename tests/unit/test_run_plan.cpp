@@ -5,7 +5,7 @@
 
 #include "common/core/error.h"
 #include "common/io/scene.h"
-#include "pipelines/runs/run_plan.h"
+#include "pipelines/runs/run_set.h"
 
 namespace softgrain {
 namespace {

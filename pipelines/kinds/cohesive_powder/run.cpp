@@ -13,12 +13,9 @@
 #include "microsim/powder/powder_state_io.h"
 #include "pipelines/kinds/cohesive_powder/consolidation.h"
 #include "pipelines/kinds/cohesive_powder/output.h"
-#include "pipelines/kinds/cohesive_powder/results.h"
 #include "pipelines/kinds/cohesive_powder/summary.h"
 #include "pipelines/kinds/cohesive_powder/variants.h"
-#include "pipelines/kinds/cohesive_powder/variants_run.h"
 #include "pipelines/run/run.h"
-#include "pipelines/run/sample_statistics.h"
 
 namespace softgrain {
 

@@ -11,8 +11,7 @@
 #include "common/core/particles.h"
 #include "common/packing/void_filling.h"
 #include "microsim/filled_shell.h"
-#include "pipelines/kinds/hierarchy/level_errors.h"
-#include "pipelines/run/key_text.h"
+#include "pipelines/run/result_cache.h"
 
 namespace softgrain {
 

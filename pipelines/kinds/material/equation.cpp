@@ -13,7 +13,7 @@
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
 #include "macrosim/body_contacts.h"
-#include "pipelines/kinds/material/results.h"
+#include "pipelines/kinds/material/scene.h"
 
 namespace softgrain {
 

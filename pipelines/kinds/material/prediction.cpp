@@ -10,7 +10,7 @@
 #include "common/core/error.h"
 #include "macrosim/body_contacts.h"
 #include "pipelines/compare/stage_results.h"
-#include "pipelines/kinds/material/results.h"
+#include "pipelines/kinds/material/scene.h"
 
 namespace softgrain {
 

@@ -12,8 +12,7 @@
 #include "macrosim/body_contacts.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/macro/twin_cache.h"
-#include "pipelines/kinds/material/family.h"
-#include "pipelines/kinds/material/results.h"
+#include "pipelines/kinds/material/scene.h"
 #include "pipelines/run/result_cache.h"
 
 namespace softgrain {

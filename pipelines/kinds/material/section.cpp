@@ -7,8 +7,8 @@
 #include <map>
 
 #include "macrosim/body_contacts.h"
-#include "pipelines/kinds/macro/results.h"
-#include "pipelines/kinds/material/results.h"
+#include "pipelines/kinds/macro/scene.h"
+#include "pipelines/kinds/material/scene.h"
 #include "pipelines/kinds/material/summary.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"

@@ -15,7 +15,7 @@
 #include "common/dynamics/verlet.h"
 #include "microsim/particles/scene_memory.h"
 #include "microsim/particles/trajectory.h"
-#include "pipelines/run/trial_times.h"
+#include "pipelines/run/findings.h"
 
 namespace softgrain {
 

@@ -6,7 +6,7 @@
 
 #include "common/core/error.h"
 #include "microsim/particles/trajectory.h"
-#include "pipelines/kinds/particles/results.h"
+#include "pipelines/kinds/particles/scene.h"
 
 namespace softgrain {
 

@@ -1,4 +1,4 @@
-#include "pipelines/kinds/recipe/levels.h"
+#include "pipelines/kinds/recipe/scene.h"
 
 #include <algorithm>
 #include <cmath>

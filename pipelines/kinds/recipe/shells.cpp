@@ -1,4 +1,4 @@
-#include "pipelines/kinds/recipe/shells.h"
+#include "pipelines/kinds/recipe/run.h"
 
 #include <fmt/format.h>
 
