@@ -1,4 +1,4 @@
-#include "calibrate/experiment_errors.h"
+#include "calibrate/curve_samples.h"
 
 #include <algorithm>
 #include <cmath>

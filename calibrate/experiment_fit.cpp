@@ -9,8 +9,7 @@
 #include <set>
 
 #include "calibrate/bootstrap.h"
-#include "calibrate/force_offset.h"
-#include "calibrate/law_estimate.h"
+#include "calibrate/threshold_fit.h"
 
 namespace softgrain {
 

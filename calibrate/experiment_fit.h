@@ -1,6 +1,7 @@
 // The threshold fit for curves that were measured in an experiment.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "calibrate/threshold_fit.h"
@@ -31,12 +32,33 @@ struct ExperimentFit {
   std::vector<std::string> remarks;
 };
 
-/// Fits every pair kind. A constant force that is read without contact is taken off first, and said (force_offset.h); a
+/// Fits every pair kind. A constant force that is read without contact is taken off first, and said; a
 /// curve that asks for one which its readings do not determine makes the law underdetermined. `mirror`: a kind that was
 /// not measured follows from the other one, by symmetry: two equal soft particles that press on each other are each
 /// pressed on a plane at half the overlap,
 ///   F_soft-soft(D) = F_soft-solid(D/2), kt_soft-soft(D) = kt_soft-solid(D/2)/2.
 /// Grains of two particles that interlock are not in this; its law is marked "underdetermined" and says so.
 ExperimentFit fit_experiment(const std::vector<ForceCurves>& curves, const FitOptions& options, bool mirror);
+
+// A constant force that an experiment reads without contact: a load cell that was not set to zero, the weight of a
+// plate. It is seen in readings before touch and below the threshold, where a soft particle bears nothing.
+
+struct ForceOffset {
+  std::size_t sample = 0;    ///< index
+  double force = 0.0;        ///< mean of the readings without force [N]
+  double error = 0.0;        ///< its standard error [N]
+  double below = 0.0;        ///< Delta that they lie below
+  std::size_t readings = 0;  ///< how many there are
+  bool determined = true;    ///< false: neither they nor the shape of the curve tell
+};
+
+/// The offsets of samples that have one: the mean over at least three readings without force differs from zero by more
+/// than Student's t of 99.9 %; or, with fewer such readings, a law with an offset fits far better than one without.
+/// Then it is determined where all thresholds that fit give the same offset to 1 % of the largest force.
+std::vector<ForceOffset> force_offsets(const ForceCurves& curves);
+
+/// Subtracts the determined ones from all forces of their samples, with a remark for each, and says of the others that
+/// they are not determined. Returns all.
+std::vector<ForceOffset> subtract_offsets(ForceCurves& curves);
 
 }  // namespace softgrain

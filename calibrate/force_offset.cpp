@@ -1,4 +1,4 @@
-#include "calibrate/force_offset.h"
+#include "calibrate/experiment_fit.h"
 
 #include <fmt/format.h>
 #include <gsl/gsl_cdf.h>

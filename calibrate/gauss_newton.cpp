@@ -1,4 +1,3 @@
-#include "calibrate/gauss_newton.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>

@@ -1,4 +1,4 @@
-#include "calibrate/joint_fit.h"
+#include "calibrate/threshold_model.h"
 
 #include <algorithm>
 #include <cmath>

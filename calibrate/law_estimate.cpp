@@ -1,4 +1,4 @@
-#include "calibrate/law_estimate.h"
+#include "calibrate/threshold_fit.h"
 
 #include <gsl/gsl_cdf.h>
 

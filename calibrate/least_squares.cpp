@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "calibrate/gauss_newton.h"
 #include "calibrate/trust_region.h"
 #include "common/core/error.h"
 

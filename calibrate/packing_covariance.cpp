@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "calibrate/joint_fit.h"
+#include "calibrate/threshold_model.h"
 
 namespace softgrain {
 

@@ -7,8 +7,7 @@
 #include <set>
 
 #include "calibrate/bootstrap.h"
-#include "calibrate/joint_fit.h"
-#include "calibrate/law_estimate.h"
+#include "calibrate/threshold_model.h"
 #include "common/core/error.h"
 
 namespace softgrain {

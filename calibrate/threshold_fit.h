@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/experiment_errors.h"
+#include "calibrate/curve_samples.h"
 #include "calibrate/threshold_model.h"
 #include "common/data/law_card.h"
 #include "common/data/measurements.h"
@@ -40,7 +40,7 @@ struct FitOptions {
   /// Delta of each sample below which its readings made the zero of the force (0: not so); a redrawn sample is set to
   /// zero again.
   std::vector<double> zeroed_below{};
-  bool subtract_offset = true;  ///< experiment: whether constant forces without contact (force_offset.h) are taken off
+  bool subtract_offset = true;  ///< experiment: whether constant forces without contact (ForceOffset) are taken off
 };
 
 /// The angle of the secant that a law takes for kt [degree]: at 1 degree soft particles on a plane have the published
@@ -90,5 +90,22 @@ std::vector<Band> law_band(const FitReport& report, LawCurve curve, std::span<co
 
 /// The relaxation that options and data agree on. Throws InputError.
 std::string chosen_relaxation(const Measurements& data, const FitOptions& options);
+
+// The parts of a law card that follow from data, fit and replicates: descriptions, estimates with intervals, goodness
+// of fit.
+
+using LawSamples = std::array<CurveSamples, kLawCurves>;
+using LawMeans = std::array<CurveMeans, kLawCurves>;
+
+/// Range, counts, table and largest grain overlap of the data behind a law.
+void describe_data(const RunList& runs, const LawSamples& samples, const LawMeans& means, FitReport& report);
+
+/// One curve's law from its parameters (order of kLawParameterNames): standard errors from report.law.covariance
+/// (infinite when `errors_known` is false), intervals from report.replicates (infinite when there are none).
+ThresholdPowerLaw estimated_law(const FitReport& report, const std::array<double, 7>& parameters, std::size_t curve,
+                                bool errors_known);
+
+/// chi^2 per degree of freedom of the packing means above threshold, and its tail probability; both 0 without freedom.
+void fill_goodness(const FitCurves& curves, const JointParameters& found, double noise_floor, PairLaw& law);
 
 }  // namespace softgrain

@@ -1,6 +1,5 @@
 #include "macrosim/box.h"
 
-#include "common/dynamics/displace.h"
 #include "common/dynamics/force_pass.h"
 
 namespace softgrain {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "macrosim/curve_notes.h"
 
 namespace softgrain {

@@ -6,10 +6,10 @@
 #include <numeric>
 #include <optional>
 
+#include "common/core/cost.h"
 #include "common/core/error.h"
-#include "common/core/stopwatch.h"
 #include "common/io/text_file.h"
-#include "macrosim/grain_record.h"
+#include "macrosim/body_contacts.h"
 #include "macrosim/staged_test.h"
 
 namespace softgrain {

@@ -5,17 +5,15 @@
 #include <cmath>
 
 #include "common/core/error.h"
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/time_step.h"
 #include "common/dynamics/verlet.h"
 #include "common/io/interrupt.h"
 #include "common/neighbours/verlet_list.h"
-#include "macrosim/hard_bodies.h"
 #include "macrosim/placed_spheres.h"
 #include "macrosim/preparation.h"
 #include "macrosim/pressed_box.h"
-#include "macrosim/pressing.h"
 
 namespace softgrain {
 

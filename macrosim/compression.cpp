@@ -2,16 +2,15 @@
 
 #include <optional>
 
+#include "common/core/cost.h"
 #include "common/core/error.h"
-#include "common/core/stopwatch.h"
 #include "common/dynamics/contact_watch.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/residual.h"
 #include "macrosim/body_contacts.h"
-#include "macrosim/grain_record.h"
 #include "macrosim/pressed_box.h"
 #include "macrosim/staged_test.h"
-#include "macrosim/twin_motion.h"
+#include "macrosim/twin_places.h"
 
 namespace softgrain {
 

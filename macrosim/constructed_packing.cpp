@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/core/error.h"
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "common/packing/void_filling.h"
 #include "macrosim/cell_specimen.h"
 #include "macrosim/preparation.h"

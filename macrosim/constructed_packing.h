@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/data/shell_packing.h"
-#include "common/packing/size_distribution.h"
+#include "common/packing/grading.h"
 #include "macrosim/macro_packing.h"
 
 namespace softgrain {

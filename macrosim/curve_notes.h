@@ -7,7 +7,7 @@
 
 #include "common/data/macro_result.h"
 #include "common/dynamics/contact_watch.h"
-#include "common/dynamics/relaxation_result.h"
+#include "common/dynamics/residual.h"
 #include "macrosim/macro_spec.h"
 
 namespace softgrain {

@@ -5,9 +5,8 @@
 #include <string>
 
 #include "common/core/error.h"
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "common/neighbours/spatial_order.h"
-#include "macrosim/hard_bodies.h"
 #include "macrosim/preparation.h"
 
 namespace softgrain {

@@ -5,8 +5,9 @@
 #include <numbers>
 
 #include "common/core/error.h"
+#include "common/core/particles.h"
 #include "common/core/random.h"
-#include "common/core/solid_sphere.h"
+#include "common/dynamics/system_snapshot.h"
 #include "common/neighbours/verlet_list.h"
 
 namespace softgrain {
@@ -198,6 +199,23 @@ MacroSystem make_shelled_system(const MacroSpec& spec, const MacroPacking& packi
 MacroSystem make_free_system(const MacroSpec& spec, const MacroPacking& packing,
                              const std::vector<ShellPacking>& contents, std::uint64_t seed, std::uint64_t sample) {
   return make_twin(spec, packing, contents, seed, sample, false);
+}
+
+Snapshot macro_snapshot(const MacroSystem& macro, const MacroPacking& packing) {
+  Snapshot s = snapshot_of(macro.system);
+  const bool resolved = macro.inner_grains > 0;
+  s.kind = resolved ? SnapshotKind::twin : SnapshotKind::macro;
+  s.has_velocity = false;  // left over from relaxing
+  for (std::size_t k = 0; k < s.particles.size(); ++k) {
+    SnapshotParticle& p = s.particles[k];
+    p.body = macro.body[k];
+    p.velocity = {};
+    if (packing.bodies[static_cast<std::size_t>(p.body)].soft)
+      p.role = resolved ? ParticleRole::inner : ParticleRole::soft;
+  }
+  for (std::size_t k = 0; k < s.walls.size(); ++k)
+    if (s.walls[k].shape == WallShape::sphere_inside) s.walls[k].body = macro.body[s.particles.size() + k];
+  return s;
 }
 
 }  // namespace softgrain

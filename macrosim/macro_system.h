@@ -7,6 +7,7 @@
 
 #include "common/contact/law_set.h"
 #include "common/data/shell_packing.h"
+#include "common/data/snapshot.h"
 #include "common/dynamics/slow_dynamics.h"
 #include "macrosim/box.h"
 #include "macrosim/macro_packing.h"
@@ -58,5 +59,11 @@ MacroSystem make_shelled_system(const MacroSpec& spec, const MacroPacking& packi
 /// The free twin: the same grains at the same places, without any shell. Materials 0 grain, 1 wall.
 MacroSystem make_free_system(const MacroSpec& spec, const MacroPacking& packing,
                              const std::vector<ShellPacking>& contents, std::uint64_t seed, std::uint64_t sample);
+
+// A macro scene, with laws or resolved, as a picture of its state.
+
+/// Solid grains, soft particles (of laws) or the grains inside them (of twins), each with the number of its body in the
+/// packing; shells and planes as walls. Label, series, frame and strain are for the caller. Changes nothing.
+Snapshot macro_snapshot(const MacroSystem& macro, const MacroPacking& packing);
 
 }  // namespace softgrain

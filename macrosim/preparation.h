@@ -6,7 +6,11 @@
 #include <vector>
 
 #include "common/contact/law_set.h"
+#include "common/core/cost.h"
 #include "common/core/random.h"
+#include "common/dynamics/contact_watch.h"
+#include "common/dynamics/damped_relaxation.h"
+#include "macrosim/box.h"
 #include "macrosim/macro_packing.h"
 #include "macrosim/macro_spec.h"
 
@@ -66,5 +70,46 @@ MacroPacking pack_densely(const MacroSpec& spec, std::vector<MacroBody> bodies, 
 /// Compaction in steps without friction, only up to a share of the box filled with bodies, below jamming. Throws
 /// InputError when they jam before.
 void compact_to_fraction(const MacroSpec& spec, MacroPacking& packing, double fraction);
+
+// How bodies are pressed into touch, by our own engine and in LAMMPS: bodies and box relax together under a pressure
+// that begins high, falls whenever all is roughly at rest, and ends at the one asked for.
+
+/// Tolerance of forces and stress before the last pressure, and how the pressure falls.
+constexpr double kLoosePressing = 0.1;
+constexpr double kPressureFall = 0.7;
+
+/// Relative tolerance of the stress on the box. `last`: under the pressure asked for.
+inline double pressing_stress_tolerance(const MacroSpec& spec, bool last) {
+  return last ? spec.protocol.tolerance / 3.0 : kLoosePressing;
+}
+
+/// Relaxation of so many bodies of this mean radius [m] in a box whose faces bear `load` [N], its pressure times the
+/// area of one.
+DampedOptions pressing_options(const MacroSpec& spec, bool last, double load, double bodies, double mean_radius);
+
+// All bodies of a macro packing as hard grains in their box: what preparations move and press.
+
+struct HardBodies {
+  System3 system;
+  Box box;
+
+  explicit HardBodies(const MacroSpec& spec, const MacroPacking& packing, double friction = 0.0,
+                      double restitution = 1.0);
+
+  static AnyLaw law(const MacroSpec& spec, double friction, double restitution);
+
+  [[nodiscard]] Vec3 size() const { return box_high(system, box) - box_low(system, box); }
+  [[nodiscard]] double pressure();        ///< mean stress of all axes in the last pass [Pa]
+  [[nodiscard]] double fraction() const;  ///< share of the box that bodies fill
+  /// Copies the places of bodies, the springs and the box to the packing, and adds the cost.
+  void take_over(MacroPacking& packing) const;
+
+ private:
+  [[nodiscard]] std::vector<BodySpring> springs() const;
+
+  bool frictional_ = false;
+  ContactVirial<3> virial_;
+  Stopwatch watch_;
+};
 
 }  // namespace softgrain

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/dynamics/box_control.h"
-#include "common/dynamics/contact_virial.h"
+#include "common/core/cell.h"
+#include "common/dynamics/contact_watch.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "macrosim/box.h"
 

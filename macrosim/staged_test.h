@@ -5,7 +5,7 @@
 
 #include "common/core/law_range.h"
 #include "common/data/macro_result.h"
-#include "common/dynamics/relaxation_result.h"
+#include "common/dynamics/residual.h"
 #include "common/state/run_control.h"
 #include "macrosim/curve_notes.h"
 #include "macrosim/macro_packing.h"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/data/macro_result.h"
+#include "macrosim/macro_spec.h"
 #include "macrosim/macro_system.h"
 
 namespace softgrain {
@@ -42,5 +43,12 @@ void place_laws(const MacroSpec& spec, const MacroPacking& packing, double inner
 /// Name of such a column.
 std::string places_column(const std::string& engine, const char* partner);
 inline constexpr std::array kPlacesPartners{"solid", "wall", "soft"};
+
+// How a resolved twin is strained in motion.
+
+/// Strains the box by the factors 1 - strain at the twin's speed, bodies carried along as a whole at first, and lets
+/// all move on for the settling time; then nothing moves. It is left near its rest: a relaxation follows. The twin must
+/// have dashpots. Throws UnusableResult (a grain is lost) and Interrupted.
+void strain_in_motion(MacroSystem& macro, const MacroSpec& spec, const Vec3& strain);
 
 }  // namespace softgrain

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "microsim/multi_contact_experiment.h"
 
 namespace softgrain {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "common/data/slide_direction.h"
-#include "common/dynamics/displace.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/residual.h"
 #include "common/dynamics/slow_dynamics.h"

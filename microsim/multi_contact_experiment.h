@@ -11,8 +11,8 @@
 #include "common/data/slide_direction.h"
 #include "common/state/run_control.h"
 #include "common/system.h"
+#include "microsim/filled_shell.h"
 #include "microsim/protocol.h"
-#include "microsim/soft_content.h"
 
 namespace softgrain {
 

@@ -8,7 +8,7 @@
 #include "common/core/error.h"
 #include "common/core/random.h"
 #include "common/io/interrupt.h"
-#include "common/packing/size_distribution.h"
+#include "common/packing/grading.h"
 
 namespace softgrain {
 

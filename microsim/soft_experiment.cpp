@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "common/core/solid_sphere.h"
-#include "common/dynamics/displace.h"
+#include "common/core/particles.h"
+#include "common/dynamics/force_pass.h"
 #include "common/dynamics/system_snapshot.h"
 
 namespace softgrain {

@@ -36,13 +36,13 @@ PAGES = {
          "microsim/particles/scene_soft_laws.cpp", "microsim/particles/scene_time.cpp", "microsim/particles/scene_walls.cpp"],
         {"beyond"}, {"energy_unwatched", "entry"}),
     "scene_powder.md": (
-        ["pipelines/kinds/cohesive_powder/scene.cpp", "pipelines/kinds/cohesive_powder/variants.cpp", "pipelines/run/variant_name.cpp"],
+        ["pipelines/kinds/cohesive_powder/scene.cpp", "pipelines/kinds/cohesive_powder/variants.cpp", "pipelines/run/scene_kind.h"],
         {"Phi", "z", "Phi_error", "z_error"}, set()),
     "own_data.md": (["pipelines/commands/calibrate_curves.cpp", "pipelines/law/fit_settings.cpp", "pipelines/kinds/inverse/scene.cpp"],
                     {"beta", "trials", "mu", "nu", "rmax_over_shell", "exponent", "polydispersity", "material"},
                     {"kind", "title", "measure", "rmax"}),
     "scene_material.md": (
-        ["pipelines/kinds/material/scene.cpp", "pipelines/kinds/material/equation.cpp", "pipelines/run/variant_name.cpp"],
+        ["pipelines/kinds/material/scene.cpp", "pipelines/kinds/material/equation.cpp", "pipelines/run/scene_kind.h"],
         {"preparation", "start_pressure", "preparation_tolerance", "strain", "steps", "increments_per_step", "preload", "preload_steps",
                 "tolerance", "force_floor", "max_passes", "modulus_stress", "snapshots", "stage", "test", "output"}, {"solid_fraction", "rattlers"}),
     "scene_material_law.md": (
@@ -54,7 +54,7 @@ PAGES = {
         {"material", "packing", "test", "output", "snapshots", "exponent", "radius_max", "count"}, set()),
     "stages.md": (["pipelines/kinds/macro/stages.cpp"], {"strain_x", "strain_y", "strain_z", "stress_x", "stress_y", "stress_z"}, {"stage", "macro", "test"}),
     "sizes.md": (["common/packing/grading_scene.cpp"], set(), {"solid_sizes", "soft_sizes", "disks", "material", "packing", "macro"}),
-    "scene_grain_box.md": (["pipelines/kinds/grain_box/scene.cpp", "pipelines/run/variant_name.cpp"], set(), set()),
+    "scene_grain_box.md": (["pipelines/kinds/grain_box/scene.cpp", "pipelines/run/scene_kind.h"], set(), set()),
 }
 
 # Sources that read cards and tables, or a scene only to see what it is.

@@ -1,6 +1,7 @@
-// What a computation cost, in units that do not depend on the machine beside the seconds that do.
+// What a computation cost: counts that do not depend on the machine, and wall time.
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
+#include <chrono>
 #include <cstdint>
 
 namespace softgrain {
@@ -18,6 +19,17 @@ struct Cost {
     seconds += o.seconds;
     return *this;
   }
+};
+
+class Stopwatch {
+ public:
+  /// Since it was made [s].
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace softgrain

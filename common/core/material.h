@@ -1,6 +1,7 @@
-// Elastic materials.
+// Elastic materials, and the range of Poisson's ratio: once for scenes, cards, files and tables.
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
+#include <limits>
 #include <string>
 
 namespace softgrain {
@@ -21,5 +22,14 @@ struct Material {
     return rigid ? 0.0 : (2.0 - poisson_ratio) * (1.0 + poisson_ratio) / (4.0 * youngs_modulus);
   }
 };
+
+/// Isotropic elasticity is stable for -1 < nu <= 1/2 (Landau and Lifshitz, Theory of Elasticity, section 5), and the
+/// contact laws of Hertz and Mindlin hold there: E* = E/(1 - nu^2) and G* = G/(2 - nu) are finite and positive.
+inline constexpr double kPoissonAbove = -1.0;
+inline constexpr double kPoissonHighest = 0.5;
+/// The smallest number above -1, for limits that include their ends.
+inline constexpr double kPoissonLowest = kPoissonAbove + 0.5 * std::numeric_limits<double>::epsilon();
+
+constexpr bool is_poisson_ratio(double nu) { return nu > kPoissonAbove && nu <= kPoissonHighest; }
 
 }  // namespace softgrain

@@ -94,4 +94,12 @@ inline Vec3 rotate(const Vec3& a, const Vec3& axis, double angle) {
   return a * c + cross(axis, a) * s + axis * (dot(axis, a) * (1.0 - c));
 }
 
+/// A vector of space; what is flat has z = 0.
+template <int D>
+Vec3 in_space(const Vec<D>& a) {
+  Vec3 out{};
+  for (int k = 0; k < D; ++k) out[k] = a[k];
+  return out;
+}
+
 }  // namespace softgrain

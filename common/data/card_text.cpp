@@ -1,6 +1,7 @@
 #include "common/data/card_text.h"
 #include "common/data/soft_particle_schema.h"
-#include "common/io/text_encoding.h"
+#include "common/io/scene.h"
+#include "common/io/text_file.h"
 #include "common/packing/grading_scene.h"
 
 #include <fmt/format.h>

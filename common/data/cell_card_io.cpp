@@ -8,7 +8,6 @@
 #include "common/core/error.h"
 #include "common/data/card_text.h"
 #include "common/data/cell_card.h"
-#include "common/io/poisson_range.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
 

@@ -7,7 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/core/limits.h"
-#include "common/core/poisson_ratio.h"
+#include "common/core/material.h"
 #include "common/data/columns.h"
 #include "common/data/spec_io.h"
 

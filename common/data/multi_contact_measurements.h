@@ -102,7 +102,7 @@ struct MultiContactRun {
   std::int64_t packing = 0;        ///< index into MultiContactMeasurements::packings
   std::vector<MultiContactPoint> points;
   Cost cost;
-  std::int64_t orientation = 0;  ///< 0: as it was made, else so many times turned (microsim/soft_content.h)
+  std::int64_t orientation = 0;  ///< 0: as it was made, else so many times turned (microsim/filled_shell.h)
 };
 
 struct MultiContactMeasurements {

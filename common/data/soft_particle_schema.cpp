@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "common/core/limits.h"
-#include "common/io/poisson_range.h"
+#include "common/io/scene.h"
 
 namespace softgrain {
 

@@ -1,11 +1,13 @@
-// One look at all contacts of a state, for guards: how deep, how much energy they store, how far laws are from what
-// was measured. Reads only, and copies nothing.
+// One look at all contacts of a state. For guards: how deep they are, how much energy they store, how far laws are from
+// what was measured; this reads only, and copies nothing. For stress: the sum of force times branch.
 #pragma once
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "common/contact/law_use.h"
+#include "common/dynamics/block_loop.h"
 #include "common/system.h"
 
 namespace softgrain {
@@ -28,5 +30,30 @@ struct ContactWatch {
 /// The list of pairs must be valid for the positions, as it is after a force pass.
 template <int D>
 ContactWatch<D> watch_contacts(const System<D>& system);
+
+/// Sum over contacts of force times branch, per axis [N m], compression positive; over the volume it is the stress.
+/// From the forces that a pass has left on the bodies: it is the sum of force times place over all bodies, less force
+/// times shift of the contacts across faces of the periodic cell. These contacts alone are evaluated again. Bodies must
+/// bear nothing but their contacts (no gravity). The same bits for any number of threads. Looks up the contacts across
+/// faces once per neighbour list.
+template <int D>
+class ContactVirial {
+ public:
+  /// Sum of the last pass, whose history has been committed.
+  Vec<D> of(System<D>& system);
+
+ private:
+  struct Across {
+    std::size_t section = 0;
+    std::vector<std::int32_t> places;  ///< places of the contacts in the list
+  };
+  void find_across(const System<D>& system);
+
+  std::uint64_t build_ = 0;
+  std::vector<Across> across_;
+  std::vector<ContactLoad> loads_;
+  std::vector<ContactRoll> rolls_;
+  std::vector<std::uint8_t> touches_;
+};
 
 }  // namespace softgrain

@@ -7,8 +7,8 @@
 
 #include "common/dynamics/fire.h"
 #include "common/dynamics/force_pass.h"
-#include "common/dynamics/relaxation_result.h"
-#include "common/neighbours/list_watch.h"
+#include "common/dynamics/residual.h"
+#include "common/neighbours/verlet_list.h"
 #include "common/system.h"
 
 namespace softgrain {

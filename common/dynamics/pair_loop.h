@@ -8,7 +8,7 @@
 #include "common/contact/contact_list.h"
 #include "common/contact/contact_loop.h"
 #include "common/dynamics/block_loop.h"
-#include "common/dynamics/particle_pass.h"
+#include "common/dynamics/parallel_pass.h"
 #include "common/system.h"
 
 namespace softgrain {

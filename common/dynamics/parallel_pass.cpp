@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "common/dynamics/block_loop.h"
-#include "common/dynamics/particle_pass.h"
-#include "common/dynamics/thread_pace.h"
+#include "common/dynamics/thread_choice.h"
 #include "common/neighbours/spatial_order.h"
 
 namespace softgrain {

@@ -1,4 +1,4 @@
-#include "common/dynamics/particle_pass.h"
+#include "common/dynamics/parallel_pass.h"
 
 #include "common/dynamics/block_gather.h"
 

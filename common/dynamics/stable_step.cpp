@@ -1,4 +1,4 @@
-#include "common/dynamics/stable_step.h"
+#include "common/dynamics/time_step.h"
 
 #include <algorithm>
 #include <cmath>

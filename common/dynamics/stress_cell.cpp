@@ -5,7 +5,7 @@
 
 #include "common/core/limits.h"
 #include "common/dynamics/block_loop.h"
-#include "common/dynamics/particle_pass.h"
+#include "common/dynamics/parallel_pass.h"
 #include "common/neighbours/skin.h"
 
 namespace softgrain {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/neighbours/list_watch.h"
+#include "common/neighbours/verlet_list.h"
 #include "common/system.h"
 
 namespace softgrain {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "common/core/in_space.h"
+#include "common/core/vec.h"
 #include "common/dynamics/force_pass.h"
 #include "common/neighbours/spatial_order.h"
 

@@ -1,6 +1,9 @@
 // Time step from stiffness and mass.
 #pragma once
 
+#include <cstdint>
+#include <limits>
+
 #include "common/system.h"
 
 namespace softgrain {
@@ -22,5 +25,31 @@ StepLimit step_limit(const System<D>& system, double overlap_ratio = 0.05);
 
 /// Largest fraction of StepLimit::natural_time that is accepted for a step.
 inline constexpr double kLargestStepFraction = 0.6;
+
+// The largest time step at which a state is stable: all contacts that a body has count, together.
+
+/// Whether dashpots count. Without them longer steps pass: what dashpots across the contact do then is chatter, which
+/// the Coulomb limit holds.
+enum class Dashpots { count, leave_out };
+
+struct StableStep {
+  double step = std::numeric_limits<double>::infinity();  ///< [s]; infinite without contacts
+  Slot body = -1;                                         ///< the one that moves most in the mode that breaks first
+  std::int64_t contacts = 0;                              ///< number of contacts of this body
+};
+
+/// About the state as it is, contacts neither opening nor sliding. The step h of VelocityVerlet is stable as long as
+/// the largest eigenvalue of M^-1 (Kn h^2/4 + Kt h^2/2 + C h) is below 1: Kn and Kt the normal and tangential stiffness
+/// of the network of contacts, translation and rotation, C its dashpots (a mode that changes its sign in every step
+/// solves the equations of motion where it is 1). Kt counts twice because tangential springs add up predicted
+/// velocities. One normal spring without dashpot: h < 2/omega. Multi-contact laws count with what each contact feels of
+/// itself. `enough`: when a bound for every body by itself, from
+/// the sums over its contacts, says that this step is stable, that bound is what comes back; otherwise the mode is
+/// found by iteration. Throws UnusableResult as update_neighbours does. The state is left alone.
+template <int D>
+StableStep stable_step(const System<D>& system, double enough, Dashpots dashpots = Dashpots::count);
+
+/// Share of StableStep::step that is accepted for a step: contacts deepen, and stiffness with them.
+inline constexpr double kLargestStableShare = 0.8;
 
 }  // namespace softgrain

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/neighbours/list_watch.h"
 #include "common/neighbours/skin.h"
+#include "common/neighbours/verlet_list.h"
 #include "common/system.h"
 
 namespace softgrain {

@@ -5,7 +5,6 @@
 
 #include "common/core/error.h"
 #include "common/io/csv_file.h"
-#include "common/io/csv_words.h"
 #include "common/io/text_file.h"
 
 namespace softgrain {

@@ -7,8 +7,6 @@
 #include <cstdio>
 
 #include "common/core/error.h"
-#include "common/io/csv_words.h"
-#include "common/io/text_encoding.h"
 #include "common/io/text_file.h"
 
 namespace softgrain {

@@ -100,4 +100,25 @@ class CsvFile {
 /// A unit of hundredths.
 bool is_percent(const std::string& unit);
 
+// Small pieces of its texts, for csv_file.cpp and csv_comments.cpp.
+
+namespace csv {
+
+/// ASCII letters in lower case.
+std::string lower(std::string text);
+
+/// The text without double quotes around it.
+std::string unquoted(const std::string& text);
+
+/// "hn [mm]", "hn(mm)" into its parts.
+CsvColumn column_of(const std::string& title);
+
+/// "Young's_modulus" to "youngs modulus", Greek letters to their names.
+std::string plain_name(const std::string& name);
+
+/// "0.5", "1e-09".
+std::string short_number(double value);
+
+}  // namespace csv
+
 }  // namespace softgrain

@@ -1,4 +1,4 @@
-#include "common/io/flat_scene.h"
+#include "common/io/scene.h"
 
 #include <fmt/format.h>
 

@@ -11,8 +11,7 @@
 #include <system_error>
 
 #include "common/core/error.h"
-#include "common/io/atomic_rename.h"
-#include "common/io/file_seal.h"
+#include "common/io/file_safety.h"
 #include "common/io/hdf5_handle.h"
 #include "common/io/text_file.h"
 

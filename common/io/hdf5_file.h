@@ -59,7 +59,7 @@ Group open_file(const std::string& path);
 /// commit(). Destruction without commit() removes the temporary file.
 class AtomicFile {
  public:
-  /// keep_previous: the old file stays as path + ".previous"; sealed: with a checksum over all of it (file_seal.h).
+  /// keep_previous: the old file stays as path + ".previous"; sealed: with a checksum over all of it (file_safety.h).
   explicit AtomicFile(const std::string& path, bool keep_previous = false, bool sealed = false);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;

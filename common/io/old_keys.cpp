@@ -1,4 +1,3 @@
-#include "common/io/old_keys.h"
 
 #include <array>
 #include <string_view>

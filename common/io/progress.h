@@ -1,14 +1,15 @@
-// Progress with an estimate of the time left, on standard error: a bar on a terminal, a line now and then elsewhere.
+// What a run says while it works: lines for its log, and progress with an estimate of the time left.
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <mutex>
 #include <string>
 
 namespace softgrain {
 
 /// Thread-safe. Prints nothing for work shorter than about two seconds, or when quiet. Beginning and end of all work go
-/// to the log of the run (run_log.h).
+/// to the log of the run.
 class Progress {
  public:
   Progress(std::string what, double total, bool quiet);
@@ -53,5 +54,28 @@ class TaskProgress {
   double weight_;
   double done_ = 0.0;
 };
+
+// Lines for the log of the run that is at work, from parts of the program that know of no run: stages, warnings, the
+// end.
+
+/// Takes a line without its end.
+using LogSink = std::function<void(const std::string& line)>;
+
+/// A log in use, from here to the end of its life. Logs may lie within each other (a run of several): lines go to the
+/// newest. What is said before there is a log, a warning about an option say, goes to the first one; what is said after
+/// the last one has ended, why the program ends say, still goes to that one.
+class LogScope {
+ public:
+  explicit LogScope(LogSink sink);
+  ~LogScope();
+  LogScope(const LogScope&) = delete;
+  LogScope& operator=(const LogScope&) = delete;
+
+ private:
+  std::size_t number_;
+};
+
+/// Each line of a text to the log. Thread-safe.
+void log_text(const std::string& text);
 
 }  // namespace softgrain

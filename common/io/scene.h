@@ -7,6 +7,7 @@
 #include <functional>
 #include <initializer_list>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@
 
 #include "common/core/enum_names.h"
 #include "common/core/error.h"
+#include "common/core/material.h"
 #include "common/core/vec.h"
 
 namespace softgrain {
@@ -200,5 +202,36 @@ double parse_quantity(const std::string& text, Unit unit);
 
 /// Known word nearest to `word` by edit distance, empty when none is near.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
+
+/// The range of Poisson's ratio as readers of keys take it.
+inline constexpr Range kPoissonRange{kPoissonAbove, kPoissonHighest, true, false};
+
+/// SI value of a number with any unit that scenes know ("50 GPa": 5e10; angles in degrees), or without one; none for
+/// what is no such number. No unit stands for two quantities with different factors.
+std::optional<double> quantity_of_any_unit(const std::string& text);
+
+/// Every key of a TOML text with its value as text: "macro.bodies" -> "40", elements of arrays of tables by their
+/// numbers as --set counts them, "contact.0.mu" -> "0.3". Numbers that are equal have equal texts (0.3, 0.30); texts
+/// come without quotes, lists in brackets. Throws InputError for what is no TOML; `name`: of the text in the message.
+std::map<std::string, std::string> flat_scene(const std::string& text, const std::string& name);
+
+// Vectors of a scene with as many components as it has dimensions.
+
+/// Throws InputError.
+template <int D>
+Vec<D> read_vector(const SceneTable& t, const std::string& key, Unit unit) {
+  if constexpr (D == 3) {
+    return t.vector3(key, unit);
+  } else {
+    const std::vector<double> values = t.numbers(key, unit);
+    if (values.size() == 2) return {{values[0], values[1]}};
+    t.add_error(key, "must have two components, as the scene has dimension = 2");
+    return {};
+  }
+}
+template <int D>
+Vec<D> read_vector(const SceneTable& t, const std::string& key, Unit unit, const Vec<D>& fallback) {
+  return t.has(key) ? read_vector<D>(t, key, unit) : fallback;
+}
 
 }  // namespace softgrain

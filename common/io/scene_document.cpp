@@ -4,11 +4,9 @@
 #include <utility>
 
 #include "common/core/error.h"
-#include "common/io/old_keys.h"
 #include "common/io/scene_impl.h"
 #include "common/io/text_file.h"
 #include "common/io/toml.h"
-#include "common/io/toml_keys.h"
 
 namespace softgrain {
 

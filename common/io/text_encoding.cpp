@@ -1,4 +1,4 @@
-#include "common/io/text_encoding.h"
+#include "common/io/text_file.h"
 
 #include <algorithm>
 #include <array>

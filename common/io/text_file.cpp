@@ -16,7 +16,7 @@
 #include <system_error>
 
 #include "common/core/error.h"
-#include "common/io/atomic_rename.h"
+#include "common/io/file_safety.h"
 #include "common/io/interrupt.h"
 
 namespace softgrain {

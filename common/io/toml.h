@@ -7,6 +7,7 @@
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <cmath>
+#include <cstddef>
 
 /// Found by toml++ before the one of <cmath>: log10(x) where that is a count of digits, 0 elsewhere.
 namespace toml {
@@ -44,11 +45,20 @@ struct TomlAssertion {};
 #include <cassert>
 
 #include <string>
+#include <string_view>
 
 namespace softgrain {
 
+/// Most parts of a dotted key. toml++ 3 goes down a key of many parts by recursion and runs out of stack somewhere
+/// beyond ten thousand; no scene has more than six.
+inline constexpr std::size_t kMostKeyParts = 100;
+
+/// The line, from 1, of the first key with more than `most` parts; 0: there is none. Text in quotation marks and
+/// comments is skipped. Of a text that is no TOML the answer holds up to the first mistake, where a parser stops.
+std::size_t line_of_long_key(std::string_view text, std::size_t most = kMostKeyParts);
+
 /// A text as a table; `name` is what messages call it. Throws InputError with name and line for what is no TOML, or has
-/// a key of very many parts (toml_keys.h).
+/// a key of very many parts.
 toml::table parse_toml(const std::string& text, const std::string& name);
 
 }  // namespace softgrain

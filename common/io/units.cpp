@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "common/core/error.h"
-#include "common/io/quantity.h"
 #include "common/io/scene.h"
 
 namespace softgrain {

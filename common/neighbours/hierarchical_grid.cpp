@@ -11,8 +11,7 @@
 #include "common/core/error.h"
 #include "common/core/in_pieces.h"
 #include "common/core/quad.h"
-#include "common/neighbours/search_frame.h"
-#include "common/neighbours/sorted_pairs.h"
+#include "common/neighbours/pair_search.h"
 
 namespace softgrain {
 

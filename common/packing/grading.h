@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -97,5 +98,40 @@ class Grading {
   std::vector<double> number_;  ///< share of the number in the pieces up to each, the last 1
   std::vector<double> volume_;  ///< share of the volume in the pieces before each; empty: pieces overlap
 };
+
+// Coarse and fine parts of a size distribution of spheres, and mixtures that have other shares of them.
+
+/// The grains from `low` to below `high`, with their shares of the volume of all; exact, whatever the form. Empty where
+/// there are none.
+std::vector<SizePiece> pieces_between(const Grading& grading, double low, double high);
+
+/// Both together; the fines have this share of the volume, and each part keeps its own distribution. One part may be
+/// empty when its share is 0. Throws InputError as Grading does.
+Grading mixture_of(std::vector<SizePiece> coarse, std::vector<SizePiece> fines, double fines_share);
+
+/// The sizes, or where there are none P(r) ~ r^-exponent up to `largest`, `ratio` times the smallest.
+Grading sizes_or_power_law(const std::optional<Grading>& sizes, double exponent, double largest, double ratio);
+
+/// Truncated power-law radii P(r) ~ r^-b, rmin < r < rmax [SP 1.1].
+struct PowerLawRadii {
+  double exponent = 3.5;  ///< b, not 1
+  double rmin = 0.0;
+  double rmax = 0.0;
+
+  /// Inverse of the cumulative distribution at u in [0, 1]:
+  /// r = [rmin^(1-b) + u (rmax^(1-b) - rmin^(1-b))]^(1/(1-b)).
+  [[nodiscard]] double radius(double u) const;
+
+  /// Share of grains with radius above r (complementary cumulative distribution).
+  [[nodiscard]] double share_above(double r) const;
+};
+
+/// Maximum-likelihood exponent of radii, truncated at the smallest and largest of them, with its standard error
+/// (Fisher information). Throws InputError with fewer than 3 different radii.
+struct ExponentFit {
+  double exponent = 0.0;
+  double standard_error = 0.0;
+};
+ExponentFit fit_exponent(const std::vector<double>& radii);
 
 }  // namespace softgrain

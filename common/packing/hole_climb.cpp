@@ -1,4 +1,4 @@
-#include "common/packing/hole_climb.h"
+#include "common/packing/clearance_field.h"
 
 #include <algorithm>
 #include <cmath>

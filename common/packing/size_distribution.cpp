@@ -1,4 +1,4 @@
-#include "common/packing/size_distribution.h"
+#include "common/packing/grading.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_roots.h>

@@ -8,7 +8,6 @@
 #include "common/core/error.h"
 #include "common/io/interrupt.h"
 #include "common/packing/clearance_field.h"
-#include "common/packing/hole_climb.h"
 
 namespace softgrain {
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "common/io/file_seal.h"
+#include "common/io/file_safety.h"
 
 namespace softgrain {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/dynamics/force_pass.h"
-#include "common/dynamics/relaxation_result.h"
+#include "common/dynamics/residual.h"
 #include "common/system.h"
 
 namespace softgrain {

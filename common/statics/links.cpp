@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "common/core/error.h"
-#include "common/core/poisson_ratio.h"
+#include "common/core/material.h"
 #include "common/neighbours/hierarchical_grid.h"
 #include "common/statics/symmetry_planes.h"
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/dynamics/box_control.h"
-#include "common/dynamics/relaxation_result.h"
+#include "common/core/cell.h"
+#include "common/dynamics/residual.h"
 #include "macrosim/cell_matter/cell_forces.h"
 #include "macrosim/cell_matter/cell_room.h"
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "common/dynamics/fire.h"
-#include "common/dynamics/scaled_masses.h"
+#include "common/dynamics/slow_dynamics.h"
 #include "common/io/interrupt.h"
 #include "macrosim/cell_matter/cell_axes.h"
 #include "macrosim/cell_matter/cell_packing.h"

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "common/core/error.h"
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 
 namespace softgrain {
 

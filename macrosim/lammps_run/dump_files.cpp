@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <functional>
+#include <sstream>
+#include <vector>
 
 #include "common/core/error.h"
 
@@ -115,6 +118,9 @@ DumpedContact read_contact(const std::vector<double>& row, std::int32_t bodies, 
   return c;
 }
 
+constexpr std::uintmax_t kTail = 65536;
+constexpr std::size_t kLastLines = 4;
+
 }  // namespace
 
 DumpedBodies read_bodies(const std::string& path, const MacroPacking& packing) {
@@ -153,6 +159,31 @@ std::vector<DumpedContact> read_contacts(const std::string& path, std::int32_t b
   const auto key = [](const DumpedContact& c) { return std::pair(c.i, c.j); };
   std::sort(out.begin(), out.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
   return out;
+}
+
+std::string LogTail::complaint() const {
+  std::istringstream in(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) {
+    if (line.find("ERROR") != std::string::npos) return line;
+    if (line.find_first_not_of(" -\t\r") != std::string::npos) lines.push_back(line);
+  }
+  std::string out;
+  for (std::size_t k = lines.size() - std::min(kLastLines, lines.size()); k < lines.size(); ++k)
+    out += (out.empty() ? "" : " | ") + lines[k];
+  return out.empty() ? "its log is empty" : "its log ends with: " + out;
+}
+
+LogTail read_log(const std::string& path, std::uintmax_t begin) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) return {};
+  begin = std::max(begin, size > kTail ? size - kTail : 0);
+  std::ifstream in(path, std::ios::binary);
+  in.seekg(static_cast<std::streamoff>(begin));
+  std::ostringstream text;
+  text << in.rdbuf();
+  return {text.str()};
 }
 
 }  // namespace softgrain::lammps

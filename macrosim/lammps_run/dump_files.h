@@ -1,4 +1,4 @@
-// Bodies and contacts as LAMMPS dumps them.
+// What LAMMPS leaves: bodies and contacts in its dumps, the end of its log.
 #pragma once
 
 #include <cstdint>
@@ -30,5 +30,18 @@ DumpedBodies read_bodies(const std::string& path, const MacroPacking& packing);
 /// Contacts sorted by i, then j, with i < j. Throws IoError, also unless there are `count` contacts whose normal forces
 /// sum up to `force_sum`, as the row of the point says.
 std::vector<DumpedContact> read_contacts(const std::string& path, std::int32_t bodies, double count, double force_sum);
+
+// The end of a log of LAMMPS, when something went wrong.
+
+struct LogTail {
+  std::string text;
+
+  [[nodiscard]] bool says(const std::string& words) const { return text.find(words) != std::string::npos; }
+  /// The first line with "ERROR", else the last lines; on one line.
+  [[nodiscard]] std::string complaint() const;
+};
+
+/// What stands beyond `begin`, at most the last 64 kB of it.
+LogTail read_log(const std::string& path, std::uintmax_t begin);
 
 }  // namespace softgrain::lammps

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "macrosim/lammps_run/body_types.h"
+#include "macrosim/lammps_run/data_file.h"
 #include "macrosim/macro_packing.h"
 
 namespace softgrain::lammps {

@@ -1,12 +1,32 @@
-// Where softgrain-lammps is, and how it is started.
+// Where softgrain-lammps is, and how it is started: as a process of its own, without a shell between.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "macrosim/lammps_run/child_process.h"
+namespace softgrain {
 
-namespace softgrain::lammps {
+struct ChildEnd {
+  int status = 0;            ///< exit status, when it ended by itself
+  int signal = 0;            ///< signal that ended it; 0: none
+  bool interrupted = false;  ///< a signal to this program made us end it
+};
+
+/// Runs `words` (the program with its path, then arguments) in `directory`, its standard output and standard error
+/// going to the end of `log`. `watch` is called about five times a second. When this program is asked to stop
+/// (common/io/interrupt.h), the child and all it started get SIGTERM, and SIGKILL should they not end within a few
+/// seconds; when this program is killed, the child gets SIGTERM. Throws IoError when it cannot be started.
+ChildEnd run_child(const std::vector<std::string>& words, const std::string& directory, const std::string& log,
+                   const std::function<void()>& watch);
+
+/// The file of this name in PATH that may be executed; empty when there is none.
+std::string find_in_path(const std::string& name);
+
+/// Directory of the running program; empty when unknown.
+std::string own_directory();
+
+namespace lammps {
 
 inline constexpr const char* kProgramName = "softgrain-lammps";
 
@@ -22,4 +42,6 @@ std::string missing_text();
 std::vector<std::string> command_words(const std::string& program, std::int64_t ranks,
                                        const std::vector<std::string>& settings);
 
-}  // namespace softgrain::lammps
+}  // namespace lammps
+
+}  // namespace softgrain

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "macrosim/lammps_run/points_columns.h"
+#include "macrosim/macro_packing.h"
 
 namespace softgrain::lammps {
 
@@ -32,5 +33,26 @@ void write_points(const std::string& directory, const std::string& key, const st
 
 /// Rows so far, for progress: lines that begin with a number, nothing tested.
 std::int64_t count_points(const std::string& directory);
+
+// Who bears the load in a packing of grains, in LAMMPS: what record_grains() of macrosim/body_contacts.h records, from
+// sums over contacts.
+
+/// What compute softgrain/contacts is told; empty where the scene names no splits.
+std::string grain_words(const MacroSpec& spec, const MacroPacking& packing);
+
+/// A column of points.txt after those that every test has.
+struct GrainColumn {
+  std::string name;
+  std::string expression;  ///< expression of the column in LAMMPS
+};
+
+/// Bodies that rattle, then of every split the virials of contacts between coarse and fine ones [N m].
+std::vector<GrainColumn> grain_columns(const MacroSpec& spec);
+
+/// Names of these columns, as points_file.h takes them.
+std::vector<std::string> grain_names(const MacroSpec& spec);
+
+/// Appends a row to curve.more, as record_grains() does.
+void add_grains(const PointRow& row, const MacroSpec& spec, const MacroPacking& packing, MacroCurve& curve);
 
 }  // namespace softgrain::lammps

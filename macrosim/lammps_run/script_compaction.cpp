@@ -5,7 +5,6 @@
 
 #include "macrosim/lammps_run/script_parts.h"
 #include "macrosim/preparation.h"
-#include "macrosim/pressing.h"
 
 namespace softgrain::lammps {
 

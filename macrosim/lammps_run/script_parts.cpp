@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "macrosim/lammps_run/grain_columns.h"
 #include "macrosim/lammps_run/points_columns.h"
+#include "macrosim/lammps_run/points_file.h"
 #include "macrosim/test_protocol.h"
 
 namespace softgrain::lammps {

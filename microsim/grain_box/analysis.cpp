@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "common/core/limits.h"
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "common/core/statistics.h"
 
 namespace softgrain {

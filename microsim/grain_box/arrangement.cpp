@@ -1,4 +1,4 @@
-#include "microsim/grain_box/arrangement.h"
+#include "microsim/grain_box/grain_box_run.h"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <numeric>
 
 #include "common/core/error.h"
-#include "common/core/poisson_ratio.h"
+#include "common/core/material.h"
+#include "common/core/particles.h"
 #include "common/core/random.h"
-#include "common/core/solid_sphere.h"
 #include "common/dynamics/damped_relaxation.h"
-#include "common/dynamics/displace.h"
+#include "common/dynamics/force_pass.h"
 #include "common/io/interrupt.h"
 #include "common/statics/least_work.h"
 #include "microsim/grain_box/box_measure.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/core/limits.h"
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "common/statics/least_work.h"
 
 namespace softgrain {

@@ -10,7 +10,6 @@
 #include "common/core/limits.h"
 #include "common/io/interrupt.h"
 #include "common/state/checkpoint.h"
-#include "microsim/grain_box/arrangement.h"
 #include "microsim/grain_box/box_measure.h"
 
 namespace softgrain {

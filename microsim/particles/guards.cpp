@@ -5,10 +5,10 @@
 #include <sstream>
 
 #include "common/core/error.h"
-#include "common/core/in_space.h"
 #include "common/core/limits.h"
+#include "common/core/vec.h"
 #include "common/dynamics/verlet.h"
-#include "microsim/particles/scene_vector.h"
+#include "common/io/scene.h"
 
 namespace softgrain {
 

@@ -7,7 +7,6 @@
 
 #include "common/io/provenance.h"
 #include "microsim/particles/contact_monitor.h"
-#include "microsim/particles/frame_contacts.h"
 #include "microsim/particles/guards.h"
 #include "microsim/particles/particles_scene.h"
 #include "microsim/particles/trajectory.h"

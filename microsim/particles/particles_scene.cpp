@@ -9,13 +9,12 @@
 
 #include "common/core/error.h"
 #include "common/data/snapshot.h"
-#include "microsim/particles/frame_contacts.h"
+#include "common/io/scene.h"
 #include "microsim/particles/scene_bodies.h"
 #include "microsim/particles/scene_contacts.h"
 #include "microsim/particles/scene_memory.h"
-#include "microsim/particles/scene_places.h"
-#include "microsim/particles/scene_vector.h"
 #include "microsim/particles/scene_walls.h"
+#include "microsim/particles/trajectory.h"
 
 namespace softgrain {
 

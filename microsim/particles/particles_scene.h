@@ -10,6 +10,7 @@
 #include "common/packing/grading.h"
 #include "common/system.h"
 #include "microsim/particles/guards.h"
+#include "microsim/particles/scene_bodies.h"
 #include "microsim/particles/scene_time.h"
 
 namespace softgrain {
@@ -45,5 +46,17 @@ int particles_dimension(const Scene& scene);
 /// `seed`: of what is drawn, in place of that of the scene.
 template <int D = 3>
 ParticlesSceneOf<D> read_particles_scene(const Scene& scene, const std::optional<std::uint64_t>& seed = {});
+
+// Where the particles of a scene are at its start: particles that no wall or cell holds are found before anything runs.
+
+/// Throws InputError with file:line for a particle whose centre is behind a plane or outside the room of guards.escape,
+/// where that guard would stop the run at its first look; where the guard only counts, this is a remark. Remarks also
+/// name particles outside of all insides of spheres (unless they say inside = "none") and centres outside a cell along
+/// an axis that is not periodic. `has_cell`: the scene says a cell. Each remark names the first particle and their
+/// number.
+template <int D>
+std::vector<std::string> place_remarks(const SceneBodies<D>& bodies, const System<D>& system,
+                                       const std::vector<std::string>& wall_name, const GuardSpec& guards,
+                                       bool has_cell);
 
 }  // namespace softgrain

@@ -5,10 +5,9 @@
 #include <numeric>
 
 #include "common/core/error.h"
-#include "common/core/solid_sphere.h"
-#include "microsim/particles/scene_drawn.h"
+#include "common/core/particles.h"
+#include "common/io/scene.h"
 #include "microsim/particles/scene_memory.h"
-#include "microsim/particles/scene_vector.h"
 #include "microsim/particles/scene_walls.h"
 #include "microsim/particles/xyzr_file.h"
 

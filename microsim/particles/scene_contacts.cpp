@@ -7,7 +7,7 @@
 #include <set>
 
 #include "common/core/error.h"
-#include "common/io/poisson_range.h"
+#include "common/io/scene.h"
 #include "microsim/particles/scene_soft_laws.h"
 
 namespace softgrain {

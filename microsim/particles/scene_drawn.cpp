@@ -1,4 +1,4 @@
-#include "microsim/particles/scene_drawn.h"
+#include "microsim/particles/scene_bodies.h"
 
 #include <fmt/format.h>
 
@@ -7,12 +7,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/core/particles.h"
 #include "common/core/random.h"
-#include "common/core/solid_sphere.h"
 #include "common/io/interrupt.h"
+#include "common/io/scene.h"
 #include "common/packing/grading_scene.h"
 #include "microsim/particles/scene_memory.h"
-#include "microsim/particles/scene_vector.h"
 
 namespace softgrain {
 

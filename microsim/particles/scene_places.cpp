@@ -1,4 +1,4 @@
-#include "microsim/particles/scene_places.h"
+#include "microsim/particles/particles_scene.h"
 
 #include <fmt/format.h>
 

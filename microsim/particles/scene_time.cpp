@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "common/core/error.h"
-#include "common/dynamics/stable_step.h"
 #include "common/dynamics/time_step.h"
 
 namespace softgrain {

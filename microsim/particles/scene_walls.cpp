@@ -6,7 +6,7 @@
 
 #include "common/core/error.h"
 #include "common/data/snapshot.h"
-#include "microsim/particles/scene_vector.h"
+#include "common/io/scene.h"
 
 namespace softgrain {
 

@@ -5,12 +5,23 @@
 #include <vector>
 
 #include "microsim/powder/powder_contacts.h"
-#include "microsim/powder/powder_moduli.h"
-#include "microsim/powder/powder_percolation.h"
+#include "microsim/powder/powder_interactions.h"
 #include "microsim/powder/powder_rigidity.h"
 #include "microsim/powder/powder_start.h"
 
 namespace softgrain {
+
+/// How strong the chains are that span a powder: F_perc, the largest threshold at which the pairs with |F| >= F_perc
+/// join a disk to its own periodic image, in the units of the sample: along an axis when the image lies any number of
+/// periods away along it, whatever the other axis does. Distant pairs count. None when no threshold does.
+struct PowderPercolation {
+  std::optional<double> x;
+  std::optional<double> y;
+  std::optional<double> either;  ///< the published reading: through the cell in one direction at least
+  std::optional<double> both;    ///< one cluster along x and along y
+};
+
+PowderPercolation powder_percolation(const System<2>& system, const std::vector<PowderInteraction>& pairs);
 
 /// Results for one state, in the units of the sample. What is undefined is absent.
 struct PowderAnalysis {

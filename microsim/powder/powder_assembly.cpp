@@ -9,7 +9,7 @@
 #include "common/dynamics/force_pass.h"
 #include "common/io/interrupt.h"
 #include "common/neighbours/verlet_list.h"
-#include "microsim/powder/powder_moduli.h"
+#include "microsim/powder/powder_rigidity.h"
 
 namespace softgrain {
 

@@ -1,4 +1,4 @@
-#include "microsim/powder/powder_scattering.h"
+#include "microsim/powder/powder_mesh.h"
 
 #include <fftw3.h>
 #include <fmt/format.h>

@@ -6,7 +6,7 @@
 #include "common/core/error.h"
 #include "common/data/columns.h"
 #include "common/data/fields.h"
-#include "common/io/attribute_members.h"
+#include "common/io/hdf5_file.h"
 #include "common/packing/grading_scene.h"
 #include "common/state/system_io.h"
 #include "microsim/powder/powder_assembly.h"
@@ -58,6 +58,24 @@ std::vector<PowderSnapshot> read_snapshots(const h5::Group& group) {
 }
 
 namespace {
+
+// Members of a struct as attributes of a group, by one list of names for both directions.
+
+/// item(name, member) writes the member.
+struct AttributeWriter {
+  const h5::Group& group;
+  void operator()(const char* name, double value) const { group.attribute(name, value); }
+  void operator()(const char* name, std::int64_t value) const { group.attribute(name, value); }
+  void operator()(const char* name, bool value) const { group.attribute(name, std::int64_t{value ? 1 : 0}); }
+};
+
+/// item(name, member) reads it. Throws IoError when it is missing.
+struct AttributeReader {
+  const h5::Group& group;
+  void operator()(const char* name, double& value) const { value = group.number(name); }
+  void operator()(const char* name, std::int64_t& value) const { value = group.integer(name); }
+  void operator()(const char* name, bool& value) const { value = group.integer(name) != 0; }
+};
 
 void fields(auto&& item, Of<PowderSpec> auto& s) {
   item("disks", s.disks);

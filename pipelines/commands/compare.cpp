@@ -8,8 +8,6 @@
 #include "pipelines/report/report.h"
 #include "pipelines/run/run_context.h"
 #include "pipelines/run/text_table.h"
-#include "pipelines/runs/run_numbers.h"
-#include "pipelines/runs/scene_differences.h"
 #include "pipelines/runs/set_text.h"
 
 namespace softgrain {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "common/core/enum_names.h"
-#include "common/io/run_log.h"
+#include "common/io/progress.h"
 
 namespace softgrain {
 

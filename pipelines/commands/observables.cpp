@@ -12,7 +12,6 @@
 #include "common/core/statistics.h"
 #include "common/data/macro_result.h"
 #include "common/data/measurements.h"
-#include "common/io/quantity.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "common/core/error.h"
-#include "common/io/run_log.h"
+#include "common/io/progress.h"
 #include "pipelines/kinds/kinds.h"
 #include "pipelines/run/run_context.h"
 #include "pipelines/runs/run_set.h"

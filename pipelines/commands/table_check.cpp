@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "calibrate/force_offset.h"
+#include "calibrate/experiment_fit.h"
 #include "common/core/error.h"
 #include "common/data/force_curves.h"
 #include "common/data/force_scale.h"

@@ -1,6 +1,6 @@
 // XDMF version 2, as ParaView 5.11 reads it: particles as Polyvertex with their numbers named by a data set, contacts
 // as Polyline of two nodes each; one collection per file, since times of particles and contacts differ.
-#include "pipelines/export/xdmf.h"
+#include "pipelines/export/export.h"
 
 #include <fmt/format.h>
 

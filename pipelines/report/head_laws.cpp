@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-#include "common/io/flat_scene.h"
+#include "common/io/scene.h"
 #include "pipelines/law/named_laws.h"
 #include "pipelines/report/engine_style.h"
 #include "pipelines/report/number_format.h"

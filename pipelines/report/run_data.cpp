@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "common/core/error.h"
-#include "common/io/flat_scene.h"
 #include "common/io/text_file.h"
 #include "pipelines/results/result_files.h"
 #include "pipelines/results/summary.h"

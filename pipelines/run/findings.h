@@ -2,6 +2,8 @@
 // give.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -41,5 +43,25 @@ class Findings {
 std::string time_text(double seconds);
 /// "12 kB", "3.4 MB", "1.2 GB".
 std::string bytes_text(double bytes);
+
+// Short trials by which softgrain check tells how long a run will take.
+
+/// Wall time of one call [s].
+double seconds_of(const std::function<void()>& work);
+
+/// Mean wall time of a call [s]: called at least once and at most `most` times, until `budget` seconds have passed.
+double seconds_per_call(const std::function<void()>& work, double budget, std::int64_t most);
+
+/// An observer throws it to end a trial that has taken long enough.
+struct TrialOver {};
+
+/// Processor time of this thread so far [s].
+double thread_seconds();
+
+/// Processor time of one call with one thread [s]: what other programs do meanwhile does not count.
+double core_seconds_of(const std::function<void()>& work);
+
+/// Mean processor time of a call with one thread [s]; `budget` and `most` as above.
+double core_seconds_per_call(const std::function<void()>& work, double budget, std::int64_t most);
 
 }  // namespace softgrain

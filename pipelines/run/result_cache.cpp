@@ -7,7 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/data/spec_io.h"
-#include "common/io/file_seal.h"
+#include "common/io/file_safety.h"
 #include "common/io/text_file.h"
 
 namespace softgrain {
@@ -48,6 +48,13 @@ void ResultCache::keep(const std::string& key, const std::function<void(const h5
   std::error_code error;
   std::filesystem::rename(own, file(key), error);
   if (error) throw IoError(file(key) + ": cannot be written: " + error.message());
+}
+
+KeyText& KeyText::add(const std::string& value) {
+  // A key is kept as an attribute of a file, which has room for 64 kB: of lists and files their hash stands there.
+  constexpr std::size_t kLongest = 400;
+  const std::string shown = value.size() > kLongest ? "hash " + short_hash(value) : value;
+  return append(fmt::format("{}:{}", value.size(), shown));
 }
 
 }  // namespace softgrain

@@ -16,7 +16,6 @@
 #include "common/io/text_file.h"
 #include "pipelines/law/terminal_plot.h"
 #include "pipelines/results/summary.h"
-#include "pipelines/run/run_files.h"
 
 namespace softgrain {
 

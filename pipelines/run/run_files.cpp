@@ -1,4 +1,4 @@
-#include "pipelines/run/run_files.h"
+#include "pipelines/run/run_context.h"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,6 +1,8 @@
 // What a kind of scene is to the commands: the table in kinds/kinds.h lists them all.
 #pragma once
 
+#include <algorithm>
+#include <cctype>
 #include <string>
 
 #include "common/io/scene.h"
@@ -26,5 +28,18 @@ struct SceneKind {
   bool takes_law = false;     ///< whether --law goes with it
   bool takes_engine = false;  ///< whether --engine and what belongs to it do
 };
+
+// Names of [[variant]] tables.
+
+/// The key "name", fit to be that of a file: letters, digits, '-', '_' and '.', which does not lead. Throws InputError.
+inline std::string read_variant_name(const SceneTable& variant) {
+  std::string name = variant.text("name");
+  const bool plain = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
+  });
+  if (!plain || name.front() == '.')
+    variant.add_error("name", "must be made of letters, digits, '-', '_' and '.', which does not lead");
+  return name;
+}
 
 }  // namespace softgrain

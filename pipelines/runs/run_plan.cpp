@@ -1,4 +1,4 @@
-#include "pipelines/runs/run_plan.h"
+#include "pipelines/runs/run_set.h"
 
 #include <fmt/format.h>
 

@@ -13,9 +13,8 @@
 #include "common/io/text_file.h"
 #include "pipelines/kinds/kinds.h"
 #include "pipelines/report/report.h"
-#include "pipelines/run/run_files.h"
+#include "pipelines/run/run_context.h"
 #include "pipelines/run/text_table.h"
-#include "pipelines/runs/run_numbers.h"
 #include "pipelines/runs/set_text.h"
 
 namespace softgrain {

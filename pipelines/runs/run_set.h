@@ -1,12 +1,37 @@
-// The runs of a plan, one after another, in directories below that of the set.
+// Which runs a sweep is made of (every choice of values of some keys of the scene, with every seed), and how they are
+// run: one after another, in directories below that of the set.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "pipelines/results/set_summary.h"
 #include "pipelines/run/run_context.h"
-#include "pipelines/runs/run_plan.h"
 
 namespace softgrain {
+
+struct PlannedRun {
+  std::string name;                 ///< name of its directory: "bodies=40_seed=2"
+  std::vector<std::string> values;  ///< one per key
+  std::optional<std::uint64_t> seed;
+};
+
+struct RunPlan {
+  std::vector<SweptKey> over;
+  std::vector<std::uint64_t> seeds;  ///< empty: that of the scene
+  std::vector<PlannedRun> runs;      ///< the first key varies slowest, seeds fastest
+
+  /// What --set would say for this run.
+  [[nodiscard]] std::vector<std::string> overrides(const PlannedRun& run) const;
+};
+
+/// `over`: texts "key=a,b,c" of --over, each a list as --set takes its values, commas within brackets and quotes left
+/// alone, or whole numbers "1..8"; `seeds`: "1..8", "1,3,7"; `set`: texts of --set, whose keys are not swept as well.
+/// Throws InputError with everything that is wrong, one a line: no key or value, a key or value twice, more than 10000
+/// runs.
+RunPlan make_plan(const std::vector<std::string>& over, const std::string& seeds, const std::vector<std::string>& set);
 
 /// Runs the scene `options.inputs.front()` as the plan says, each run in OUT/NAME as its own kind runs it (the log, its
 /// report and all); OUT is --out, else results/SCENE_`suffix`. With --resume runs that have ended are not repeated, and

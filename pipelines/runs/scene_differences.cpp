@@ -1,4 +1,3 @@
-#include "pipelines/runs/scene_differences.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +7,12 @@
 #include <set>
 
 #include "common/core/error.h"
-#include "common/io/flat_scene.h"
 #include "common/io/hdf5_file.h"
+#include "common/io/scene.h"
 #include "common/io/text_file.h"
+#include "pipelines/report/run_data.h"
+#include "pipelines/report/run_values.h"
+#include "pipelines/runs/set_text.h"
 
 namespace softgrain {
 
@@ -90,6 +92,16 @@ std::vector<SweptKey> scene_differences(const std::vector<std::string>& paths) {
     if (known.size() > 1) out.push_back(std::move(one));
   }
   return out;
+}
+
+void read_numbers(const std::string& directory, RunEntry& entry) {
+  const report::RunData run = report::load_run(directory);
+  const auto summary = run.summary_as<AnySummary>();
+  entry.status = parse_enum<RunStatus>(summary.status).value_or(RunStatus::good);
+  if (summary.seconds) entry.seconds = *summary.seconds;
+  if (const std::vector<std::string> why = warnings_of(summary); entry.status == RunStatus::not_usable && !why.empty())
+    entry.reason = why.front();
+  entry.numbers = report::values_of(run);
 }
 
 }  // namespace softgrain

@@ -1,7 +1,9 @@
-// Several runs in words and tables: for the terminal, and as CSV.
+// Several runs set beside each other: their numbers, in what their scenes differ, words and tables for the terminal and
+// as CSV.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "pipelines/results/set_summary.h"
 #include "pipelines/run/text_table.h"
@@ -32,5 +34,18 @@ TextTable table_of(const SetSummary& summary);
 
 /// "12.3 +- 0.4"; "-" for what is not there.
 std::string number_text(double value, double error);
+
+// What is in the directory of a run, as far as it is set beside others.
+
+/// Status (good where it has no summary), time and numbers of the run in `directory`, into its entry. Throws
+/// IoError where it holds no results or damaged ones.
+void read_numbers(const std::string& directory, RunEntry& entry);
+
+// In what the scenes differ that several runs were made from.
+
+/// Every key whose value is not the same for all runs, with its value in each ("-": has none), from the scenes, seeds
+/// and laws that summaries (of directories) and HDF5 files say they were made from. Titles are left out. Runs that do
+/// not say their scene are passed over in silence: their values are "?".
+std::vector<SweptKey> scene_differences(const std::vector<std::string>& paths);
 
 }  // namespace softgrain

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "common/core/one_thread.h"
+#include "common/core/parallel_tasks.h"
+#include "common/core/particles.h"
 #include "common/core/random.h"
-#include "common/core/solid_sphere.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/verlet.h"
 #include "common/neighbours/spatial_order.h"

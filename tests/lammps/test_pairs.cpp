@@ -7,8 +7,8 @@
 #include <fstream>
 
 #include "common/contact/law_file.h"
+#include "common/core/particles.h"
 #include "common/core/random.h"
-#include "common/core/solid_sphere.h"
 #include "common/dynamics/force_pass.h"
 #include "compute.h"
 #include "fix.h"

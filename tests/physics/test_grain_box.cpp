@@ -7,7 +7,6 @@
 
 #include "common/statics/least_work.h"
 #include "microsim/grain_box/analysis.h"
-#include "microsim/grain_box/arrangement.h"
 #include "microsim/grain_box/box_measure.h"
 #include "microsim/grain_box/grain_box_run.h"
 #include "microsim/grain_box/stepper.h"

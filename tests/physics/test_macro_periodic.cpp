@@ -6,13 +6,11 @@
 #include <cmath>
 
 #include "common/contact/multi_contact_from_table.h"
-#include "common/dynamics/contact_virial.h"
 #include "common/dynamics/contact_watch.h"
 #include "common/dynamics/force_pass.h"
 #include "macrosim/body_contacts.h"
 #include "macrosim/compression.h"
 #include "macrosim/constructed_packing.h"
-#include "macrosim/hard_bodies.h"
 #include "macrosim/preparation.h"
 #include "macrosim/pressed_box.h"
 #include "tests/support/multi_contact.h"

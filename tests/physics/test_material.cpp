@@ -1,8 +1,8 @@
 // Resolved materials: who rattles, who bears, what a preparation with friction hands over.
 #include <gtest/gtest.h>
 
+#include "macrosim/body_contacts.h"
 #include "macrosim/compression.h"
-#include "macrosim/grain_record.h"
 #include "macrosim/preparation.h"
 
 namespace softgrain {

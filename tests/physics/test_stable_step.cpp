@@ -1,5 +1,5 @@
 // The largest stable step of a network of contacts: closed forms, and steps just below and above it.
-#include "common/dynamics/stable_step.h"
+#include "common/dynamics/time_step.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "pipelines/kinds/macro/memory.h"
+#include "pipelines/kinds/macro/room.h"
 #include "tests/support/every_kind.h"
 #include "tests/support/process.h"
 #include "tests/support/program.h"

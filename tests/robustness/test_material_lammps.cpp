@@ -7,7 +7,7 @@
 
 #include "common/data/macro_result.h"
 #include "common/io/text_file.h"
-#include "macrosim/grain_record.h"
+#include "macrosim/body_contacts.h"
 #include "macrosim/lammps_run/points_file.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "pipelines/report/run_data.h"
-#include "pipelines/run/run_files.h"
+#include "pipelines/run/run_context.h"
 #include "tests/support/every_kind.h"
 #include "tests/support/process.h"
 #include "tests/support/program.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "common/core/error.h"
-#include "common/io/directory_lock.h"
+#include "common/io/file_safety.h"
 #include "tests/support/every_kind.h"
 #include "tests/support/process.h"
 #include "tests/support/program.h"

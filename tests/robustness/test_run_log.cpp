@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "common/io/run_log.h"
+#include "common/io/progress.h"
 #include "tests/support/every_kind.h"
 #include "tests/support/process.h"
 #include "tests/support/program.h"

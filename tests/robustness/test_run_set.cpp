@@ -5,7 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "common/io/directory_lock.h"
+#include "common/io/file_safety.h"
 #include "common/io/text_file.h"
 #include "tests/support/process.h"
 #include "tests/support/program.h"

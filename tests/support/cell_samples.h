@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "macrosim/cell_matter/cell_packing.h"
 #include "macrosim/cell_matter/cell_start.h"
 #include "tests/support/random_sites.h"

@@ -8,11 +8,11 @@
 #include <cmath>
 
 #include "common/contact/threshold_term.h"
+#include "common/core/particles.h"
 #include "common/core/random.h"
-#include "common/core/solid_sphere.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/pair_loop.h"
-#include "common/dynamics/particle_pass.h"
+#include "common/dynamics/parallel_pass.h"
 #include "common/neighbours/verlet_list.h"
 
 namespace {
@@ -128,7 +128,7 @@ std::vector<Group> groups_of(const System<D>& s) {
 }
 
 /// The same bits; or, with x^y in the law, which lanes take from other functions than single numbers
-/// (common/core/lane_power.h), the same to a few units in the last place of the largest number of a kind.
+/// (common/core/lanes.h), the same to a few units in the last place of the largest number of a kind.
 template <class Thing>
 void expect_same(const Thing& a, const Thing& b, bool powers) {
   const std::vector<Group> left = groups_of(a), right = groups_of(b);

@@ -14,7 +14,6 @@
 #include "pipelines/kinds/law_table/multi_contact_cache.h"
 #include "pipelines/kinds/law_table/multi_contact_members.h"
 #include "pipelines/kinds/macro/packing_source.h"
-#include "pipelines/kinds/macro/spec_members.h"
 #include "pipelines/kinds/macro/twin_cache.h"
 #include "tests/support/multi_contact.h"
 

@@ -8,7 +8,7 @@
 #include "common/core/error.h"
 #include "common/io/interrupt.h"
 #include "common/io/text_file.h"
-#include "macrosim/lammps_run/child_process.h"
+#include "macrosim/lammps_run/lammps_program.h"
 #include "tests/support/temporary_directory.h"
 
 namespace softgrain {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "common/core/error.h"
-#include "common/io/text_encoding.h"
+#include "common/io/text_file.h"
 
 namespace {
 

@@ -6,11 +6,11 @@
 
 #include "calibrate/merge_measurements.h"
 #include "common/core/error.h"
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "common/data/card_text.h"
 #include "common/data/spec_io.h"
 #include "macrosim/constructed_packing.h"
-#include "microsim/grain_box/arrangement.h"
+#include "microsim/grain_box/grain_box_run.h"
 #include "microsim/particles/particles_scene.h"
 #include "microsim/powder/powder_start.h"
 #include "microsim/powder/powder_state_io.h"

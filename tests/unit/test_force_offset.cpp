@@ -1,5 +1,4 @@
 // A constant force without contact: found, taken off, said; and said to be open where too few readings tell.
-#include "calibrate/force_offset.h"
 
 #include <gtest/gtest.h>
 

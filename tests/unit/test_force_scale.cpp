@@ -5,7 +5,7 @@
 
 #include "common/data/force_scale.h"
 #include "common/data/macro_result.h"
-#include "pipelines/kinds/macro/first_point.h"
+#include "pipelines/kinds/macro/values.h"
 
 namespace softgrain {
 namespace {

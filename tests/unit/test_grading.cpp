@@ -8,11 +8,10 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/core/particles.h"
 #include "common/core/random.h"
-#include "common/core/solid_sphere.h"
 #include "common/io/text_file.h"
 #include "common/packing/grading_scene.h"
-#include "common/packing/size_distribution.h"
 #include "tests/support/temporary_directory.h"
 
 namespace {

@@ -9,7 +9,6 @@
 
 #include "common/core/error.h"
 #include "microsim/grain_box/analysis.h"
-#include "microsim/grain_box/arrangement.h"
 #include "microsim/grain_box/box_measure.h"
 #include "microsim/grain_box/grain_box_run.h"
 #include "pipelines/kinds/grain_box/scene.h"

@@ -5,16 +5,14 @@
 
 #include "common/contact/multi_contact_from_table.h"
 #include "common/core/error.h"
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "common/data/multi_contact_replicates.h"
 #include "common/dynamics/force_pass.h"
 #include "common/neighbours/verlet_list.h"
 #include "common/packing/void_filling.h"
 #include "microsim/filled_shell.h"
 #include "microsim/multi_contact_arrangements.h"
-#include "microsim/shell_compaction.h"
 #include "pipelines/kinds/hierarchy/level.h"
-#include "pipelines/kinds/hierarchy/level_errors.h"
 #include "tests/support/multi_contact.h"
 #include "tests/support/synthetic_multi_contact.h"
 

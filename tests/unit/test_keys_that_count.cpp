@@ -8,7 +8,7 @@
 #include "macrosim/test_protocol.h"
 #include "pipelines/kinds/kinds.h"
 #include "pipelines/kinds/macro_comparison/scene.h"
-#include "pipelines/kinds/material/family.h"
+#include "pipelines/kinds/material/scene.h"
 #include "tests/support/keyed_scenes.h"
 #include "tests/support/refusal.h"
 

@@ -12,8 +12,6 @@
 #include "macrosim/lammps_run/dump_files.h"
 #include "macrosim/lammps_run/input_script.h"
 #include "macrosim/lammps_run/lammps_curve.h"
-#include "macrosim/lammps_run/lammps_log.h"
-#include "macrosim/lammps_run/resume_point.h"
 #include "macrosim/test_protocol.h"
 #include "tests/support/lammps_files.h"
 #include "tests/support/temporary_directory.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/core/lane_power.h"
+#include "common/core/lanes.h"
 #include "common/core/random.h"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
-#include "common/packing/grading_parts.h"
+#include "common/packing/grading.h"
 #include "pipelines/kinds/material_law/scene.h"
 
 namespace softgrain {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "common/core/limits.h"
-#include "common/core/solid_sphere.h"
-#include "macrosim/grain_record.h"
+#include "common/core/particles.h"
+#include "macrosim/body_contacts.h"
 #include "pipelines/kinds/material_models/models.h"
 #include "pipelines/kinds/material_models/scores.h"
 

@@ -1,8 +1,8 @@
 // Cells from files, runs by steps, and what is measured at the end of a run: contacts, stress, cost.
 #include "common/dynamics/verlet.h"
 #include "common/io/text_file.h"
-#include "microsim/particles/frame_contacts.h"
 #include "microsim/particles/particles_run.h"
+#include "microsim/particles/trajectory.h"
 #include "tests/support/small_packing.h"
 #include "tests/support/temporary_directory.h"
 

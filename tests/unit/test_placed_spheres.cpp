@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "common/core/particles.h"
 #include "common/core/random.h"
-#include "common/core/solid_sphere.h"
 #include "macrosim/placed_spheres.h"
 #include "macrosim/preparation.h"
 

@@ -1,6 +1,6 @@
 // Poisson's ratio has one range, above -1 and up to 1/2: every reader of scenes, cards, tables and files takes all of
 // it and nothing else, and what was written is read back.
-#include "common/core/poisson_ratio.h"
+#include "common/core/material.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include "common/core/error.h"
 #include "common/data/cell_card.h"
 #include "common/data/force_curves.h"
-#include "microsim/grain_box/arrangement.h"
+#include "microsim/grain_box/grain_box_run.h"
 #include "tests/support/every_kind.h"
 
 namespace {

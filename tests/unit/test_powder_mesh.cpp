@@ -11,7 +11,7 @@
 #include "common/core/error.h"
 #include "common/core/random.h"
 #include "microsim/powder/powder_holes.h"
-#include "microsim/powder/powder_scattering.h"
+#include "microsim/powder/powder_mesh.h"
 
 namespace softgrain {
 namespace {

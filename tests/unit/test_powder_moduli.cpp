@@ -1,5 +1,5 @@
 // Elastic moduli of packs in the plane: lattices known by hand, other algebra, and a real deformation.
-#include "microsim/powder/powder_moduli.h"
+#include "microsim/powder/powder_rigidity.h"
 
 #include <gtest/gtest.h>
 

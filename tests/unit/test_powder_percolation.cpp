@@ -1,5 +1,5 @@
 // Percolating force chains against a search through the unwrapped cell at every threshold.
-#include "microsim/powder/powder_percolation.h"
+#include "microsim/powder/powder_analysis.h"
 
 #include <gtest/gtest.h>
 

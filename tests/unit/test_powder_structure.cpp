@@ -9,7 +9,6 @@
 #include "microsim/powder/powder_start.h"
 #include "microsim/powder/powder_state_io.h"
 #include "pipelines/kinds/cohesive_powder/report_plots.h"
-#include "pipelines/kinds/cohesive_powder/report_view.h"
 #include "pipelines/kinds/cohesive_powder/scene.h"
 #include "pipelines/kinds/cohesive_powder/summary.h"
 #include "pipelines/report/report.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "common/core/error.h"
-#include "common/io/flat_scene.h"
-#include "pipelines/runs/run_plan.h"
+#include "common/io/scene.h"
+#include "pipelines/runs/run_set.h"
 
 namespace softgrain {
 namespace {

@@ -1,5 +1,5 @@
 // Means over samples: nested numbers, undefined ones, one sample, none.
-#include "pipelines/run/sample_statistics.h"
+#include "pipelines/kinds/cohesive_powder/output.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Selective mass scaling: raises what is too quick, nothing else, and gives everything back.
-#include "common/dynamics/scaled_masses.h"
+#include "common/dynamics/slow_dynamics.h"
 
 #include <gtest/gtest.h>
 

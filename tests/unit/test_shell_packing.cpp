@@ -14,7 +14,7 @@
 
 #include "common/core/error.h"
 #include "common/core/random.h"
-#include "common/packing/size_distribution.h"
+#include "common/packing/grading.h"
 
 namespace softgrain {
 namespace {

@@ -1,6 +1,6 @@
 // Truncated power-law radii: closed forms of the distribution, and the exponent found back in samples with an honest
 // error.
-#include "common/packing/size_distribution.h"
+#include "common/packing/grading.h"
 
 #include <gtest/gtest.h>
 

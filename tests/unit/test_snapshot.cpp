@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "common/core/error.h"
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "common/data/snapshot_io.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/system_snapshot.h"

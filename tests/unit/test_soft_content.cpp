@@ -1,5 +1,5 @@
 // Contents turned as a whole: distances stay, directions are even.
-#include "microsim/soft_content.h"
+#include "microsim/filled_shell.h"
 
 #include <gtest/gtest.h>
 

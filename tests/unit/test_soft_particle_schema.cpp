@@ -7,7 +7,7 @@
 #include <tuple>
 #include <type_traits>
 
-#include "common/core/poisson_ratio.h"
+#include "common/core/material.h"
 #include "common/data/card_text.h"
 #include "common/data/soft_particle_schema.h"
 #include "common/data/spec_io.h"

@@ -5,7 +5,7 @@
 
 #include "calibrate/state_curves.h"
 #include "common/core/random.h"
-#include "macrosim/grain_record.h"
+#include "macrosim/body_contacts.h"
 #include "pipelines/kinds/material/prediction.h"
 
 namespace softgrain {

@@ -1,13 +1,13 @@
 // Summaries of all kinds: what was written comes back, and what others wrote in its place is no trouble.
 #include <gtest/gtest.h>
 
-#include "pipelines/kinds/cohesive_powder/results.h"
+#include "pipelines/kinds/cohesive_powder/scene.h"
 #include "pipelines/kinds/cohesive_powder/summary.h"
 #include "pipelines/kinds/hierarchy/summary.h"
 #include "pipelines/kinds/inverse/summary.h"
 #include "pipelines/kinds/macro/summary.h"
 #include "pipelines/kinds/macro_comparison/summary.h"
-#include "pipelines/kinds/particles/results.h"
+#include "pipelines/kinds/particles/scene.h"
 #include "pipelines/kinds/particles/summary.h"
 #include "pipelines/law/experiment_summary.h"
 #include "pipelines/report/run_data.h"

@@ -1,4 +1,4 @@
-#include "common/dynamics/thread_pace.h"
+#include "common/dynamics/thread_choice.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,6 @@
 #include "common/dynamics/verlet.h"
 #include "common/io/hdf5_file.h"
 #include "common/neighbours/spatial_order.h"
-#include "macrosim/hard_bodies.h"
 #include "macrosim/preparation.h"
 #include "macrosim/pressed_box.h"
 #include "microsim/particles/particles_run.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "calibrate/joint_fit.h"
+#include "calibrate/threshold_model.h"
 #include "common/core/error.h"
 #include "pipelines/law/fit_settings.h"
 #include "tests/support/synthetic_law.h"

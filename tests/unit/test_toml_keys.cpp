@@ -1,4 +1,4 @@
-#include "common/io/toml_keys.h"
+#include "common/io/toml.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "common/core/error.h"
-#include "common/io/quantity.h"
 #include "common/io/scene.h"
 
 namespace softgrain {

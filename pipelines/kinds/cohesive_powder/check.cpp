@@ -7,7 +7,7 @@
 #include "common/core/error.h"
 #include "pipelines/kinds/cohesive_powder/scene.h"
 #include "pipelines/kinds/cohesive_powder/variants.h"
-#include "pipelines/run/trial_times.h"
+#include "pipelines/run/findings.h"
 
 namespace softgrain {
 

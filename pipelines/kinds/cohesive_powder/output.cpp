@@ -1,8 +1,12 @@
 #include "pipelines/kinds/cohesive_powder/output.h"
 
 #include <array>
+#include <cmath>
+#include <map>
+#include <string>
 #include <utility>
 
+#include "common/core/statistics.h"
 #include "pipelines/kinds/cohesive_powder/summary.h"
 
 namespace softgrain {
@@ -43,6 +47,26 @@ void write_pairs(const h5::Group& group, const std::vector<PowderInteraction>& p
       "moment on i; kind: 0 compressive, 1 tensile, 2 distant, 3 unstressed");
 }
 
+using nlohmann::json;
+using Values = std::map<std::string, std::vector<double>>;
+
+void collect(const json& object, const std::string& path, Values& values) {
+  for (const auto& [key, value] : object.items()) {
+    const std::string name = path.empty() ? key : path + "." + key;
+    if (value.is_object()) collect(value, name, values);
+    if (value.is_number()) values[name].push_back(value.get<double>());
+    if (value.is_null()) values[name];  // named, though undefined
+  }
+}
+
+json statistics_of(const std::vector<double>& values) {
+  const MeanError m = mean_error(values);
+  json out{{"mean", nullptr}, {"deviation", nullptr}, {"samples", m.n}};
+  if (m.n > 0) out["mean"] = m.mean;
+  if (m.n > 1) out["deviation"] = m.deviation;
+  return out;
+}
+
 }  // namespace
 
 json histograms_json(const std::vector<const PowderForces*>& samples) {
@@ -61,6 +85,14 @@ void write_analysis(const h5::Group& group, const PowderAnalysis& analysis) {
   const h5::Group histograms = group.create("histograms");
   for (const auto& [name, member] : kHistograms) write_histogram(histograms.create(name), analysis.forces.*member);
   group.attribute("scalars", json_of(analysis).dump());
+}
+
+json sample_statistics(const std::vector<json>& samples) {
+  Values values;
+  for (const json& sample : samples) collect(sample, "", values);
+  json out = json::object();
+  for (const auto& [name, list] : values) out[name] = statistics_of(list);
+  return out;
 }
 
 }  // namespace softgrain

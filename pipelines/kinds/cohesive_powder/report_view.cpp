@@ -1,4 +1,4 @@
-#include "pipelines/kinds/cohesive_powder/report_view.h"
+#include "pipelines/kinds/cohesive_powder/report_plots.h"
 
 #include <fmt/format.h>
 

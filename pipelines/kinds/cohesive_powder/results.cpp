@@ -1,4 +1,4 @@
-#include "pipelines/kinds/cohesive_powder/results.h"
+#include "pipelines/kinds/cohesive_powder/scene.h"
 
 #include <fmt/format.h>
 

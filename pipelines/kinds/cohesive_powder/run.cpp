@@ -4,21 +4,18 @@
 
 #include <cmath>
 
+#include "common/core/cost.h"
 #include "common/core/error.h"
 #include "common/core/parallel_tasks.h"
-#include "common/core/stopwatch.h"
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
 #include "common/io/text_file.h"
 #include "microsim/powder/powder_state_io.h"
 #include "pipelines/kinds/cohesive_powder/consolidation.h"
 #include "pipelines/kinds/cohesive_powder/output.h"
-#include "pipelines/kinds/cohesive_powder/results.h"
 #include "pipelines/kinds/cohesive_powder/summary.h"
 #include "pipelines/kinds/cohesive_powder/variants.h"
-#include "pipelines/kinds/cohesive_powder/variants_run.h"
 #include "pipelines/run/run.h"
-#include "pipelines/run/sample_statistics.h"
 
 namespace softgrain {
 

@@ -8,6 +8,7 @@
 #include "common/io/scene.h"
 #include "microsim/powder/powder_assembly.h"
 #include "pipelines/kinds/cohesive_powder/structure.h"
+#include "pipelines/results/kind_results.h"
 #include "pipelines/run/findings.h"
 #include "pipelines/run/run.h"
 #include "pipelines/run/scene_kind.h"
@@ -52,5 +53,18 @@ SceneKind cohesive_powder_kind();
 
 /// What follows from such a scene: phases, time step, steps at most, overlaps, time from a short trial.
 void check_powder(const Scene& scene, Findings& out);
+
+// What runs of cohesive powders leave behind.
+
+KindResults powder_results();
+
+/// powder.h5: pictures of the assembly without contacts, then the state that it ended in, with them. Throws
+/// IoError.
+void visit_powder(const std::string& path, SnapshotChoice choice, const VisitSnapshot& visit);
+
+namespace report {
+std::string powder_section(const RunData& run);           ///< packings, forces, I(k), courses
+std::string powder_variants_section(const RunData& run);  ///< all variants beside what is published
+}  // namespace report
 
 }  // namespace softgrain

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "pipelines/kinds/cohesive_powder/results.h"
+#include "pipelines/kinds/cohesive_powder/scene.h"
 #include "pipelines/kinds/cohesive_powder/summary.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"

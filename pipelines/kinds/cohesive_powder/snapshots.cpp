@@ -3,7 +3,7 @@
 
 #include "common/dynamics/system_snapshot.h"
 #include "microsim/powder/powder_state_io.h"
-#include "pipelines/kinds/cohesive_powder/results.h"
+#include "pipelines/kinds/cohesive_powder/scene.h"
 
 namespace softgrain {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "common/dynamics/force_pass.h"
-#include "microsim/powder/powder_scattering.h"
+#include "microsim/powder/powder_mesh.h"
 #include "microsim/powder/powder_start.h"
 
 namespace softgrain {

@@ -1,4 +1,4 @@
-#include "pipelines/kinds/cohesive_powder/variant_entry.h"
+#include "pipelines/kinds/cohesive_powder/variants.h"
 
 #include <array>
 #include <cmath>

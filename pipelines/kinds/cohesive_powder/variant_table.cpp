@@ -1,4 +1,3 @@
-#include "pipelines/kinds/cohesive_powder/variant_table.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "pipelines/kinds/cohesive_powder/variant_entry.h"
+#include "pipelines/kinds/cohesive_powder/variants.h"
 
 namespace softgrain {
 

@@ -7,8 +7,7 @@
 #include <set>
 
 #include "common/core/error.h"
-#include "pipelines/kinds/cohesive_powder/variant_entry.h"
-#include "pipelines/run/variant_name.h"
+#include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
 

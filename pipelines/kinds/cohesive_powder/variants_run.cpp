@@ -1,4 +1,3 @@
-#include "pipelines/kinds/cohesive_powder/variants_run.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +7,6 @@
 #include "common/core/error.h"
 #include "common/io/text_file.h"
 #include "pipelines/kinds/cohesive_powder/scene.h"
-#include "pipelines/kinds/cohesive_powder/variant_entry.h"
-#include "pipelines/kinds/cohesive_powder/variant_table.h"
 #include "pipelines/kinds/cohesive_powder/variants.h"
 #include "pipelines/report/report.h"
 

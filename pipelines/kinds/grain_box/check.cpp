@@ -9,7 +9,7 @@
 
 #include "microsim/grain_box/analysis.h"
 #include "microsim/grain_box/grain_box_run.h"
-#include "pipelines/run/trial_times.h"
+#include "pipelines/run/findings.h"
 
 namespace softgrain {
 

@@ -1,4 +1,4 @@
-#include "pipelines/kinds/grain_box/results.h"
+#include "pipelines/kinds/grain_box/scene.h"
 
 #include <fmt/format.h>
 

@@ -7,8 +7,6 @@
 #include "common/core/parallel_tasks.h"
 #include "common/io/progress.h"
 #include "microsim/grain_box/grain_box_run.h"
-#include "pipelines/kinds/grain_box/results.h"
-#include "pipelines/kinds/grain_box/summary.h"
 #include "pipelines/results/summary.h"
 #include "pipelines/run/run.h"
 

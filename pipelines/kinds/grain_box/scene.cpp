@@ -7,12 +7,12 @@
 #include <set>
 
 #include "common/core/error.h"
-#include "common/io/poisson_range.h"
+#include "common/io/scene.h"
 #include "common/packing/grading_scene.h"
 #include "microsim/grain_box/analysis.h"
-#include "microsim/grain_box/arrangement.h"
+#include "microsim/grain_box/grain_box_run.h"
 #include "microsim/particles/scene_memory.h"
-#include "pipelines/run/variant_name.h"
+#include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
 

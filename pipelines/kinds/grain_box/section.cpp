@@ -6,7 +6,7 @@
 
 #include "microsim/grain_box/analysis.h"
 #include "pipelines/kinds/grain_box/curves.h"
-#include "pipelines/kinds/grain_box/results.h"
+#include "pipelines/kinds/grain_box/scene.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/run_data.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "microsim/grain_box/record.h"
-#include "pipelines/kinds/grain_box/results.h"
+#include "pipelines/kinds/grain_box/scene.h"
 
 namespace softgrain {
 

@@ -1,4 +1,4 @@
-#include "pipelines/kinds/grain_box/summary.h"
+#include "pipelines/kinds/grain_box/scene.h"
 
 #include <fmt/format.h>
 

@@ -7,12 +7,11 @@
 #include <numeric>
 
 #include "common/contact/multi_contact_from_table.h"
-#include "common/core/solid_sphere.h"
-#include "common/core/stopwatch.h"
+#include "common/core/cost.h"
+#include "common/core/particles.h"
 #include "common/packing/void_filling.h"
 #include "microsim/filled_shell.h"
-#include "pipelines/kinds/hierarchy/level_errors.h"
-#include "pipelines/run/key_text.h"
+#include "pipelines/run/result_cache.h"
 
 namespace softgrain {
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calibrate/multi_contact_fit.h"
+#include "common/data/multi_contact_law.h"
 #include "microsim/filled_shell.h"
 #include "pipelines/kinds/hierarchy/scene.h"
 #include "pipelines/kinds/law_table/multi_contact_stage.h"
@@ -84,5 +85,56 @@ HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, s
 
 /// Root mean square of the difference of two laws over that of the one below, along one plane and along six planes.
 double law_distance(const LawTableEntry& law, const LawTableEntry& below, LawForm form);
+
+// Error bars through levels: how the law of a level follows that of the level below, and what the uncertainty of that
+// one adds to its own.
+
+/// One plane from each side, along the axes.
+std::vector<MultiContactPartner> six_planes();
+
+/// How strong a law is: geometric mean of the forces of one plane at `overlap` and of six planes at two thirds of it.
+double law_strength(const MultiContactLaw& law, double overlap);
+
+/// Overlap over Rs from which a soft particle bears between six planes; `most` when it bears nothing up to there.
+double law_onset(const MultiContactLaw& law, double most);
+
+/// The table with all forces times `factor`.
+LawTableEntry scaled_law(LawTableEntry entry, double factor);
+
+/// How much a draw of the law below makes of this one: strength over that of the fit, to the power of `sensitivity`.
+std::vector<double> strength_draws(const LawTableEntry& below, LawForm form, double sensitivity);
+
+/// Every replicate of every law times one draw, turn by turn; standard error and interval of `a` follow.
+void spread(LawTableEntry& entry, const std::vector<double>& draws);
+
+/// Relative standard deviation of the strength over the replicates; NaN with fewer than two.
+double strength_error(const LawTableEntry& entry, LawForm form);
+
+// Two decades with every grain: one soft particle whose inner soft particles hold their grains, against the same one
+// whose inner soft particles act by law.
+
+/// Forces at one overlap with a plane, means over packings, over E Rs^2.
+struct CheckPoint {
+  double overlap = 0.0;
+  double law = 0.0;
+  double law_error = 0.0;
+  double resolved = 0.0;
+  double resolved_error = 0.0;
+  double ratio = 0.0;
+  double ratio_error = 0.0;  ///< standard error of the paired ratio of means
+};
+
+struct CheckResult {
+  std::vector<CheckPoint> points;
+  double inner = 0.0;   ///< soft particles inside, mean
+  double grains = 0.0;  ///< grains of a resolved run, mean
+  std::int64_t packings = 0;
+  Cost law_cost;
+  Cost resolved_cost;
+  bool converged = true;
+};
+
+/// Runs the check with the law of the finest level. Finished runs are kept in the run.store.
+CheckResult check_two_decades(const HierarchySetup& setup, const HierarchyLevel& finest, const Run& run);
 
 }  // namespace softgrain

@@ -1,4 +1,4 @@
-#include "pipelines/kinds/hierarchy/level_errors.h"
+#include "pipelines/kinds/hierarchy/level.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "pipelines/kinds/hierarchy/resolved_levels.h"
+#include "pipelines/kinds/hierarchy/level.h"
 
 #include <fmt/format.h>
 

@@ -9,7 +9,7 @@
 
 #include "common/contact/multi_contact_from_table.h"
 #include "common/contact/multi_contact_table_file.h"
-#include "pipelines/kinds/hierarchy/level_errors.h"
+#include "pipelines/kinds/hierarchy/level.h"
 #include "pipelines/kinds/hierarchy/summary.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
 #include "pipelines/report/run_data.h"

@@ -3,7 +3,6 @@
 
 #include "common/data/fields.h"
 #include "pipelines/kinds/hierarchy/level.h"
-#include "pipelines/kinds/hierarchy/resolved_levels.h"
 #include "pipelines/results/summary.h"
 
 namespace softgrain {

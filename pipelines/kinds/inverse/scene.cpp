@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "calibrate/experiment_fit.h"
-#include "calibrate/force_offset.h"
 #include "calibrate/response_surface.h"
 #include "common/core/error.h"
 #include "common/data/force_curves.h"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "microsim/multi_contact_experiment.h"
-#include "pipelines/run/task_store.h"
+#include "pipelines/run/run.h"
 
 namespace softgrain {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "microsim/multi_contact_experiment.h"
-#include "pipelines/run/key_text.h"
+#include "pipelines/run/result_cache.h"
 
 namespace softgrain {
 

@@ -14,7 +14,6 @@
 #include "macrosim/test_protocol.h"
 #include "microsim/shell_packing.h"
 #include "pipelines/kinds/law_table/multi_contact_law_fit.h"
-#include "pipelines/kinds/macro/memory.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/macro/stages.h"
@@ -22,7 +21,7 @@
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 #include "pipelines/law/law_values.h"
 #include "pipelines/results/summary.h"
-#include "pipelines/run/trial_times.h"
+#include "pipelines/run/findings.h"
 
 namespace softgrain {
 

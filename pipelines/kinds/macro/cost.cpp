@@ -1,4 +1,4 @@
-#include "pipelines/kinds/macro/cost.h"
+#include "pipelines/kinds/macro/check.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "macrosim/constructed_packing.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
-#include "pipelines/run/trial_times.h"
+#include "pipelines/run/findings.h"
 
 namespace softgrain {
 

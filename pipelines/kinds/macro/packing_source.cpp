@@ -8,7 +8,7 @@
 #include "common/core/error.h"
 #include "common/io/csv_file.h"
 #include "common/neighbours/hierarchical_grid.h"
-#include "pipelines/kinds/macro/spec_members.h"
+#include "pipelines/kinds/macro/twin_cache.h"
 
 namespace softgrain {
 

@@ -1,4 +1,4 @@
-#include "pipelines/kinds/macro/results.h"
+#include "pipelines/kinds/macro/scene.h"
 
 #include <fmt/format.h>
 

@@ -6,10 +6,12 @@
 #include <cmath>
 
 #include "calibrate/rod_packing.h"
-#include "common/core/solid_sphere.h"
-#include "common/packing/grading_parts.h"
+#include "common/core/particles.h"
+#include "common/packing/grading.h"
 #include "macrosim/macro_packing.h"
 #include "macrosim/preparation.h"
+#include "microsim/particles/scene_memory.h"
+#include "microsim/shell_packing.h"
 #include "pipelines/kinds/macro/stages.h"
 
 namespace softgrain {
@@ -66,25 +68,6 @@ std::int64_t rounded_up(double number) {
   return static_cast<std::int64_t>(digit * std::ceil(number / digit));
 }
 
-}  // namespace
-
-std::int64_t least_bodies(const MacroSpec& spec) {
-  const Grading solid =
-      sizes_or_power_law(spec.solid_sizes, spec.exponent, spec.solid_radius_max, spec.solid_polydispersity);
-  const Grading soft =
-      sizes_or_power_law(spec.soft_sizes, spec.exponent, spec.soft_radius_max, spec.soft_polydispersity);
-  const double share = spec.soft_share;
-  // Bodies in a unit of volume: shares are by volume.
-  const double number =
-      (share < 1.0 ? (1.0 - share) / solid.mean_volume() : 0.0) + (share > 0.0 ? share / soft.mean_volume() : 0.0);
-  double largest = 0.0;
-  if (share < 1.0) largest = solid.largest();
-  if (share > 0.0) largest = std::max(largest, soft.largest());
-  return rounded_up(kMargin * needed_volume(spec) * std::pow(largest, 3) * number / kSphereVolume);
-}
-
-namespace {
-
 /// The first of the drawn samples whose bodies hold less than this, over the cube of their largest radius.
 std::string short_of(const MacroSetup& setup, std::uint64_t seed, const std::string& what, std::int64_t draws,
                      double volume_needed, bool sure) {
@@ -116,7 +99,52 @@ std::string short_of(const MacroSetup& setup, std::uint64_t seed, const std::str
   return "";
 }
 
+constexpr double kBytesPerBody = 300.0;
+constexpr double kBytesPerBodyContact = 160.0;
+constexpr double kContactsPerBody = 3.0;
+/// More than any soft particle of the published kind holds: what fits even so needs no closer look.
+constexpr double kManyGrains = 1e5;
+
+double mean_cube(const std::optional<Grading>& sizes, double exponent, double largest, double ratio) {
+  return (sizes ? *sizes : Grading::power_law(exponent, largest / ratio, largest)).mean_volume();
+}
+
+/// Soft particles, by the mean volumes of both kinds: the share of the scene is one of volume.
+double expected_softs(const MacroSetup& setup) {
+  const MacroSpec& spec = setup.spec;
+  if (setup.given) return static_cast<double>(setup.given->soft_count());
+  const auto bodies = static_cast<double>(spec.bodies);
+  const double share = spec.soft_share;
+  if (!(share > 0.0)) return 0.0;
+  if (share >= 1.0) return bodies;
+  const double soft = share / mean_cube(spec.soft_sizes, spec.exponent, spec.soft_radius_max, spec.soft_polydispersity);
+  const double solid =
+      (1.0 - share) / mean_cube(spec.solid_sizes, spec.exponent, spec.solid_radius_max, spec.solid_polydispersity);
+  return spec.construction == Construction::voids ? bodies * soft / solid : bodies * soft / (soft + solid);
+}
+
+/// Grains of the largest run: the twin, when there is one.
+double resolved(const MacroSetup& setup, double grains) {
+  const auto bodies = static_cast<double>(setup.spec.bodies);
+  return setup.twins.empty() ? bodies : bodies + expected_softs(setup) * grains;
+}
+
 }  // namespace
+
+std::int64_t least_bodies(const MacroSpec& spec) {
+  const Grading solid =
+      sizes_or_power_law(spec.solid_sizes, spec.exponent, spec.solid_radius_max, spec.solid_polydispersity);
+  const Grading soft =
+      sizes_or_power_law(spec.soft_sizes, spec.exponent, spec.soft_radius_max, spec.soft_polydispersity);
+  const double share = spec.soft_share;
+  // Bodies in a unit of volume: shares are by volume.
+  const double number =
+      (share < 1.0 ? (1.0 - share) / solid.mean_volume() : 0.0) + (share > 0.0 ? share / soft.mean_volume() : 0.0);
+  double largest = 0.0;
+  if (share < 1.0) largest = solid.largest();
+  if (share > 0.0) largest = std::max(largest, soft.largest());
+  return rounded_up(kMargin * needed_volume(spec) * std::pow(largest, 3) * number / kSphereVolume);
+}
 
 std::string room_problem(const MacroSetup& setup, std::uint64_t seed, const std::string& what) {
   return short_of(setup, seed, what, setup.samples, placed_volume(), true);
@@ -129,6 +157,28 @@ std::string room_doubt(const MacroSetup& setup, std::uint64_t seed, const std::s
 void require_room_for_images(const SceneTable& macro, const char* key, const MacroSetup& setup, std::uint64_t seed) {
   const std::string problem = room_problem(setup, seed, "bodies");
   if (!problem.empty()) macro.add_error(key, problem + ", or boundary = \"walls\"");
+}
+
+double macro_memory(double bodies) { return bodies * (kBytesPerBody + kContactsPerBody * kBytesPerBodyContact); }
+
+std::string macro_memory_problem(const MacroSetup& setup, double grains, double available) {
+  const double all = resolved(setup, grains);
+  const double needed = macro_memory(all);
+  if (!(available > 0.0) || needed <= available) return "";
+  const double fit = std::floor(static_cast<double>(setup.spec.bodies) * available / needed);
+  return fmt::format("{} needs about {:.3g} GB of memory, {:.3g} GB are free; allowed: up to {:.0f}{}",
+                     setup.twins.empty() ? "a run" : fmt::format("a resolved twin of about {:.3g} grains", all),
+                     needed / 1e9, available / 1e9, fit, setup.twins.empty() ? "" : ", or more with resolved = false");
+}
+
+void require_macro_memory(const SceneTable& macro, const MacroSetup& setup, const SoftParticleSpec& content) {
+  const double available = available_memory();
+  if (setup.spec.preparation == Preparation::lammps || macro_memory_problem(setup, kManyGrains, available).empty())
+    return;
+  const double grains =
+      setup.twins.empty() ? 0.0 : static_cast<double>(generate_shell_packing(content, 1, 0).radius.size());
+  const std::string problem = macro_memory_problem(setup, grains, available);
+  if (!problem.empty()) macro.throw_error("bodies", problem);
 }
 
 }  // namespace softgrain

@@ -1,4 +1,5 @@
-// Periodic cells that are too small for their largest body: found before the run, with the number of bodies that do.
+// Whether a macro scene has room, asked before any work: periodic cells that are too small for their largest body, with
+// the number of bodies that do, and memory.
 #pragma once
 
 #include <cstdint>
@@ -27,5 +28,18 @@ std::string room_doubt(const MacroSetup& setup, std::uint64_t seed, const std::s
 
 /// A mistake at `key` of this table where the samples of a macro scene have no room; walls are offered instead.
 void require_room_for_images(const SceneTable& macro, const char* key, const MacroSetup& setup, std::uint64_t seed);
+
+// Whether a macro scene fits into memory, asked before any work.
+
+/// What a scene of so many bodies, or a twin of so many grains, holds while it runs [bytes].
+double macro_memory(double bodies);
+
+/// Empty when the scene fits into `available` bytes (0: unknown, anything fits), one sample at a time; else the
+/// sentence that says what it takes and how many bodies would fit. `grains`: in a soft particle of its twins.
+std::string macro_memory_problem(const MacroSetup& setup, double grains, double available);
+
+/// Refuses a scene that does not fit, at its key `bodies`. `content`: what its twins are filled with; packed on trial
+/// where it matters. Throws InputError.
+void require_macro_memory(const SceneTable& macro, const MacroSetup& setup, const SoftParticleSpec& content);
 
 }  // namespace softgrain

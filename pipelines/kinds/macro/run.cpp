@@ -8,11 +8,10 @@
 #include "common/core/few_samples.h"
 #include "pipelines/kinds/macro/bands.h"
 #include "pipelines/kinds/macro/check.h"
-#include "pipelines/kinds/macro/first_point.h"
 #include "pipelines/kinds/macro/lammps_stage.h"
-#include "pipelines/kinds/macro/results.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/macro/summary.h"
+#include "pipelines/kinds/macro/values.h"
 #include "pipelines/run/run.h"
 
 namespace softgrain {

@@ -10,7 +10,6 @@
 #include "common/io/text_file.h"
 #include "common/packing/grading_scene.h"
 #include "macrosim/preparation.h"
-#include "pipelines/kinds/macro/memory.h"
 #include "pipelines/kinds/macro/packing_source.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"

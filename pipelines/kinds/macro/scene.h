@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "common/data/macro_result.h"
 #include "common/io/scene.h"
 #include "macrosim/macro_packing.h"
 #include "pipelines/law/named_laws.h"
+#include "pipelines/results/kind_results.h"
 #include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
@@ -89,5 +91,19 @@ MacroScene read_macro_scene_alone(const Scene& scene);
 /// Runs all samples by law, in our engine or in LAMMPS, and the twins; writes macro.h5, macro_initial.h5, the kept
 /// states, summary.json and the report. Status not_usable when a curve is not usable or carries no stress.
 SceneKind macro_kind();
+
+// What macro runs leave behind.
+
+KindResults macro_results();
+
+namespace report {
+std::string macro_section(const RunData& run);  ///< stress and strain, law against resolved twin
+}
+
+namespace report {
+/// Part of the section of macro scenes on stages: moduli and strength of all stages. For tests in stages it also has
+/// q/p and the change of volume over the axial strain. Empty where curves do not name their stages.
+std::string stage_parts(const std::vector<MacroCurve>& curves, MacroTest test);
+}  // namespace report
 
 }  // namespace softgrain

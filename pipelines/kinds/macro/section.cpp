@@ -9,7 +9,7 @@
 #include "common/core/error.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/compare/stage_match.h"
-#include "pipelines/kinds/macro/results.h"
+#include "pipelines/kinds/macro/scene.h"
 #include "pipelines/report/engine_style.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"

@@ -13,7 +13,7 @@
 #include "macrosim/cell_test.h"
 #include "macrosim/compression.h"
 #include "macrosim/constructed_packing.h"
-#include "macrosim/macro_snapshot.h"
+#include "macrosim/macro_system.h"
 #include "macrosim/twin_places.h"
 #include "microsim/shell_packing.h"
 #include "pipelines/kinds/macro/bands.h"

@@ -2,7 +2,6 @@
 
 #include "common/data/snapshot_io.h"
 #include "common/io/text_file.h"
-#include "pipelines/kinds/macro/spec_members.h"
 #include "pipelines/run/result_cache.h"
 
 namespace softgrain {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/data/macro_result.h"
+#include "macrosim/macro_spec.h"
 #include "pipelines/results/run_values.h"
 
 namespace softgrain {
@@ -24,5 +25,10 @@ std::vector<RunValue> stress_values(const std::vector<NamedCurves>& all);
 
 /// Axial stress over strain, mean over the usable samples that have all recorded points.
 std::vector<RunCurve> stress_curves(const std::vector<NamedCurves>& all);
+
+/// Why a test may begin under less stress than its preparation ended with: one sentence for every engine whose first
+/// recorded points bear, in the mean of its samples, less than half of start_pressure E; the preparation itself meets
+/// it to a third.
+std::vector<std::string> first_point_remarks(const MacroSpec& spec, const std::vector<MacroCurve>& curves);
 
 }  // namespace softgrain

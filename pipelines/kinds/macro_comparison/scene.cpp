@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include "pipelines/kinds/macro/memory.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/macro_comparison/scene.h"

@@ -12,8 +12,8 @@
 #include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
-#include "macrosim/grain_record.h"
-#include "pipelines/kinds/material/results.h"
+#include "macrosim/body_contacts.h"
+#include "pipelines/kinds/material/scene.h"
 
 namespace softgrain {
 

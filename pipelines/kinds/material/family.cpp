@@ -1,4 +1,4 @@
-#include "pipelines/kinds/material/family.h"
+#include "pipelines/kinds/material/scene.h"
 
 #include <fmt/format.h>
 

@@ -8,9 +8,9 @@
 
 #include "calibrate/response_prediction.h"
 #include "common/core/error.h"
-#include "macrosim/grain_record.h"
+#include "macrosim/body_contacts.h"
 #include "pipelines/compare/stage_results.h"
-#include "pipelines/kinds/material/results.h"
+#include "pipelines/kinds/material/scene.h"
 
 namespace softgrain {
 

@@ -9,11 +9,10 @@
 #include "common/core/limits.h"
 #include "common/data/estimate_words.h"
 #include "common/io/text_file.h"
-#include "macrosim/grain_record.h"
+#include "macrosim/body_contacts.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/macro/twin_cache.h"
-#include "pipelines/kinds/material/family.h"
-#include "pipelines/kinds/material/results.h"
+#include "pipelines/kinds/material/scene.h"
 #include "pipelines/run/result_cache.h"
 
 namespace softgrain {

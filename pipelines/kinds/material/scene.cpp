@@ -6,19 +6,17 @@
 #include <numeric>
 #include <set>
 
+#include "common/core/cost.h"
 #include "common/core/error.h"
-#include "common/core/stopwatch.h"
-#include "common/io/poisson_range.h"
+#include "common/io/scene.h"
 #include "common/packing/grading_scene.h"
 #include "macrosim/preparation.h"
 #include "microsim/particles/scene_memory.h"
 #include "pipelines/kinds/macro/check.h"
-#include "pipelines/kinds/macro/memory.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
-#include "pipelines/kinds/material/results.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
-#include "pipelines/run/variant_name.h"
+#include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
 

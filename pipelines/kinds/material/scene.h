@@ -4,8 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "common/data/macro_result.h"
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/material/equation.h"
+#include "pipelines/results/kind_results.h"
 #include "pipelines/run/findings.h"
 
 namespace softgrain {
@@ -53,5 +55,29 @@ void check_variants(const MaterialScene& material, Findings& out, bool timed = t
 /// Prepares and tests all samples of all variants; writes material_NAME.h5, material_initial_NAME.h5, the kept states,
 /// material.csv, summary.json and the report. Status not_usable when a curve is not usable or carries no stress.
 SceneKind material_kind();
+
+// Which variants of a material differ in the span of their sizes alone, so that one may be foretold from others.
+
+/// Equal for variants that differ in nothing but the span of their sizes, the unit of length, and how many grains and
+/// samples there are. Preparation, mu and the law of the sizes always stand in it, anything else where variants of the
+/// scene differ in it. What a [[loading]] says is left out.
+std::string material_family(const MaterialVariant& variant, const std::vector<MaterialVariant>& all);
+
+/// Equal for variants of one material_family() under the same loading.
+std::string family_of(const MaterialVariant& variant, const std::vector<MaterialVariant>& all);
+
+// What runs of kind "material" leave behind.
+
+/// Name that the curves of resolved grains bear as their engine.
+inline constexpr const char* kMaterialEngine = "material";
+
+KindResults material_results();
+
+/// p = (sigma_x + sigma_y + sigma_z)/3 at every point [Pa].
+std::vector<double> mean_stresses(const MacroCurve& curve);
+
+namespace report {
+std::string material_section(const RunData& run);  ///< pressure over solid fraction, stresses, who bears them
+}
 
 }  // namespace softgrain

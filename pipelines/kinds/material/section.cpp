@@ -6,9 +6,9 @@
 #include <functional>
 #include <map>
 
-#include "macrosim/grain_record.h"
-#include "pipelines/kinds/macro/results.h"
-#include "pipelines/kinds/material/results.h"
+#include "macrosim/body_contacts.h"
+#include "pipelines/kinds/macro/scene.h"
+#include "pipelines/kinds/material/scene.h"
 #include "pipelines/kinds/material/summary.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"

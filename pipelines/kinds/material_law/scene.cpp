@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "common/core/limits.h"
-#include "common/core/solid_sphere.h"
-#include "common/packing/grading_parts.h"
+#include "common/core/particles.h"
+#include "common/packing/grading.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/material_law/fines_in_cells.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "common/core/limits.h"
+#include "macrosim/body_contacts.h"
 #include "macrosim/cell_specimen.h"
-#include "macrosim/grain_record.h"
 #include "pipelines/kinds/material_models/models.h"
 
 namespace softgrain {

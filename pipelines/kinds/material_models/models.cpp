@@ -7,9 +7,9 @@
 
 #include "common/core/error.h"
 #include "common/core/limits.h"
+#include "common/core/particles.h"
 #include "common/core/random.h"
-#include "common/core/solid_sphere.h"
-#include "common/packing/grading_parts.h"
+#include "common/packing/grading.h"
 #include "macrosim/constructed_packing.h"
 #include "pipelines/kinds/macro/packing_source.h"
 #include "pipelines/kinds/macro/stage.h"

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "common/io/text_file.h"
-#include "pipelines/run/variant_name.h"
+#include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
 

@@ -8,7 +8,7 @@
 #include "common/core/limits.h"
 #include "pipelines/compare/stage_match.h"
 #include "pipelines/compare/stage_results.h"
-#include "pipelines/kinds/macro/results.h"
+#include "pipelines/kinds/macro/scene.h"
 
 namespace softgrain {
 

@@ -8,14 +8,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "common/dynamics/contact_watch.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/time_step.h"
 #include "common/dynamics/verlet.h"
-#include "microsim/particles/frame_contacts.h"
 #include "microsim/particles/scene_memory.h"
-#include "pipelines/run/trial_times.h"
+#include "microsim/particles/trajectory.h"
+#include "pipelines/run/findings.h"
 
 namespace softgrain {
 

@@ -1,4 +1,4 @@
-#include "pipelines/kinds/particles/results.h"
+#include "pipelines/kinds/particles/scene.h"
 
 #include <fmt/format.h>
 

@@ -7,8 +7,7 @@
 #include "microsim/particles/particles_run.h"
 #include "microsim/particles/scene_contacts.h"
 #include "microsim/particles/scene_memory.h"
-#include "pipelines/export/xdmf.h"
-#include "pipelines/kinds/particles/results.h"
+#include "pipelines/export/export.h"
 #include "pipelines/kinds/particles/summary.h"
 #include "pipelines/run/run.h"
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "microsim/particles/particles_scene.h"
+#include "pipelines/results/kind_results.h"
 #include "pipelines/run/findings.h"
 #include "pipelines/run/scene_kind.h"
 #include "pipelines/run/size_summary.h"
@@ -23,5 +24,17 @@ void check_particles(const ParticlesSceneOf<D>& scene, Findings& out);
 /// Runs a scene of kind "particles"; writes run.h5 and summary.json, checkpoints on the way.
 /// Status not_usable when a particle was lost or the motion diverged (both files are written and marked).
 SceneKind particles_kind();
+
+// What runs of explicit particles leave behind.
+
+KindResults particles_results();
+
+/// run.h5: every recorded frame, with the contacts of those that kept them; frames whose numbers were lost are left
+/// out. Throws IoError.
+void visit_particles(const std::string& path, SnapshotChoice choice, const VisitSnapshot& visit);
+
+namespace report {
+std::string particles_section(const RunData& run);  ///< final states and contacts
+}
 
 }  // namespace softgrain

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "pipelines/kinds/particles/results.h"
+#include "pipelines/kinds/particles/scene.h"
 #include "pipelines/kinds/particles/summary.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"

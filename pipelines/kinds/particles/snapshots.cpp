@@ -5,9 +5,8 @@
 #include <cmath>
 
 #include "common/core/error.h"
-#include "microsim/particles/frame_contacts.h"
 #include "microsim/particles/trajectory.h"
-#include "pipelines/kinds/particles/results.h"
+#include "pipelines/kinds/particles/scene.h"
 
 namespace softgrain {
 

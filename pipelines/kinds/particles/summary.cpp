@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/dynamics/verlet.h"
-#include "microsim/particles/frame_contacts.h"
+#include "microsim/particles/trajectory.h"
 
 namespace softgrain {
 

@@ -1,6 +1,5 @@
 #include "pipelines/kinds/pipeline/scene.h"
 
-#include "pipelines/kinds/macro/memory.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/law/fit_settings.h"

@@ -1,11 +1,11 @@
-#include "pipelines/kinds/recipe/levels.h"
+#include "pipelines/kinds/recipe/scene.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/core/limits.h"
-#include "common/core/solid_sphere.h"
-#include "common/packing/grading_parts.h"
+#include "common/core/particles.h"
+#include "common/packing/grading.h"
 
 namespace softgrain {
 

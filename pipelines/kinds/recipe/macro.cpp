@@ -1,4 +1,4 @@
-#include "pipelines/kinds/recipe/macro.h"
+#include "pipelines/kinds/recipe/run.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "common/core/error.h"
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "common/core/statistics.h"
 #include "common/data/estimate_words.h"
 #include "pipelines/kinds/macro/packing_source.h"

@@ -13,8 +13,6 @@
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/material_law/results.h"
 #include "pipelines/kinds/recipe/law.h"
-#include "pipelines/kinds/recipe/macro.h"
-#include "pipelines/kinds/recipe/shells.h"
 
 namespace softgrain {
 

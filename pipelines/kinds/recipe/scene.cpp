@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "common/packing/grading_parts.h"
+#include "common/packing/grading.h"
 #include "common/packing/grading_scene.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/material/run.h"

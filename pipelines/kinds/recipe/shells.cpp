@@ -1,4 +1,4 @@
-#include "pipelines/kinds/recipe/shells.h"
+#include "pipelines/kinds/recipe/run.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "common/contact/multi_contact_table_file.h"
 #include "common/core/error.h"
 #include "common/core/limits.h"
-#include "common/packing/grading_parts.h"
+#include "common/packing/grading.h"
 #include "pipelines/kinds/hierarchy/level.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
 

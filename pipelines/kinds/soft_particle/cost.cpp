@@ -7,7 +7,7 @@
 #include "common/dynamics/verlet.h"
 #include "microsim/shell_packing.h"
 #include "microsim/soft_experiment.h"
-#include "pipelines/run/trial_times.h"
+#include "pipelines/run/findings.h"
 
 namespace softgrain {
 

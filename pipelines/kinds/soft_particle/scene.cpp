@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "common/core/error.h"
-#include "common/core/solid_sphere.h"
+#include "common/core/particles.h"
 #include "common/data/soft_particle_schema.h"
 #include "common/packing/grading_scene.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "common/data/snapshot_io.h"
-#include "pipelines/export/xdmf.h"
+#include "pipelines/export/export.h"
 
 namespace softgrain {
 

@@ -8,7 +8,7 @@
 #include "common/data/snapshot.h"
 #include "common/io/provenance.h"
 #include "common/io/scene.h"
-#include "pipelines/run/task_store.h"
+#include "pipelines/run/run.h"
 
 namespace softgrain {
 

@@ -8,8 +8,8 @@
 #include <map>
 #include <numeric>
 
+#include "common/core/cost.h"
 #include "common/core/parallel_tasks.h"
-#include "common/core/stopwatch.h"
 #include "common/data/fields.h"
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "microsim/particles/frame_contacts.h"
+#include "microsim/particles/trajectory.h"
 #include "tests/verification/cases/closed_forms.h"
 #include "tests/verification/cases/outside_run.h"
 #include "tests/verification/cases/scene_text.h"

@@ -1,4 +1,4 @@
-#include "common/core/lane_power.h"
+#include "common/core/lanes.h"
 
 #include <cmath>
 
