@@ -24,7 +24,7 @@ PAGES = {
          "pipelines/kinds/macro_comparison/scene.cpp", "pipelines/law/named_laws.cpp",
          "pipelines/commands/calibrate.cpp", "pipelines/law/fit_settings.cpp",
          "pipelines/kinds/soft_particle/snapshot_recorder.cpp"],
-        {"beyond", "modulus_stress"}, {"cell", "entry", "pair", "macrosim"}),
+        {"beyond", "modulus_stress", "beta", "nu", "restitution", "rmax_over_shell", "shell_radius"}, {"cell", "entry", "pair", "macrosim"}),
     "scene_material_models.md": (["pipelines/kinds/material_models/scene.cpp"], {"name"}, set()),
     "scene_law_table.md": (
         ["pipelines/kinds/law_table/scene.cpp", "pipelines/kinds/law_table/multi_contact_scene.cpp", "pipelines/kinds/law_table/multi_contact_law_fit.cpp",
@@ -59,6 +59,7 @@ PAGES = {
 
 # Sources that read cards and tables, or a scene only to see what it is.
 NO_SCENES = {
+    "pipelines/run/run_context.cpp",
     "pipelines/kinds/law_table/law_check.cpp",
     "common/data/card_text.cpp", "pipelines/law/law_file.cpp", "pipelines/law/law_file_kind.cpp", "common/data/cell_card_io.cpp", "common/data/multi_contact_law_io.cpp", "common/data/law_card_read.cpp",
     "pipelines/commands/check.cpp", "pipelines/kinds/kinds.cpp", "pipelines/kinds/macro/run.cpp", "pipelines/kinds/pipeline/run.cpp",

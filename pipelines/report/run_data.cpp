@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "common/core/error.h"
+#include "common/io/scene.h"
 #include "common/io/text_file.h"
 #include "pipelines/results/result_files.h"
 #include "pipelines/results/summary.h"
