@@ -1,4 +1,5 @@
-// Contacts between whole bodies, and who bears the load in a packing of grains.
+// Contacts between whole bodies: what the grains of one soft particle do to another body is summed into one force, so
+// that law runs and resolved twins are counted alike. And who bears the load in a packing of grains.
 #pragma once
 
 #include <cstdint>

@@ -35,6 +35,7 @@ double worst_net_force(const Particles<D>& particles);
 template <int D>
 double worst_net_force(const Particles<D>& particles, double but_for);
 
+/// Why a relaxation ended.
 enum class RelaxationEnd { not_run, converged, capped, diverged };
 
 inline std::string to_string(RelaxationEnd end) {

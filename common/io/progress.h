@@ -8,8 +8,8 @@
 
 namespace softgrain {
 
-/// Thread-safe. Prints nothing for work shorter than about two seconds, or when quiet. Beginning and end of all work go
-/// to the log of the run.
+/// On standard error: a bar on a terminal, a line now and then elsewhere. Thread-safe. Prints nothing for work shorter
+/// than about two seconds, or when quiet. Beginning and end of all work go to the log of the run.
 class Progress {
  public:
   Progress(std::string what, double total, bool quiet);

@@ -113,7 +113,7 @@ struct SceneTable::Impl {
 /// A value as it is shown in messages, shortened when long.
 std::string shown(const toml::node& node);
 
-/// Gives keys of earlier versions their present names. Throws InputError where a scene has both.
+/// Gives keys of earlier versions, which are still read, their present names. Throws InputError where a scene has both.
 void rename_old_keys(SceneDocument& document);
 
 /// The present path of a key ("crowd.points": "multi_contact.points").

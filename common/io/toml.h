@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 /// Found by toml++ before the one of <cmath>: log10(x) where that is a count of digits, 0 elsewhere.
 namespace toml {
