@@ -10,6 +10,7 @@
 #include "calibrate/joint_fit.h"
 #include "calibrate/law_estimate.h"
 #include "common/core/error.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 
@@ -193,8 +194,7 @@ void fill_law(const FitOptions& options, Work& w, FitReport& report) {
 
 void conclude(PairLaw& law, LawStatus status, const std::vector<std::string>& reasons) {
   law.status = status;
-  law.reason.clear();
-  for (const std::string& r : reasons) law.reason += (law.reason.empty() ? "" : "; ") + r;
+  law.reason = join_text(reasons, "; ");
   if (!law.reason.empty()) law.reason += ".";
 }
 
