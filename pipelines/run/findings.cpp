@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "common/core/text.h"
+
 namespace softgrain {
 
 namespace {
@@ -58,7 +60,7 @@ void Findings::close_times() {
   std::string parts;
   for (const auto& [part, seconds] : times_) {
     facts["core_seconds_parts"][part] = seconds;
-    if (seconds >= kTrifle * total) parts += (parts.empty() ? "" : ", ") + part + " " + time_text(seconds);
+    if (seconds >= kTrifle * total) append_part(parts, part + " " + time_text(seconds), ", ");
   }
   add("core_seconds", total, "time: about " + time_text(total) + " of one core (" + parts + ")");
   if (total > kDay) warn("the run takes about " + time_text(total) + " of one core: see what can be smaller");
