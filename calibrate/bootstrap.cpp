@@ -6,11 +6,10 @@
 #include <cmath>
 #include <functional>
 
+#include "calibrate/replicates.h"
 #include "calibrate/threshold_model.h"
 #include "common/core/limits.h"
-#include "common/core/random.h"
 #include "common/core/statistics.h"
-#include "common/io/interrupt.h"
 
 namespace softgrain {
 
@@ -56,16 +55,9 @@ Replicate refit(const BootstrapInput& input, const FitCurves& curves) {
 
 BootstrapResult refit_all(const BootstrapInput& input, const DrawCurves& draw, int replicates, std::uint64_t seed,
                           std::uint64_t stream) {
-  std::vector<Replicate> all(static_cast<std::size_t>(replicates));
-#pragma omp parallel for schedule(dynamic)
-  for (int r = 0; r < replicates; ++r) {
-    if (interrupt_requested()) continue;  // an exception must not leave the region
-    RandomStream random(seed, RandomPurpose::bootstrap, (stream << 32) + static_cast<std::uint64_t>(r));
-    all[static_cast<std::size_t>(r)] = refit(input, draw(random));
-  }
-  stop_if_interrupted("refitting to drawn packings");
   BootstrapResult out;
-  for (const Replicate& one : all) {
+  for (const Replicate& one : bootstrap_replicates(replicates, seed, stream << 32U, "refitting to drawn packings",
+                                                   [&](RandomStream& random) { return refit(input, draw(random)); })) {
     if (one.outcome == Outcome::failed) {
       ++out.failed;
       continue;

@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibrate/replicates.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/core/limits.h"
-#include "common/core/random.h"
 #include "common/core/statistics.h"
-#include "common/io/interrupt.h"
 
 namespace softgrain {
 
@@ -179,12 +178,10 @@ struct StateBounds {
 };
 
 /// `more`: another deviation, of what replicates do not know. The interval stays within the bounds.
-StateEstimate estimated(double value, const std::vector<double>& replicates, int degrees, const StateBounds& bounds,
-                        double more = 0.0) {
-  if (degrees < 1 || replicates.size() < 2) return {value, kInfinity, -kInfinity, kInfinity};
+Estimate estimated(double value, const std::vector<double>& replicates, int degrees, const StateBounds& bounds,
+                   double more = 0.0) {
   const double error = std::hypot(mean_error(replicates).deviation, more);
-  const double half = student95(degrees) * error;
-  return {value, error, std::max(bounds.low, value - half), std::min(bounds.high, value + half)};
+  return student_estimate(value, error, replicates.size() < 2 ? 0 : degrees, bounds.low, bounds.high);
 }
 
 class StateBootstrap {
@@ -207,15 +204,11 @@ class StateBootstrap {
 
   /// Parameters of the shared fit to drawn samples; replicates that cannot be fitted are missing.
   [[nodiscard]] std::vector<std::vector<double>> run() const {
-    std::vector<std::vector<double>> all(static_cast<std::size_t>(options_.replicates));
-#pragma omp parallel for schedule(dynamic)
-    for (int r = 0; r < options_.replicates; ++r) {
-      if (interrupt_requested()) continue;  // an exception must not leave the region
-      RandomStream random(options_.seed, RandomPurpose::bootstrap, static_cast<std::uint64_t>(r));
-      LeastSquaresFit fit = shared_.solve(draw(random), fit_, false);
-      if (fit.usable()) all[static_cast<std::size_t>(r)] = std::move(fit.parameters);
-    }
-    stop_if_interrupted("refitting to drawn samples");
+    auto all = bootstrap_replicates(options_.replicates, options_.seed, 0, "refitting to drawn samples",
+                                    [this](RandomStream& random) {
+                                      LeastSquaresFit fit = shared_.solve(draw(random), fit_, false);
+                                      return fit.usable() ? std::move(fit.parameters) : std::vector<double>();
+                                    });
     std::erase_if(all, [](const auto& one) { return one.empty(); });
     return all;
   }
@@ -343,8 +336,8 @@ StateFit fit_equation_of_state(const std::vector<StateCurve>& curves, const Stat
     for (const auto& r : out.replicates) values.push_back(r[k]);
     return estimated(out.fit.parameters[k], values, out.degrees, bounds, more);
   };
-  const StateEstimate log_modulus = of(0, {-kInfinity, kInfinity}, between);
-  out.modulus = {std::exp(log_modulus.value), std::exp(log_modulus.value) * log_modulus.error,
+  const Estimate log_modulus = of(0, {-kInfinity, kInfinity}, between);
+  out.modulus = {std::exp(log_modulus.value), std::exp(log_modulus.value) * log_modulus.standard_error,
                  std::exp(log_modulus.low), std::exp(log_modulus.high)};
   out.exponent = of(1, {0.0, kInfinity});
   const std::vector<double> moduli(separate.parameters.begin(),

@@ -7,24 +7,16 @@
 
 #include "calibrate/least_squares.h"
 #include "calibrate/state_curves.h"
+#include "common/core/estimate.h"
 
 namespace softgrain {
-
-struct StateEstimate {
-  double value = 0.0;
-  double error = 0.0;  ///< standard deviation of the replicates; infinite where samples tell none
-  double low = 0.0;    ///< 95 % interval
-  double high = 0.0;
-};
-
-inline Estimate estimate_of(const StateEstimate& e) { return {e.value, e.error, e.low, e.high}; }
 
 struct StateGroup {
   std::string name;
   double span = 1.0;
   int samples = 0;
   int points = 0;
-  StateEstimate onset;       ///< phi_J with K and n of all groups
+  Estimate onset;            ///< phi_J with K and n of all groups
   double own_modulus = 0.0;  ///< K with this group's own K (n shared): for the test of the collapse
 };
 
@@ -38,8 +30,8 @@ struct StateFit {
   bool usable = false;
   std::string message = "not run";
   LeastSquaresFit fit;  ///< parameters ln K, n, phi_J of the groups
-  StateEstimate modulus;
-  StateEstimate exponent;
+  Estimate modulus;
+  Estimate exponent;
   std::vector<StateGroup> groups;  ///< groups by span, then name
   double pressure_deviation =
       0.0;  ///< rms of ln(p/p_fit) within samples (each at its own onset): how well the form holds

@@ -105,12 +105,10 @@ class ExcessProblem {
 };
 
 /// Student's interval about `value`, not below `least`; unknown where samples tell no error.
-Estimate student_estimate(double value, const std::vector<double>& replicates, int degrees, double widening = 1.0,
-                          double least = 0.0) {
-  if (degrees < 1 || replicates.size() < 2) return {value, kInfinity, -kInfinity, kInfinity};
-  const double error = widening * mean_error(replicates).deviation;
-  const double half = student95(degrees) * error;
-  return {value, error, std::max(least, value - half), value + half};
+Estimate estimate_by(const std::vector<double>& replicates, double value, int degrees, double widening = 1.0,
+                     double least = 0.0) {
+  return student_estimate(value, widening * mean_error(replicates).deviation, replicates.size() < 2 ? 0 : degrees,
+                          least);
 }
 
 /// Estimate of a number from that of its logarithm.
@@ -135,7 +133,7 @@ std::vector<ExcessPoresBand> band_of(const Replicates& drawn, double alone, doub
     std::vector<double> values;
     for (std::size_t r = 0; r < drawn.many.size(); ++r)
       values.push_back(ExcessProblem::form(ratio, drawn.fitted_alone[r], drawn.many[r], std::exp(drawn.log_decay[r])));
-    const Estimate e = student_estimate(ExcessProblem::form(ratio, alone, many, decay), values, degrees, widening);
+    const Estimate e = estimate_by(values, ExcessProblem::form(ratio, alone, many, decay), degrees, widening);
     out.push_back({ratio, e.value, e.low, e.high});
   }
   return out;
@@ -165,11 +163,11 @@ ExcessPoresFit fit_excess_pores(const StateFit& states, const MixtureGroups& gro
   }
   const std::vector<double> error = errors_of(drawn, states.degrees);
   ExcessPoresFit out;
-  out.void_ratio = student_estimate(pores.fines, drawn.fines, states.degrees);
-  out.alone = student_estimate(pores.coarse, drawn.coarse, states.degrees);
+  out.void_ratio = estimate_by(drawn.fines, pores.fines, states.degrees);
+  out.alone = estimate_by(drawn.coarse, pores.coarse, states.degrees);
   for (std::size_t k = 0; k < groups.mixtures.size(); ++k)
     out.mixtures.push_back({groups.mixtures[k].name, groups.mixtures[k].ratio,
-                            student_estimate(pores.mixtures[k], drawn.mixtures[k], states.degrees), 0.0});
+                            estimate_by(drawn.mixtures[k], pores.mixtures[k], states.degrees), 0.0});
   for (const MixturePores& m : out.mixtures)
     if (!(m.pores.value > 0.0)) {
       out.message =
@@ -194,9 +192,8 @@ ExcessPoresFit fit_excess_pores(const StateFit& states, const MixtureGroups& gro
     drawn.many.push_back(refit.parameters[0]);
     drawn.log_decay.push_back(refit.parameters[1]);
   }
-  out.many = student_estimate(fit.parameters[0], drawn.many, states.degrees, out.widening);
-  out.decay =
-      exponential(student_estimate(fit.parameters[1], drawn.log_decay, states.degrees, out.widening, -kInfinity));
+  out.many = estimate_by(drawn.many, fit.parameters[0], states.degrees, out.widening);
+  out.decay = exponential(estimate_by(drawn.log_decay, fit.parameters[1], states.degrees, out.widening, -kInfinity));
   double largest = 0.0;
   for (const MixturePores& m : out.mixtures) largest = std::max(largest, m.ratio);
   out.band = band_of(drawn, pores.coarse, fit.parameters[0], std::exp(fit.parameters[1]), largest, states.degrees,

@@ -10,6 +10,7 @@
 
 #include "calibrate/bootstrap.h"
 #include "calibrate/threshold_fit.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 
@@ -267,8 +268,8 @@ bool take_off_offsets(ForceCurves& curves, std::vector<double>& zeroed_below) {
 void question(PairLaw& law) {
   if (law.status != LawStatus::good && law.status != LawStatus::underdetermined) return;
   law.status = LawStatus::underdetermined;
-  law.reason += std::string(law.reason.empty() ? "" : " ") +
-                "The forces do not vanish with the overlap: an offset that the readings do not determine.";
+  append_part(law.reason, "The forces do not vanish with the overlap: an offset that the readings do not determine.",
+              " ");
 }
 
 }  // namespace
@@ -342,8 +343,7 @@ ExperimentFit fit_experiment(const std::vector<ForceCurves>& curves, const FitOp
           to_string(one.kind), one.samples.size(), one.samples.size() == 1 ? "" : "s", options.min_packings));
     const std::string origin = report.from_residuals ? kFromResiduals : kFromSamples;
     report.law.band_origin = origin;
-    if (out.card.intervals.find(origin) == std::string::npos)
-      out.card.intervals += (out.card.intervals.empty() ? "" : "; ") + origin;
+    if (out.card.intervals.find(origin) == std::string::npos) append_part(out.card.intervals, origin);
     add(out, std::move(report));
   }
   if (mirror) add_mirror(out);

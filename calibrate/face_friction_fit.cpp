@@ -109,12 +109,8 @@ void require_rows(const FaceFrictionData& data) {
 
 std::vector<double> mean_row(const FaceFrictionData& data) {
   std::vector<double> out;
-  for (std::size_t k = 0; k < data.weight.size(); ++k) {
-    std::vector<double> values;
-    for (const auto& row : data.samples)
-      if (std::isfinite(row[k])) values.push_back(row[k]);
-    out.push_back(values.empty() ? kNaN : mean_error(values).mean);
-  }
+  for (std::size_t k = 0; k < data.weight.size(); ++k)
+    out.push_back(finite_mean(data.samples, [k](const auto& row) { return row[k]; }).mean);
   return out;
 }
 
@@ -134,8 +130,8 @@ Estimate of_samples(double log_value, const std::vector<double>& logs) {
   const double value = std::exp(log_value);
   if (logs.size() < 2) return {value, kInfinity, 0.0, kInfinity};
   const double error = mean_error(logs).error;
-  const double half = student95(static_cast<double>(logs.size()) - 1.0) * error;
-  return {value, value * error, std::exp(log_value - half), std::exp(log_value + half)};
+  const auto [low, high] = student_interval(log_value, error, static_cast<double>(logs.size()) - 1.0);
+  return {value, value * error, std::exp(low), std::exp(high)};
 }
 
 class FaceFrictionSearch {

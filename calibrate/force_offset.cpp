@@ -1,11 +1,11 @@
 #include "calibrate/experiment_fit.h"
 
 #include <fmt/format.h>
-#include <gsl/gsl_cdf.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/few_samples.h"
 #include "common/core/statistics.h"
 
 namespace softgrain {
@@ -137,7 +137,7 @@ bool has_trend(const std::vector<double>& y) {
   }
   const double left = std::max(yy - xy * xy / xx, 0.0) / static_cast<double>(n - 2);
   const double slope_error = std::sqrt(left / xx);
-  return std::abs(xy / xx) > gsl_cdf_tdist_Pinv(0.995, static_cast<double>(n - 2)) * slope_error && slope_error > 0.0;
+  return std::abs(xy / xx) > student_quantile(0.995, static_cast<double>(n - 2)) * slope_error && slope_error > 0.0;
 }
 
 /// Readings without force: before touch, and below the threshold up to where they begin to rise.
@@ -184,7 +184,7 @@ std::optional<ForceOffset> offset_of(const ForceCurve& sample) {
     const MeanError mean = mean_error(idle);
     out.force = mean.mean;
     out.error = std::max(mean.error, given_error(sample, law.delta));
-    const double certain = gsl_cdf_tdist_Pinv(kProbability, static_cast<double>(idle.size() - 1)) * out.error;
+    const double certain = student_quantile(kProbability, static_cast<double>(idle.size() - 1)) * out.error;
     if (std::abs(out.force) > std::max(certain, kLeastShare * largest_force(sample))) return out;
     return std::nullopt;
   }

@@ -7,13 +7,13 @@
 #include <cmath>
 
 #include "calibrate/bootstrap.h"
+#include "calibrate/replicates.h"
 #include "calibrate/response_surface.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/random.h"
 #include "common/core/statistics.h"
-#include "common/io/interrupt.h"
 
 namespace softgrain {
 
@@ -254,8 +254,7 @@ namespace {
 
 /// One answer from packings, evaluations and target drawn anew.
 std::vector<double> redrawn(const std::vector<InverseEvaluation>& done, const InverseTarget& t, const Place& best,
-                            const std::vector<double>& errors, std::uint64_t seed, int replicate) {
-  RandomStream random(seed, RandomPurpose::bootstrap, kReplicateStream + static_cast<std::uint64_t>(replicate));
+                            const std::vector<double>& errors, RandomStream& random) {
   std::size_t packings = 0;
   for (const InverseEvaluation& e : done) packings = std::max(packings, e.packings);
   std::vector<int> times(packings, 0);
@@ -345,13 +344,8 @@ InverseAnswer answer(const std::vector<InverseEvaluation>& done, const InverseTa
   out.lack_of_fit = lack_of_fit(p, at, surface);
   const std::vector<double> z = surface.value(at.u);
   for (std::size_t j = 0; j < z.size(); ++j) out.predicted.push_back(p.scale[j] * std::sinh(z[j]));
-  std::vector<std::vector<double>> draws(static_cast<std::size_t>(replicates));
-#pragma omp parallel for schedule(dynamic)
-  for (int r = 0; r < replicates; ++r) {
-    if (interrupt_requested()) continue;  // an exception must not leave the region
-    draws[static_cast<std::size_t>(r)] = redrawn(done, t, at, errors, seed, r);
-  }
-  stop_if_interrupted("drawing intervals");
+  const auto draws = bootstrap_replicates(replicates, seed, kReplicateStream, "drawing intervals",
+                                          [&](RandomStream& random) { return redrawn(done, t, at, errors, random); });
   out.replicates = replicates;
   std::size_t packings = 0;
   for (const InverseEvaluation& e : done) packings = std::max(packings, e.packings);

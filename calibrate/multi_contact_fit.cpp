@@ -46,9 +46,8 @@ Estimate estimate(const LeastSquaresFit& fit, std::size_t j, const std::vector<d
   const bool positive = kind == NumberKind::positive;
   auto [low, high] = interval95(replicates);
   if (replicates.size() < kEnoughReplicates) {
-    const double half = student95(static_cast<double>(packings) - 1.0) * sd;
-    low = positive ? std::max(0.0, value - half) : value - half;
-    high = value + half;
+    std::tie(low, high) = student_interval(value, sd, static_cast<double>(packings) - 1.0);
+    if (positive) low = std::max(0.0, low);
   } else {
     std::tie(low, high) = widened(value, low, high, few_samples_factor(packings), positive);
     sd = std::max(sd, scatter_of(replicates));

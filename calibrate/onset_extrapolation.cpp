@@ -13,6 +13,7 @@
 #include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 
@@ -194,14 +195,14 @@ std::string to_string(OnsetForm form) {
 
 OnsetExtrapolation extrapolate_onset(const StateFit& fit, double span, const OnsetOptions& options) {
   require_input(fit, span, options);
-  const double widen = student95(fit.degrees) / kNormal95;
+  const double widen = student_over_normal(fit.degrees);
   Onsets at;
   std::vector<double> onset;
   std::vector<std::vector<double>> replicates(fit.replicates.size());
   for (std::size_t g = 0; g < fit.groups.size(); ++g) {
     if (!wanted(fit.groups[g], options)) continue;
     at.span.push_back(fit.groups[g].span);
-    at.error.push_back(fit.groups[g].onset.error);
+    at.error.push_back(fit.groups[g].onset.standard_error);
     onset.push_back(fit.groups[g].onset.value);
     for (std::size_t r = 0; r < replicates.size(); ++r) {
       const double drawn = onset.back() + widen * (fit.replicates[r][2 + g] - onset.back());
@@ -247,7 +248,7 @@ OnsetExtrapolation extrapolate_onset(const StateFit& fit, double span, const Ons
     out.replicates.push_back(values[f]);
     count += 1.0;
     out.onset.value += form.onset.value;
-    out.onset.error = std::max(out.onset.error, form.onset.error);
+    out.onset.standard_error = std::max(out.onset.standard_error, form.onset.standard_error);
     out.onset.low = std::min(out.onset.low, form.onset.low);
     out.onset.high = std::max(out.onset.high, form.onset.high);
   }
@@ -255,7 +256,7 @@ OnsetExtrapolation extrapolate_onset(const StateFit& fit, double span, const Ons
   if (out.usable) out.onset.value /= count;
   std::string names;
   for (const OnsetFormFit& form : out.forms)
-    if (form.usable) names += (names.empty() ? "" : ", ") + to_string(form.form);
+    if (form.usable) append_part(names, to_string(form.form), ", ");
   out.message = !out.usable   ? "all forms are refused by the data"
                 : count < 2.0 ? "one form alone, " + names + ": its difference from others is not in the interval"
                               : names;

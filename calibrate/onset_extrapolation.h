@@ -30,7 +30,7 @@ struct OnsetFormFit {
   double chi2 = 0.0;               ///< sum of squared residuals in units of the errors
   /// Probability of a chi2 as large (F test, errors known with the degrees of the fit); 1 without freedom.
   double probability = 1.0;
-  StateEstimate onset;  ///< onset at the span asked for
+  Estimate onset;  ///< onset at the span asked for
 };
 
 struct OnsetExtrapolation {
@@ -41,7 +41,7 @@ struct OnsetExtrapolation {
   std::vector<OnsetFormFit> forms;  ///< forms in the order of OnsetForm
   /// Middle of the forms that the data allow; the interval reaches from the lowest to the highest of theirs, so it
   /// holds the difference of the forms too.
-  StateEstimate onset;
+  Estimate onset;
   /// phi_J at the span by every usable form, of every replicate.
   std::vector<std::vector<double>> replicates;
 };

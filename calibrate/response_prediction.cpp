@@ -108,14 +108,14 @@ struct Collected {
   std::vector<std::vector<double>> pressure, axial, lateral, deviator;  ///< values at every point
 };
 
-StateEstimate over(const std::vector<Collected>& all, auto&& column) {
-  StateEstimate e{0.0, 0.0, kInfinity, -kInfinity};
+Estimate over(const std::vector<Collected>& all, auto&& column) {
+  Estimate e{0.0, 0.0, kInfinity, -kInfinity};
   for (const Collected& c : all) {
     std::vector<double> values = column(c);
     const auto [low, high] = interval95(values);
     e.low = std::min(e.low, low);
     e.high = std::max(e.high, high);
-    e.error = std::max(e.error, mean_error(values).deviation_or_zero());
+    e.standard_error = std::max(e.standard_error, mean_error(values).deviation_or_zero());
     std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
     e.value += values[values.size() / 2] / static_cast<double>(all.size());
   }

@@ -28,8 +28,8 @@ struct ResponsePrediction {
   bool usable = false;
   std::string message = "not run";
   OnsetExtrapolation onset;
-  StateEstimate solid_fraction;                                   ///< solid fraction at the start
-  std::vector<StateEstimate> pressure, axial, lateral, deviator;  ///< estimates at every point; the first three over E
+  Estimate solid_fraction;                                   ///< solid fraction at the start
+  std::vector<Estimate> pressure, axial, lateral, deviator;  ///< estimates at every point; the first three over E
 };
 
 /// Onset phi_J from extrapolate_onset; at the start x0 = (p0/KE)^(1/n) beyond it; from there phi = phi0 V0/V and p by

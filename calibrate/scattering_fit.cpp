@@ -14,6 +14,7 @@
 #include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 
@@ -252,7 +253,7 @@ std::vector<double> covariance_of(const LeastSquaresFit& found, const std::array
 std::string bounded_text(const LeastSquaresFit& found, const ScatteringFitOptions& o) {
   std::string text;
   const auto add = [&](std::size_t q, const std::string& name, double value) {
-    if (found.at_bound[q]) text += fmt::format("{}{} = {:.3g}", text.empty() ? "" : ", ", name, value);
+    if (found.at_bound[q]) append_part(text, fmt::format("{} = {:.3g}", name, value), ", ");
   };
   if (o.solid_fraction > 0.0) add(0, "l", std::exp(found.parameters[0]));
   add(3, "c", found.parameters[3]);
@@ -296,9 +297,7 @@ std::string judge(const LeastSquaresFit& found, const ScatteringFit& fit, const 
     reasons.emplace_back("the interval of dF is wider than all it can be");
   if (fit.chi2_per_degree > kWorstChi2)
     reasons.push_back(fmt::format("the curve is another: chi^2 per degree {:.3g}", fit.chi2_per_degree));
-  std::string text;
-  for (const std::string& r : reasons) text += (text.empty() ? "" : "; ") + r;
-  return text;
+  return join_text(reasons, "; ");
 }
 
 /// Fits with an amplitude that is tied or free, as the options say.

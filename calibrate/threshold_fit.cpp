@@ -9,6 +9,7 @@
 #include "calibrate/bootstrap.h"
 #include "calibrate/threshold_model.h"
 #include "common/core/error.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 
@@ -192,8 +193,7 @@ void fill_law(const FitOptions& options, Work& w, FitReport& report) {
 
 void conclude(PairLaw& law, LawStatus status, const std::vector<std::string>& reasons) {
   law.status = status;
-  law.reason.clear();
-  for (const std::string& r : reasons) law.reason += (law.reason.empty() ? "" : "; ") + r;
+  law.reason = join_text(reasons, "; ");
   if (!law.reason.empty()) law.reason += ".";
 }
 

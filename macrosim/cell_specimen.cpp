@@ -7,6 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/core/particles.h"
+#include "common/core/text.h"
 #include "macrosim/curve_notes.h"
 
 namespace softgrain {
@@ -136,7 +137,7 @@ std::string start_remark(const MacroSpec& spec, const CellStart& start) {
   const CellCard& card = spec.cells->card;
   const double mixture = spec.cells->share / (1.0 - spec.cells->share);
   std::string text;
-  const auto add = [&text](const std::string& one) { text += (text.empty() ? "" : "; ") + one; };
+  const auto add = [&text](const std::string& one) { append_part(text, one); };
   if (mixture > card.mixture_high)
     add(fmt::format("fines are {:.3g} times the volume of coarse grains, and excess pores were measured up to {:.3g}",
                     mixture, card.mixture_high));

@@ -8,6 +8,7 @@
 
 #include "common/core/cost.h"
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/io/text_file.h"
 #include "macrosim/body_contacts.h"
 #include "macrosim/staged_test.h"
@@ -29,10 +30,10 @@ void note_range(const MacroSpec& spec, MacroCurve& c) {
   if (!(beyond > 0.0)) return;
   const double asked = std::accumulate(c.law_evaluations.begin(), c.law_evaluations.end(), 0.0);
   const double largest = *std::max_element(c.law_largest.begin(), c.law_largest.end());
-  c.note += fmt::format(
-      "{}{:.2g} % of the cells at recorded points are beyond p/E = {:.3g}, up to which the law was "
-      "fitted (at most {:.3g} times that)",
-      c.note.empty() ? "" : "; ", 100.0 * beyond / asked, spec.cells->card.pressure_high, largest);
+  append_part(c.note,
+              fmt::format("{:.2g} % of the cells at recorded points are beyond p/E = {:.3g}, up to which the law was "
+                          "fitted (at most {:.3g} times that)",
+                          100.0 * beyond / asked, spec.cells->card.pressure_high, largest));
 }
 
 struct CellTest {

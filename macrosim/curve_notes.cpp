@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "macrosim/test_protocol.h"
 
 namespace softgrain {
@@ -19,8 +20,7 @@ std::string off_text(const MacroCurve& c, const MacroStage& stage, const Vec3& a
   std::string text;
   for (int k = 0; k < 3; ++k)
     if (stage.axis[static_cast<std::size_t>(k)].by_stress)
-      text += fmt::format("{}{} {:.4g} Pa asked, {:.4g} Pa reached", text.empty() ? "" : "; ", "xyz"[k], asked[k],
-                          reached[k]);
+      append_part(text, fmt::format("{} {:.4g} Pa asked, {:.4g} Pa reached", "xyz"[k], asked[k], reached[k]));
   return text;
 }
 
@@ -69,11 +69,11 @@ void note_free_sides(MacroCurve& c, const std::vector<MacroStage>& stages) {
     for (int a = 0; a < 3; ++a) {
       const AxisDrive& drive = stages[k].axis[static_cast<std::size_t>(a)];
       if (drive.by_stress && drive.as_at == number && began[a] == 0.0)
-        axes += fmt::format("{}{}", axes.empty() ? "" : ", ", "xyz"[a]);
+        append_part(axes, std::string(1, "xyz"[a]), ", ");
     }
     if (axes.empty()) continue;
-    c.note += fmt::format("{}stage '{}' began without stress along {}, which it holds: its sides are free",
-                          c.note.empty() ? "" : "; ", stages[k].record.name, axes);
+    append_part(c.note, fmt::format("stage '{}' began without stress along {}, which it holds: its sides are free",
+                                    stages[k].record.name, axes));
   }
 }
 
@@ -82,7 +82,7 @@ std::string no_unloading_text(const MacroSpec& spec, const std::string& law) {
   std::string names;
   for (const MacroStage& stage : spec.stages)
     if (stage.record.kind == StageKind::unload && names.size() < 60)
-      names += fmt::format("{}'{}'", names.empty() ? "" : ", ", stage.record.name);
+      append_part(names, "'" + stage.record.name + "'", ", ");
   if (names.empty()) return "";
   return fmt::format(
       "{} has no unloading branch: it gives back what it took, and the unloading modulus of {} is the loading modulus "

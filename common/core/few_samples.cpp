@@ -5,12 +5,28 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/core/limits.h"
-#include "common/core/statistics.h"
-
 namespace softgrain {
 
-double student95(double degrees) { return degrees >= 1.0 ? gsl_cdf_tdist_Pinv(0.975, degrees) : kInfinity; }
+double student_quantile(double p, double degrees) {
+  return degrees >= 1.0 ? gsl_cdf_tdist_Pinv(p, degrees) : kInfinity;
+}
+
+double student_over_normal(double degrees) { return student95(degrees) / kNormal95; }
+
+std::pair<double, double> student_interval(double value, double error, double degrees) {
+  const double half = student95(degrees) * error;
+  return {value - half, value + half};
+}
+
+Estimate student_estimate(double value, double error, double degrees, double least, double most) {
+  if (!(degrees >= 1.0)) return {value, kInfinity, -kInfinity, kInfinity};
+  const auto [low, high] = student_interval(value, error, degrees);
+  return {value, error, std::max(least, low), std::min(most, high)};
+}
+
+Estimate mean_estimate(const MeanError& mean, double least, double most) {
+  return student_estimate(mean.mean, mean.error, static_cast<double>(mean.n) - 1.0, least, most);
+}
 
 double few_samples_factor(std::size_t samples) {
   if (samples < 2) return kInfinity;

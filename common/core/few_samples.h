@@ -5,10 +5,30 @@
 #include <cstdint>
 #include <utility>
 
+#include "common/core/estimate.h"
+#include "common/core/limits.h"
+#include "common/core/statistics.h"
+
 namespace softgrain {
 
-/// 97.5 % quantile of Student's t; infinite below one degree of freedom.
-double student95(double degrees);
+/// Quantile p of Student's t: 2.776445 for p = 0.975 and four degrees of freedom; infinite below one degree.
+double student_quantile(double p, double degrees);
+inline double student95(double degrees) { return student_quantile(0.975, degrees); }
+
+/// student95() over that of the normal distribution, 1.42 for four degrees: intervals of normal draws are too narrow by
+/// this factor.
+double student_over_normal(double degrees);
+
+/// 95 % interval about a value: {0.6, 3.4} for 2 with a standard error of 0.5 and four degrees of freedom.
+std::pair<double, double> student_interval(double value, double error, double degrees);
+
+/// A value with its standard error and 95 % interval, which ends at the bounds. Below one degree of freedom nothing is
+/// known: the error and both ends are infinite.
+Estimate student_estimate(double value, double error, double degrees, double least = -kInfinity,
+                          double most = kInfinity);
+
+/// Mean of samples with its 95 % interval, which ends at the bounds; that of one sample is not known.
+Estimate mean_estimate(const MeanError& mean, double least = -kInfinity, double most = kInfinity);
 
 /// Replicates of a bootstrap over n samples scatter by sqrt((n - 1)/n) of the standard error, which is itself estimated
 /// from these n: quantiles of the replicates are too close to the value by sqrt(n/(n - 1)) t/1.96, t Student's with

@@ -39,6 +39,12 @@ MeanError mean_error(std::span<const double> values, std::span<const double> rep
   return from_squares(n, mean, gsl_stats_wtss_m(repetitions.data(), 1, values.data(), 1, values.size(), mean));
 }
 
+MeanError finite_mean(std::span<const double> values) {
+  std::vector<double> finite;
+  std::ranges::copy_if(values, std::back_inserter(finite), [](double v) { return std::isfinite(v); });
+  return mean_error(finite);
+}
+
 double quantile(std::vector<double> values, double p) {
   if (values.empty()) return kNaN;
   std::sort(values.begin(), values.end());

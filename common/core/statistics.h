@@ -1,7 +1,10 @@
 // Statistics of samples: mean, scatter, quantiles, ratios of means. GSL does the sums.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <iterator>
+#include <ranges>
 #include <span>
 #include <vector>
 
@@ -25,6 +28,17 @@ struct MeanError {
 MeanError mean_error(std::span<const double> values);
 /// Value k counts `repetitions[k]` times: a whole number, 0 leaves it out.
 MeanError mean_error(std::span<const double> values, std::span<const double> repetitions);
+
+/// Mean over the values that are finite; n counts these.
+MeanError finite_mean(std::span<const double> values);
+
+/// The same of what a function, or a member of each part, gives.
+template <std::ranges::input_range Range, class ValueOf>
+MeanError finite_mean(const Range& parts, ValueOf value_of) {
+  std::vector<double> values;
+  std::ranges::transform(parts, std::back_inserter(values), value_of);
+  return finite_mean(values);
+}
 
 /// A sample as it grows.
 class Tally {

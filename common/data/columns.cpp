@@ -5,15 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/text.h"
+
 namespace softgrain {
 
 namespace {
 
-std::string text_of(const h5::Shape& shape) {
-  std::string text;
-  for (const std::size_t n : shape) text += (text.empty() ? "" : " x ") + std::to_string(n);
-  return text.empty() ? "1 number" : text;
-}
+std::string text_of(const h5::Shape& shape) { return shape.empty() ? "1 number" : join_text(shape, " x "); }
 
 std::string text_of(const Limits& limits) {
   if (!std::isfinite(limits.high)) return fmt::format("at least {}", limits.low);

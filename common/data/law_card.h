@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/estimate.h"
 #include "common/core/law_range.h"
 #include "common/data/measurements.h"
 #include "common/data/pair_kind.h"
@@ -19,14 +20,6 @@ namespace softgrain {
 inline constexpr const char* kFromPackings = "bootstrap over packings";
 inline constexpr const char* kFromSamples = "bootstrap over samples";  ///< source of the intervals of an experiment
 inline constexpr const char* kFromResiduals = "bootstrap of residuals about the law";
-
-/// A fitted number with its standard error (covariance) and 95 % interval (bootstrap, see PairLaw::band_origin).
-struct Estimate {
-  double value = 0.0;
-  double standard_error = 0.0;
-  double low = 0.0;
-  double high = 0.0;
-};
 
 /// F(D) = 0 for D < delta, a D^b + c for D >= delta, with c = -a delta^b [SP 1.5]. Dimensionless.
 struct ThresholdPowerLaw {

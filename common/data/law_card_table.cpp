@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/data/law_card_format.h"
 #include "common/data/spec_io.h"
 
@@ -165,11 +166,9 @@ void read_table(LawCard& card, const std::string& path) {
     pair.band_origin = card.intervals;  // of all pairs, where a pair does not say its own
     read_bands(root, pair, path, edited);
   }
-  std::string laws;
-  for (const std::string& one : edited) laws += (laws.empty() ? "" : ", ") + one;
   if (!edited.empty())
-    card.notes.push_back("the numbers of the card are not those that " + path + " was written with (" + laws +
-                         "): its 95 % bands are not used");
+    card.notes.push_back("the numbers of the card are not those that " + path + " was written with (" +
+                         join_text(edited) + "): its 95 % bands are not used");
 }
 
 }  // namespace softgrain

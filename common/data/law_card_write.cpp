@@ -5,6 +5,7 @@
 #include <iterator>
 #include <numbers>
 
+#include "common/core/text.h"
 #include "common/data/card_text.h"
 #include "common/data/law_card_format.h"
 
@@ -14,11 +15,7 @@ namespace {
 
 using Out = std::back_insert_iterator<std::string>;
 
-std::string row(const double* values, std::size_t n) {
-  std::string text = "[";
-  for (std::size_t k = 0; k < n; ++k) text += (k > 0 ? ", " : "") + real(values[k]);
-  return text + "]";
-}
+std::string row(const double* values, std::size_t n) { return "[" + join_text(std::span(values, n), ", ", real) + "]"; }
 
 /// "73.67 N" or "12.3 N/m = 0.0034 N/degree" for the measured E and Rs, as a comment.
 std::string dimensional(double value, bool tangential, const SoftParticleSpec& spec) {

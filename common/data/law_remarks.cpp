@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "common/core/text.h"
+
 namespace softgrain {
 
 std::string slides_text(const LawTableEntry& entry) {
@@ -14,8 +16,8 @@ std::string slides_text(const LawTableEntry& entry) {
                                     {"against solid spheres", &entry.slide_solid},
                                     {"among soft particles", &entry.slide_soft}}) {
     const std::string numbers = fmt::format("{:.2f}, {:.2f}", slide->friction.value, slide->kt_ratio.value);
-    text += (text.empty() ? "" : "; ") +
-            (slide->measured ? numbers + " " + name : fmt::format("not measured {} ({} taken instead)", name, numbers));
+    append_part(text, slide->measured ? numbers + " " + name
+                                      : fmt::format("not measured {} ({} taken instead)", name, numbers));
   }
   text = "friction limit and kt/kn: " + text;
   if (!entry.rolls()) return text;
@@ -23,9 +25,8 @@ std::string slides_text(const LawTableEntry& entry) {
   for (const auto& [name, slide] : {std::pair{"against planes", &entry.slide_plane},
                                     {"against solid spheres", &entry.slide_solid},
                                     {"among soft particles", &entry.slide_soft}})
-    rolling += (rolling.empty() ? "" : "; ") + (slide->rolls
-                                                    ? fmt::format("{:.3f} F R {}", slide->rolling_friction.value, name)
-                                                    : fmt::format("not measured {} (free)", name));
+    append_part(rolling, slide->rolls ? fmt::format("{:.3f} F R {}", slide->rolling_friction.value, name)
+                                      : fmt::format("not measured {} (free)", name));
   return text + "; largest moment against rolling: " + rolling;
 }
 
@@ -38,16 +39,15 @@ std::string kt_remark(const LawCard& card) {
   std::map<double, std::string> kinds;  // by the ratio that they share
   for (const PairLaw& law : card.pairs) {
     if (has_tangential(law) || !has_numbers(law.status)) continue;
-    std::string& names = kinds[assumed_kt_ratio(card, law)];
-    names += (names.empty() ? "" : " and ") + to_string(law.kind);
+    append_part(kinds[assumed_kt_ratio(card, law)], to_string(law.kind), " and ");
   }
   for (const auto& [ratio, names] : kinds)
-    text += (text.empty() ? "" : "; ") +
-            (ratio > 0.0
-                 ? fmt::format("tangential stiffness of {} contacts was not measured: kt = {:.3g} dFn/dh is "
-                               "assumed (kt_ratio of the card, Mindlin's unless it was changed), up to mu Fn",
-                               names, ratio)
-                 : fmt::format("{} contacts have no tangential force, whatever mu: kt_ratio of the card is 0", names));
+    append_part(
+        text, ratio > 0.0
+                  ? fmt::format("tangential stiffness of {} contacts was not measured: kt = {:.3g} dFn/dh is "
+                                "assumed (kt_ratio of the card, Mindlin's unless it was changed), up to mu Fn",
+                                names, ratio)
+                  : fmt::format("{} contacts have no tangential force, whatever mu: kt_ratio of the card is 0", names));
   return text;
 }
 

@@ -8,6 +8,7 @@
 
 #include "common/core/error.h"
 #include "common/core/monotone_curve.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 
@@ -177,11 +178,11 @@ std::string interpolation_remark(const LawTable& table, const LawTableEntry& at)
   const auto below = above - 1;
   std::string text = off_the_entries(at, *below, *above);
   if (below->best != above->best)
-    text += fmt::format(
-        "{}the entries at solid fraction {:.4f} and {:.4f} prefer different forms ({} and {}); best is that "
-        "of the nearest",
-        text.empty() ? "" : "; ", below->solid_fraction, above->solid_fraction, to_string(below->best),
-        to_string(above->best));
+    append_part(
+        text,
+        fmt::format("the entries at solid fraction {:.4f} and {:.4f} prefer different forms ({} and {}); best is that "
+                    "of the nearest",
+                    below->solid_fraction, above->solid_fraction, to_string(below->best), to_string(above->best)));
   return text;
 }
 
@@ -245,7 +246,7 @@ LawTableEntry entry_at(const LawTable& table, double solid_fraction, RangePolicy
     if (e.solid_fraction == x) return e;
   LawTableEntry out = interpolate(table, x);
   const std::string more = interpolation_remark(table, out);
-  if (!more.empty()) remark += (remark.empty() ? "" : "; ") + more;
+  if (!more.empty()) append_part(remark, more);
   return out;
 }
 

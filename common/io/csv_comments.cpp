@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/io/csv_file.h"
 #include "common/io/text_file.h"
 
@@ -232,19 +233,16 @@ std::optional<double> CsvFile::quantity(const CsvNames& names, Unit unit, const 
     return value;
   const CsvSetting s = *setting(names);
   std::string allowed =
-      std::string("must be ") + (range.low_open ? "above " : "at least ") + csv::short_number(range.low);
+      std::string("must be ") + (range.low_open ? "above " : "at least ") + rounded_text(range.low, {6});
   if (std::isfinite(range.high))
-    allowed += std::string(" and ") + (range.high_open ? "below " : "at most ") + csv::short_number(range.high);
+    allowed += std::string(" and ") + (range.high_open ? "below " : "at most ") + rounded_text(range.high, {6});
   throw InputError(where(s.line) + ": " + s.title + " = " + s.value + ": " + allowed);
 }
 
 void CsvFile::require_known_comments(const std::vector<CsvNames>& known, const std::string& what) const {
   std::vector<std::string> names;
-  std::string first_names;
-  for (const CsvNames& one : known) {
-    names.insert(names.end(), one.begin(), one.end());
-    first_names += (first_names.empty() ? "" : ", ") + one.front();
-  }
+  for (const CsvNames& one : known) names.insert(names.end(), one.begin(), one.end());
+  const std::string first_names = join_text(known, ", ", [](const CsvNames& one) { return one.front(); });
   for (const CsvSetting& s : settings_) {
     if (std::find(names.begin(), names.end(), s.key) != names.end()) continue;
     const std::string near = near_name(s.key, names);

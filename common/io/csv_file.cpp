@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/io/text_file.h"
 
 namespace softgrain {
@@ -59,12 +60,6 @@ std::string plain_name(const std::string& name) {
     replace_all(text, from, to);
   replace_all(text, "  ", " ");
   return trimmed(text);
-}
-
-std::string short_number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g", value);
-  return text.data();
 }
 
 }  // namespace csv
@@ -183,11 +178,9 @@ void CsvFile::require_known_columns(const CsvNames& known, const std::string& wh
     };
     if (is_in(known) || is_in(labels)) continue;
     const std::string near = nearest_word(c.name, known);
-    std::string list;
-    for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
     throw InputError(where(header_line_) + ": column \"" + c.title + "\" is not understood" +
-                     (near.empty() ? "" : "; nearest is \"" + near + "\"") + ": columns of " + what + " are " + list +
-                     "; remove it, or rename it \"comment\"");
+                     (near.empty() ? "" : "; nearest is \"" + near + "\"") + ": columns of " + what + " are " +
+                     join_text(known) + "; remove it, or rename it \"comment\"");
   }
 }
 

@@ -116,9 +116,6 @@ CsvColumn column_of(const std::string& title);
 /// "Young's_modulus" to "youngs modulus", Greek letters to their names.
 std::string plain_name(const std::string& name);
 
-/// "0.5", "1e-09".
-std::string short_number(double value);
-
 }  // namespace csv
 
 }  // namespace softgrain

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "common/core/text.h"
 #include "common/io/toml.h"
 
 namespace softgrain {
@@ -20,7 +21,7 @@ std::string text_of(const toml::node& node) {
   if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
   if (const auto* list = node.as_array()) {
     std::string out;
-    for (const toml::node& one : *list) out += (out.empty() ? "" : ", ") + text_of(one);
+    for (const toml::node& one : *list) append_part(out, text_of(one), ", ");
     return "[" + out + "]";
   }
   std::ostringstream out;  // dates, which no scene knows

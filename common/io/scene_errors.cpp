@@ -4,6 +4,8 @@
 
 #include "common/io/scene_impl.h"
 
+#include "common/core/text.h"
+
 namespace softgrain {
 
 namespace {
@@ -21,9 +23,8 @@ std::vector<SceneError> in_file_order(std::vector<SceneError> errors) {
 }
 
 std::string message_of(const std::string& file, const std::vector<SceneError>& errors) {
-  std::string text;
-  for (std::size_t k = 0; k < std::min(errors.size(), kMostShown); ++k)
-    text += (k == 0 ? "" : "\n") + errors[k].text + errors[k].of;
+  std::string text = join_text(std::span(errors).first(std::min(errors.size(), kMostShown)), "\n",
+                               [](const SceneError& e) { return e.text + e.of; });
   if (errors.size() > kMostShown) text += "\n" + file + ": " + std::to_string(errors.size() - kMostShown) + " more";
   return text;
 }

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/io/scene_impl.h"
 #include "common/io/toml.h"
 
@@ -11,19 +12,6 @@ namespace softgrain {
 namespace {
 
 constexpr std::size_t kLongestShown = 60;
-
-std::string joined(const std::set<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
-std::string number_text(double value) {
-  std::ostringstream out;
-  out.precision(15);
-  out << value;
-  return out.str();
-}
 
 std::string cut(const std::string& text) {
   return text.size() <= kLongestShown ? text : text.substr(0, kLongestShown) + "...";
@@ -42,7 +30,7 @@ std::string shown_list(const toml::array& list) {
 }  // namespace
 
 std::string shown(const toml::node& node) {
-  if (const auto number = node.as_floating_point()) return number_text(number->get());
+  if (const auto number = node.as_floating_point()) return rounded_text(number->get(), {15});
   if (const auto list = node.as_array(); list != nullptr && !list->empty()) return shown_list(*list);
   std::ostringstream out;
   if (const auto text = node.as_string()) {
@@ -147,7 +135,7 @@ void SceneTable::Impl::find_unknown(std::vector<SceneError>& out) const {
       if (misread && nearest_word(key, absent).empty()) continue;
       const std::string near = nearest_word(key, asked);
       const std::string help =
-          !near.empty() ? "nearest known key is '" + near + "'" : "known keys are " + joined(known);
+          !near.empty() ? "nearest known key is '" + near + "'" : "known keys are " + join_text(known);
       out.push_back({.line = line_of(node),
                      .text = where(key, node) + ": unknown key '" + key + "' " + location() +
                              (known.empty() ? "" : "; " + help)});

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/io/scene_impl.h"
 #include "common/io/toml.h"
 
@@ -15,12 +16,7 @@ namespace {
 
 using Table = SceneTable::Impl;
 
-std::string plain(double value) {
-  std::ostringstream out;
-  out.precision(15);
-  out << value;
-  return out.str();
-}
+std::string plain(double value) { return rounded_text(value, {15}); }
 
 /// A number with a unit outside this is no quantity of this world, and its powers are no numbers.
 constexpr double kLeast = 1e-30;

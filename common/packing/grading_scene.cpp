@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/io/csv_file.h"
 
 namespace softgrain {
@@ -160,7 +161,7 @@ std::vector<SieveRow> sieve_rows(const CsvFile& csv) {
   return rows;
 }
 
-std::string percent(double share) { return fmt::format("{:g} %", 100.0 * share); }
+std::string percent(double share) { return percent_text(share, {6}); }
 
 /// What passing that falls may be instead, from the smallest sieve to the largest.
 std::string guess(const std::vector<SieveRow>& rows) {

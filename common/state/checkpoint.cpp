@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "common/core/text.h"
 #include "common/io/file_safety.h"
 
 namespace softgrain {
@@ -88,7 +89,7 @@ std::optional<h5::Group> open_checkpoint(const std::string& path, const std::str
       return root;
     } catch (const IoError& e) {
       damaged = damaged && dynamic_cast<const DamagedCheckpoint*>(&e) != nullptr;
-      trouble += (trouble.empty() ? "" : "; ") + std::string(e.what());
+      append_part(trouble, e.what());
     }
   }
   if (trouble.empty()) return std::nullopt;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 
 namespace softgrain::lammps {
 
@@ -168,9 +169,7 @@ std::string LogTail::complaint() const {
     if (line.find("ERROR") != std::string::npos) return line;
     if (line.find_first_not_of(" -\t\r") != std::string::npos) lines.push_back(line);
   }
-  std::string out;
-  for (std::size_t k = lines.size() - std::min(kLastLines, lines.size()); k < lines.size(); ++k)
-    out += (out.empty() ? "" : " | ") + lines[k];
+  const std::string out = join_text(std::span(lines).last(std::min(kLastLines, lines.size())), " | ");
   return out.empty() ? "its log is empty" : "its log ends with: " + out;
 }
 

@@ -6,6 +6,7 @@
 
 #include "common/core/error.h"
 #include "common/core/limits.h"
+#include "common/core/text.h"
 #include "common/dynamics/force_pass.h"
 #include "common/io/interrupt.h"
 #include "common/neighbours/verlet_list.h"
@@ -55,13 +56,13 @@ std::string unmet(const PowderResidual& r, const PowderPhase& phase, bool togeth
   std::string text;
   const auto add = [&](const char* what, double value) {
     if (value < 1.0) return;
-    text += (text.empty() ? "" : ", ") + std::string(what) + " " + std::to_string(value) + " times its limit";
+    append_part(text, std::string(what) + " " + std::to_string(value) + " times its limit", ", ");
   };
   add("net force", r.force);
   add("net moment", r.moment);
   add("pressure error", r.pressure);
   add("kinetic energy", r.kinetic);
-  if (phase.one_aggregate && !together) text += (text.empty() ? "" : ", ") + std::string("more than one aggregate");
+  if (phase.one_aggregate && !together) append_part(text, "more than one aggregate", ", ");
   return "phase " + phase.name + ": " + text;
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "common/core/text.h"
 #include "common/io/text_file.h"
 #include "pipelines/export/export_files.h"
 #include "pipelines/run/run_context.h"
@@ -30,12 +31,9 @@ nlohmann::json to_json(const ExportedSeries& s) {
 
 std::string text_of(const std::vector<ExportedSeries>& all, const std::string& directory) {
   std::string text;
-  for (const ExportedSeries& s : all) {
-    std::string files;
-    for (const std::string& f : s.files) files += (files.empty() ? "" : ", ") + f;
+  for (const ExportedSeries& s : all)
     text += fmt::format("{} ({}): {} states, {} with contacts; open {}\n", s.name, to_string(s.kind), s.states,
-                        s.with_contacts, files);
-  }
+                        s.with_contacts, join_text(s.files));
   return text + "files: " + directory + "\n";
 }
 

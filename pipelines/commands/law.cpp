@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/core/text.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
 #include "pipelines/commands/law_options.h"
@@ -261,9 +262,7 @@ ExitStatus eval(const LawOptions& o) {
     print(out);
     return status;
   }
-  std::string text;
-  for (const ValueTable& t : tables) text += (text.empty() ? "" : "\n") + law::values_text(t, units);
-  print(text);
+  print(join_text(tables, "\n", [&](const ValueTable& t) { return law::values_text(t, units); }));
   return status;
 }
 

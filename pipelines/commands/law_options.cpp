@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/core/text.h"
+
 namespace softgrain {
 
 namespace {
@@ -9,9 +11,7 @@ namespace {
 /// "error|clamp|extrapolate"
 template <NamedEnum Enum>
 std::string alternatives() {
-  std::string text;
-  for (const EnumName<Enum>& w : enum_names<Enum>) text += (text.empty() ? "" : "|") + std::string(w.text);
-  return text;
+  return join_text(enum_names<Enum>, "|", [](const EnumName<Enum>& w) { return std::string(w.text); });
 }
 
 /// An option that takes the words of an enum.

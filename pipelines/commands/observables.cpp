@@ -10,6 +10,7 @@
 
 #include "common/core/error.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 #include "common/data/macro_result.h"
 #include "common/data/measurements.h"
 #include "common/io/scene.h"
@@ -26,11 +27,9 @@ std::string text_of(const Columns& columns) {
   std::string text = "#";
   for (const auto& [name, values] : columns) text += " " + name;
   text += "\n";
-  for (std::size_t row = 0; row < columns.front().second.size(); ++row) {
-    for (const auto& column : columns)
-      text += fmt::format("{}{:.10g}", &column == columns.data() ? "" : " ", column.second[row]);
-    text += "\n";
-  }
+  for (std::size_t row = 0; row < columns.front().second.size(); ++row)
+    text +=
+        join_text(columns, " ", [row](const auto& column) { return rounded_text(column.second[row], {10}); }) + "\n";
   return text;
 }
 

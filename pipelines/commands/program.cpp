@@ -14,6 +14,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "common/core/text.h"
 #include "common/io/interrupt.h"
 #include "common/io/text_file.h"
 #include "pipelines/commands/complaints.h"
@@ -74,7 +75,7 @@ std::string joined_command_line(int argc, char** argv) {
   for (int k = 0; k < argc; ++k) {
     const std::string word = argv[k];
     const bool plain = !word.empty() && word.find_first_of(" \t\n\"'\\$`*?[]{}()<>|&;#~!") == std::string::npos;
-    text += (k > 0 ? " " : "") + (plain ? word : "'" + word + "'");
+    append_part(text, plain ? word : "'" + word + "'", " ");
   }
   return text;
 }
@@ -199,18 +200,13 @@ void require_inputs(const Command& command, const CommonOptions& options) {
 void require_command(int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
   std::vector<std::string> names;
-  std::string list;
-  for (const Command& c : kCommands) {
-    names.emplace_back(c.name);
-    list += (list.empty() ? "" : ", ") + names.back();
-  }
+  for (const Command& c : kCommands) names.emplace_back(c.name);
   names.emplace_back("law");
-  list += ", law";
   const std::string word = argv[1];
   if (std::find(names.begin(), names.end(), word) != names.end()) return;
   const std::string near = nearest_word(word, names);
   throw InputError("unknown command '" + word + "'; " + (near.empty() ? "" : "nearest is '" + near + "'; ") +
-                   "commands are " + list);
+                   "commands are " + join_text(names));
 }
 
 /// A run that is refused leaves no directory behind.

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/data/snapshot_io.h"
 #include "common/io/hdf5_file.h"
 #include "common/io/text_file.h"
@@ -36,8 +37,7 @@ void check_states_file(const std::string& path, Findings& out) {
 }
 
 void check_other(const h5::Group& root, Findings& out) {
-  std::string names;
-  for (const std::string& child : root.children()) names += (names.empty() ? "" : ", ") + child;
+  const std::string names = join_text(root.children());
   const std::string format = root.has_attribute("format") ? root.text("format") + ", " : "";
   out.add("kind", format.empty() ? "HDF5" : root.text("format"), "readable HDF5 file: " + format + "with " + names);
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/io/progress.h"
 #include "pipelines/kinds/kinds.h"
 #include "pipelines/run/run_context.h"
@@ -18,8 +19,7 @@ namespace {
 std::string kinds_with_engine() {
   std::string text;
   for (const SceneKind& kind : scene_kinds())
-    if (kind.takes_engine)
-      text += fmt::format("{}\"{}\" (softgrain {})", text.empty() ? "" : " and ", kind.name, kind.command);
+    if (kind.takes_engine) append_part(text, fmt::format("\"{}\" (softgrain {})", kind.name, kind.command), " and ");
   return text;
 }
 

@@ -155,14 +155,6 @@ std::string obstacle(const MacroCurve& candidate, const MacroCurve* reference) {
   return "";
 }
 
-MeanError mean_of(const std::vector<SampleComparison>& samples, double SampleComparison::*member) {
-  std::vector<double> values;
-  for (const SampleComparison& s : samples) {
-    if (std::isfinite(s.*member)) values.push_back(s.*member);
-  }
-  return mean_error(values);
-}
-
 void note_undefined(const SampleComparison& s, Comparison& result) {
   if (s.end_imposed) return;
   const auto note = [&](double ratio, const char* side) {
@@ -199,17 +191,19 @@ void add_speedups(Comparison& result) {
 }
 
 void add_means(Comparison& result) {
-  result.axial_difference = mean_of(result.samples, &SampleComparison::axial_difference);
-  result.lateral_difference = mean_of(result.samples, &SampleComparison::lateral_difference);
-  result.strain_difference = mean_of(result.samples, &SampleComparison::strain_difference);
-  result.deviator_difference = mean_of(result.samples, &SampleComparison::deviator_difference);
-  result.unloading_ratio = mean_of(result.samples, &SampleComparison::unloading_ratio);
-  result.axial_end_ratio = mean_of(result.samples, &SampleComparison::axial_end_ratio);
-  result.lateral_stress_ratio_candidate = mean_of(result.samples, &SampleComparison::lateral_stress_ratio_candidate);
-  result.lateral_stress_ratio_reference = mean_of(result.samples, &SampleComparison::lateral_stress_ratio_reference);
-  result.in_band = mean_of(result.samples, &SampleComparison::in_band);
-  result.end_in_band = mean_of(result.samples, &SampleComparison::end_in_band);
-  result.band_width = mean_of(result.samples, &SampleComparison::band_width);
+  result.axial_difference = finite_mean(result.samples, &SampleComparison::axial_difference);
+  result.lateral_difference = finite_mean(result.samples, &SampleComparison::lateral_difference);
+  result.strain_difference = finite_mean(result.samples, &SampleComparison::strain_difference);
+  result.deviator_difference = finite_mean(result.samples, &SampleComparison::deviator_difference);
+  result.unloading_ratio = finite_mean(result.samples, &SampleComparison::unloading_ratio);
+  result.axial_end_ratio = finite_mean(result.samples, &SampleComparison::axial_end_ratio);
+  result.lateral_stress_ratio_candidate =
+      finite_mean(result.samples, &SampleComparison::lateral_stress_ratio_candidate);
+  result.lateral_stress_ratio_reference =
+      finite_mean(result.samples, &SampleComparison::lateral_stress_ratio_reference);
+  result.in_band = finite_mean(result.samples, &SampleComparison::in_band);
+  result.end_in_band = finite_mean(result.samples, &SampleComparison::end_in_band);
+  result.band_width = finite_mean(result.samples, &SampleComparison::band_width);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "common/core/error.h"
 #include "common/core/limits.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 namespace {
@@ -94,7 +95,7 @@ std::vector<const PackingRun*> require_runs(const Measurements& data, PairKind k
   auto runs = runs_of(data, kind, relaxation);
   if (!runs.empty()) return runs;
   std::string present;
-  for (const std::string& name : relaxations_of(data, kind)) present += (present.empty() ? "" : ", ") + name;
+  for (const std::string& name : relaxations_of(data, kind)) append_part(present, name, ", ");
   throw InputError(std::string("compare: the ") + side + " has no " + to_string(kind) + " runs with relaxation \"" +
                    relaxation + "\"; present: " + (present.empty() ? "none" : present));
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/text.h"
 #include "common/data/fields.h"
 #include "common/io/json_record.h"
 #include "pipelines/compare/compare_inputs.h"
@@ -123,17 +124,17 @@ json to_json(const LawPartComparison& part) {
   return {{"pair", to_string(part.kind)}, {"rows", rows}};
 }
 
-std::string with_error(double value, double error, int digits = 4) {
-  if (!std::isfinite(value)) return "undefined";
-  return std::isfinite(error) ? fmt::format("{:.{}g} +- {:.2g}", value, digits, error)
-                              : fmt::format("{:.{}g}", value, digits);
+constexpr const char* kUndefined = "undefined";
+
+std::string error_text(double value, double error, int digits = 4) {
+  return with_error(value, if_finite(error), {.value = {digits}, .undefined = kUndefined});
 }
 
 std::string percent(const MeanError& m) {
-  return with_error(100.0 * m.mean, 100.0 * m.error, 3) + (std::isfinite(m.mean) ? " %" : "");
+  return error_text(100.0 * m.mean, 100.0 * m.error, 3) + (std::isfinite(m.mean) ? " %" : "");
 }
 
-std::string factor(double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : "undefined"; }
+std::string factor(double value) { return rounded_text(value, {3}, kUndefined); }
 
 std::string text_of(const MacroPart& part) {
   const Comparison& c = part.result;
@@ -146,17 +147,17 @@ std::string text_of(const MacroPart& part) {
     out += fmt::format("  strains of axes that go by stress       {}\n", percent(c.strain_difference));
   if (c.unloading_ratio.n > 0)
     out += fmt::format("  unloading modulus over the reference's  {}\n",
-                       with_error(c.unloading_ratio.mean, c.unloading_ratio.error));
+                       error_text(c.unloading_ratio.mean, c.unloading_ratio.error));
   if (c.axial_difference.n > 0 || !given)
     out += fmt::format("  axial stress, relative L2 difference    {}{}\n", percent(c.axial_difference),
                        given ? ", where it is not given" : "");
   if (c.lateral_difference.n > 0 || !given)
     out += fmt::format("  lateral stress, relative L2 difference  {}\n", percent(c.lateral_difference));
   out += fmt::format("  axial stress ratio at the end           {}\n",
-                     with_error(c.axial_end_ratio.mean, c.axial_end_ratio.error));
+                     error_text(c.axial_end_ratio.mean, c.axial_end_ratio.error));
   out += fmt::format("  lateral over axial stress at the end    {} against {}\n",
-                     with_error(c.lateral_stress_ratio_candidate.mean, c.lateral_stress_ratio_candidate.error),
-                     with_error(c.lateral_stress_ratio_reference.mean, c.lateral_stress_ratio_reference.error));
+                     error_text(c.lateral_stress_ratio_candidate.mean, c.lateral_stress_ratio_candidate.error),
+                     error_text(c.lateral_stress_ratio_reference.mean, c.lateral_stress_ratio_reference.error));
   if (c.band_width.n > 0)
     out += fmt::format(
         "  95 % band of the candidate              +-{} at the end; {} of the reference's points inside, {} of "
@@ -172,8 +173,8 @@ std::string text_of(const std::string& quantity, const std::vector<RatioRow>& ro
   std::string out;
   for (const RatioRow& r : rows) {
     out += fmt::format("  {:<14} {:>6.3f} {:>5} {:>24} {:>24} {:>20}\n", quantity, r.delta, r.reference.n,
-                       with_error(r.candidate.mean, r.candidate.error), with_error(r.reference.mean, r.reference.error),
-                       with_error(r.ratio.ratio, r.ratio.error));
+                       error_text(r.candidate.mean, r.candidate.error), error_text(r.reference.mean, r.reference.error),
+                       error_text(r.ratio.ratio, r.ratio.error));
   }
   return out;
 }
@@ -186,7 +187,7 @@ std::string jumps_text(const std::vector<RatioRow>& rows) {
     out += fmt::format(
         "  kt initial at {:.3f}: {} of {} packings rearranged between two angles (a negative slope above the median in "
         "size); ratio without: {}\n",
-        r.delta, r.jumps, r.reference.n, with_error(r.ratio_without_jumps.ratio, r.ratio_without_jumps.error));
+        r.delta, r.jumps, r.reference.n, error_text(r.ratio_without_jumps.ratio, r.ratio_without_jumps.error));
   }
   return out;
 }
@@ -227,8 +228,8 @@ std::string text_of(const LawPartComparison& part) {
   std::string out =
       fmt::format("laws, {}\n  {:<32} {:>24} {:>24}\n", to_string(part.kind), "", "candidate", "reference");
   for (const LawRow& r : part.rows) {
-    out += fmt::format("  {:<32} {:>24} {:>24}\n", r.what, with_error(r.candidate, r.candidate_error),
-                       with_error(r.reference, r.reference_error));
+    out += fmt::format("  {:<32} {:>24} {:>24}\n", r.what, error_text(r.candidate, r.candidate_error),
+                       error_text(r.reference, r.reference_error));
   }
   return out;
 }

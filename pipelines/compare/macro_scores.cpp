@@ -10,6 +10,7 @@
 
 #include "common/core/error.h"
 #include "common/core/limits.h"
+#include "common/core/text.h"
 #include "common/data/macro_band.h"
 #include "macrosim/twin_places.h"
 #include "pipelines/compare/compare.h"
@@ -94,12 +95,6 @@ std::vector<double> over_mean(std::vector<double> forces) {
   return forces;
 }
 
-MeanError finite_mean(const std::vector<double>& values) {
-  std::vector<double> finite;
-  std::copy_if(values.begin(), values.end(), std::back_inserter(finite), [](double v) { return std::isfinite(v); });
-  return mean_error(finite);
-}
-
 using Curves = std::vector<const MacroCurve*>;
 
 Curves usable_of(const std::vector<MacroCurve>& curves, const std::string& engine) {
@@ -110,9 +105,7 @@ Curves usable_of(const std::vector<MacroCurve>& curves, const std::string& engin
 }
 
 MeanError mean_of(const Curves& curves, const std::function<double(const MacroCurve&)>& value) {
-  std::vector<double> values;
-  for (const MacroCurve* c : curves) values.push_back(value(*c));
-  return finite_mean(values);
+  return finite_mean(curves, [&](const MacroCurve* c) { return value(*c); });
 }
 
 /// Pairs of curves of the same sample.
@@ -127,9 +120,7 @@ Pairs pair_up(const Curves& engine, const Curves& twin) {
 }
 
 MeanError mean_of(const Pairs& pairs, const std::function<double(const MacroCurve&, const MacroCurve&)>& value) {
-  std::vector<double> values;
-  for (const auto& [c, t] : pairs) values.push_back(value(*c, *t));
-  return finite_mean(values);
+  return finite_mean(pairs, [&](const auto& pair) { return value(*pair.first, *pair.second); });
 }
 
 /// Replaces a column by its mean over the curves; false where these do not have the same points.
@@ -275,12 +266,10 @@ EngineScore score_of(const std::vector<MacroCurve>& curves, const std::string& e
 }
 
 std::string cell(const MeanError& m, int digits = 4) {
-  if (m.n == 0) return "";
-  if (!std::isfinite(m.error)) return fmt::format("{:.{}g}", m.mean, digits);
-  return fmt::format("{:.{}g} +- {:.2g}", m.mean, digits, m.error);
+  return m.n == 0 ? "" : with_error(m.mean, if_finite(m.error), {.value = {digits}});
 }
 
-std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : ""; }
+std::string cell(double value) { return rounded_text(value, {3}, ""); }
 
 void add_cells(const TwinErrors& e, std::vector<std::string>& row) {
   for (const MeanError* m : {&e.axial, &e.axial_of_mean, &e.axial_end, &e.deviator, &e.strains, &e.unloading,

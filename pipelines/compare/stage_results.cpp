@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "common/core/text.h"
 #include "common/core/vec.h"
 
 namespace softgrain {
@@ -169,10 +170,8 @@ class Reader {
 };
 
 std::optional<MeanError> mean_of(const std::vector<const StageResult*>& all, double StageResult::*member) {
-  std::vector<double> values;
-  for (const StageResult* r : all)
-    if (std::isfinite(r->*member)) values.push_back(r->*member);
-  return values.empty() ? std::nullopt : std::optional(mean_error(values));
+  const MeanError mean = finite_mean(all, member);
+  return mean.n > 0 ? std::optional(mean) : std::nullopt;
 }
 
 }  // namespace
@@ -229,10 +228,8 @@ std::string modulus_text(const StageMeans& s) {
   if (!s.modulus)
     return fmt::format("{} modulus not determined: the {} does not go through its interval ({})", to_string(modulus),
                        stress_of(modulus), modulus_interval(s));
-  std::string text = fmt::format("{} modulus {:.4g}", to_string(modulus), s.modulus->mean);
-  if (s.modulus->n > 1) text += fmt::format(" +- {:.2g}", s.modulus->error);
-  text +=
-      fmt::format(" Pa from {:.3g} to {:.3g} Pa of {}", s.modulus_from->mean, s.modulus_to->mean, stress_of(modulus));
+  std::string text = fmt::format("{} modulus {} Pa from {:.3g} to {:.3g} Pa of {}", to_string(modulus),
+                                 with_error(*s.modulus), s.modulus_from->mean, s.modulus_to->mean, stress_of(modulus));
   if (!(s.record.modulus_stress[1] > 0.0)) text += " (" + modulus_interval(s) + ")";
   if (s.axial_end && s.modulus->n < s.axial_end->n)
     text += fmt::format(", {} of {} samples", s.modulus->n, s.axial_end->n);

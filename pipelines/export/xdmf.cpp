@@ -8,6 +8,7 @@
 #include <map>
 #include <vector>
 
+#include "common/core/text.h"
 #include "common/data/snapshot_io.h"
 #include "common/io/text_file.h"
 
@@ -21,11 +22,7 @@ std::string number_type(bool integer) {
   return integer ? "NumberType=\"Int\" Precision=\"8\"" : "NumberType=\"Float\" Precision=\"8\"";
 }
 
-std::string joined(const std::vector<std::size_t>& numbers) {
-  std::string text;
-  for (const std::size_t n : numbers) text += (text.empty() ? "" : " ") + std::to_string(n);
-  return text;
-}
+std::string joined(const std::vector<std::size_t>& numbers) { return join_text(numbers, " "); }
 
 /// A whole data set.
 std::string whole(const std::string& path, const std::vector<std::size_t>& shape, bool integer = false) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/data/cell_card.h"
+#include "common/data/estimate_words.h"
 #include "pipelines/law/law_json.h"
 #include "pipelines/law/law_show.h"
 #include "pipelines/law/terminal_plot.h"
@@ -66,10 +67,8 @@ std::string show_cells(const LawFile& file, bool utf8) {
   std::vector<std::vector<std::string>> rows{{"", "", "value", "error", "95 % interval"}};
   for (const CellNumber& n : kCellNumbers) {
     const Estimate& e = card.*n.estimate;
-    rows.push_back(
-        {n.key, number(e.value), std::isfinite(e.standard_error) ? number(e.standard_error, 2) : "-",
-         std::isfinite(e.low) && std::isfinite(e.high) ? number(e.low) + " .. " + number(e.high) : "not determined",
-         n.meaning});
+    rows.push_back({n.key, number(e.value), std::isfinite(e.standard_error) ? number(e.standard_error, 2) : "-",
+                    ends_text(e.low, e.high, {.number = number, .may_be_equal = true}), n.meaning});
   }
   text += aligned(rows, 2, 2);
   text += wrapped(fmt::format("  holds for p/E = {} to {}, up to {} times as much fines as coarse grains by volume",

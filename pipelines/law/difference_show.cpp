@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "common/core/text.h"
 #include "pipelines/law/law_difference.h"
 #include "pipelines/law/law_show.h"
 #include "pipelines/law/terminal_plot.h"
@@ -46,7 +47,7 @@ std::string difference_text(const LawDifference& d, bool utf8) {
   std::vector<std::vector<std::string>> rows{{"Delta", "A", "95 %", "B", "95 %", "B/A - 1 [%]", "within"}};
   for (const DifferenceRow& r : d.rows)
     rows.push_back({number(r.delta), number(r.a.value), interval(r.a), number(r.b.value), interval(r.b),
-                    std::isfinite(r.relative) ? fmt::format("{:+.1f}", 100.0 * r.relative) : "-", verdict(r)});
+                    rounded_text(100.0 * r.relative, {1, true, true}, "-"), verdict(r)});
   text += aligned(rows, 2, 0);
   text += std::isfinite(d.root_mean_square)
               ? fmt::format("  root mean square {:.1f} % of A; largest {:.1f} % of the largest A\n",

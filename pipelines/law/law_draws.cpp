@@ -195,7 +195,7 @@ std::vector<std::vector<double>> pair_draws(const PairLaw& p, std::int64_t count
     throw InputError("bands: the law card has no covariance of its " + to_string(p.kind) +
                      " law: calibrate it from measurements of several packings (\"softgrain calibrate\")");
   if (p.band_origin != kFromResiduals && p.packings > 1) {
-    const double students = student95(p.packings - 1) / kNormal95;  // of few packings, as in intervals
+    const double students = student_over_normal(p.packings - 1);  // of few packings, as in intervals
     for (double& c : covariance) c *= students * students;
   }
   for (std::size_t j = 0; j < kPairNumbers; ++j) {

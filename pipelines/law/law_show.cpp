@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "common/core/text.h"
 #include "common/data/estimate_words.h"
 #include "common/data/law_card_format.h"
 #include "common/data/law_remarks.h"
@@ -17,9 +18,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-std::string interval(const Estimate& e) {
-  return interval_known(e.low, e.high) ? number(e.low) + " .. " + number(e.high) : "not determined";
-}
+std::string interval(const Estimate& e) { return ends_text(e.low, e.high, {number}); }
 
 std::string error_text(const Estimate& e) {
   return std::isfinite(e.standard_error) && e.standard_error > 0.0 ? number(e.standard_error, 2) : "-";
@@ -112,7 +111,7 @@ std::string pair_text(const PairLaw& law, const SoftParticleSpec& spec, bool utf
 
 }  // namespace
 
-std::string number(double x, int digits) { return fmt::format("{:.{}g}", x, digits); }
+std::string number(double x, int digits) { return rounded_text(x, {digits}); }
 
 std::string origin_text(const LawOrigin& o) {
   if (o.version.empty() && o.command.empty()) return "";

@@ -6,6 +6,7 @@
 
 #include "common/core/error.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 #include "common/data/multi_contact_interval.h"
 #include "common/data/multi_contact_replicates.h"
 #include "pipelines/law/law_values.h"
@@ -76,9 +77,8 @@ double overlap_max(const MultiContactAnswer& answer, const MultiContactQuestion&
   const std::vector<PartnerRow> rows = answer.entry.find(answer.form)->rows(q.partner);
   const double ratio = q.partner == PartnerKind::soft ? std::max(q.ratio, 1.0 / q.ratio) : q.ratio;
   if (ratio < rows.front().ratio || ratio > rows.back().ratio)
-    remark +=
-        fmt::format("{}ratio {:.4g} was not measured with {} neighbours ({:.4g} to {:.4g})", remark.empty() ? "" : "; ",
-                    q.ratio, to_string(q.partner), rows.front().ratio, rows.back().ratio);
+    append_part(remark, fmt::format("ratio {:.4g} was not measured with {} neighbours ({:.4g} to {:.4g})", q.ratio,
+                                    to_string(q.partner), rows.front().ratio, rows.back().ratio));
   return measured_overlap(answer.entry, answer.form, q.partner, q.ratio);
 }
 

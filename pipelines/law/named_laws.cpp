@@ -10,6 +10,7 @@
 #include "common/contact/multi_contact_from_table.h"
 #include "common/contact/soft_contact_from_card.h"
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/data/card_text.h"
 #include "common/data/law_remarks.h"
 #include "common/dynamics/force_pass.h"
@@ -147,11 +148,11 @@ std::function<std::string(const System3&)> measured_note(const LawCard& card, co
   const SoftParticleSpec& measured = card.spec;
   std::string text = kt_remark(card);
   if (!card.from_experiment() && (measured.poisson_ratio != spec.poisson_ratio || measured.friction != spec.friction))
-    text += (text.empty() ? "" : "; ") +
-            fmt::format(
-                "the law card was measured with nu = {:g}, mu = {:g}, the grains of this scene have nu = {:g}, "
-                "mu = {:g}",
-                measured.poisson_ratio, measured.friction, spec.poisson_ratio, spec.friction);
+    append_part(
+        text,
+        fmt::format("the law card was measured with nu = {:g}, mu = {:g}, the grains of this scene have nu = {:g}, "
+                    "mu = {:g}",
+                    measured.poisson_ratio, measured.friction, spec.poisson_ratio, spec.friction));
   if (text.empty()) return nullptr;
   return [text](const System3&) { return text; };
 }
@@ -166,9 +167,9 @@ std::function<std::string(const System3&)> card_note(const LawCard& card, const 
   const std::string unloads = no_unloading_text(spec, "the pair law");
   if (unloads.empty()) return measured;
   return [measured, unloads](const System3& s) {
-    const std::string text = measured ? measured(s) : "";
-    if (!has_soft(s)) return text;
-    return text + (text.empty() ? "" : "; ") + unloads;
+    std::string text = measured ? measured(s) : "";
+    if (has_soft(s)) append_part(text, unloads);
+    return text;
   };
 }
 
@@ -236,11 +237,11 @@ NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const Macro
   const LawTableEntry entry = law_entry(sources, contents_fraction, remark);
   constexpr double kApart = 0.005;
   if (sources.solid_fraction && contents_fraction > 0.0 && std::abs(contents_fraction - entry.solid_fraction) > kApart)
-    remark += fmt::format("{}the law was taken at solid fraction {:.4f}, the contents of the twins have {:.4f}",
-                          remark.empty() ? "" : "; ", entry.solid_fraction, contents_fraction);
+    append_part(remark, fmt::format("the law was taken at solid fraction {:.4f}, the contents of the twins have {:.4f}",
+                                    entry.solid_fraction, contents_fraction));
   require_same_material(entry, spec);
   const std::string stands_in = assumed_values(entry, sources);
-  remark += (remark.empty() || stands_in.empty() ? "" : "; ") + stands_in;
+  if (!stands_in.empty()) append_part(remark, stands_in);
   const LawForm form = wanted.value_or(entry.best);
   MultiContactChoices choices;
   choices.form = form;
@@ -271,7 +272,7 @@ NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const Macro
           [=](const System3& s) {
             std::string text = remark;
             for (const std::string& one : {check.note(s), has_soft(s) ? unloads : std::string()})
-              text += (text.empty() || one.empty() ? "" : "; ") + one;
+              if (!one.empty()) append_part(text, one);
             return text;
           },
           [=](const System3& s) { return check.warning(s); }};
@@ -364,7 +365,7 @@ NamedLaws scene_law(const LawSources& sources, const MacroSpec& spec, double con
 void add_law_texts(const NamedLaws& law, const System3& end, MacroCurve& curve) {
   const auto add = [&](const std::function<std::string(const System3&)>& say, std::string& text) {
     const std::string said = say ? say(end) : "";
-    text += (text.empty() || said.empty() ? "" : "; ") + said;
+    if (!said.empty()) append_part(text, said);
   };
   add(law.note, curve.note);
   add(law.warning, curve.warning);

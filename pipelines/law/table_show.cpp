@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "common/core/text.h"
+#include "common/data/estimate_words.h"
 #include "common/data/multi_contact_choice.h"
 #include "pipelines/law/law_show.h"
 #include "pipelines/law/law_values.h"
@@ -15,12 +17,9 @@ namespace {
 using Rows = std::vector<std::vector<std::string>>;
 
 /// "0.733 +- 0.19"; parameters that a form does not have are fixed.
-std::string with_error(const Estimate& e) {
-  if (!std::isfinite(e.standard_error)) return number(e.value, 3) + " (?)";
-  return e.standard_error > 0.0 ? number(e.value, 3) + " +- " + number(e.standard_error, 2) : number(e.value, 3);
-}
+std::string number_text(const Estimate& e) { return estimate_with_error(e, {number}); }
 
-std::string percent(double share) { return std::isfinite(share) ? fmt::format("{:.1f}", 100.0 * share) : "-"; }
+std::string percent(double share) { return rounded_text(100.0 * share, {1, true}, "-"); }
 
 std::string parameters_text(const LawTableEntry& entry) {
   Rows rows{{"form"}};
@@ -29,7 +28,8 @@ std::string parameters_text(const LawTableEntry& entry) {
   for (const MultiContactLaw& law : entry.laws) {
     std::size_t r = 0;
     rows[r++].push_back(form_label(entry, law));
-    for (const MultiContactParameterName& p : kMultiContactParameters) rows[r++].push_back(with_error(law.*p.estimate));
+    for (const MultiContactParameterName& p : kMultiContactParameters)
+      rows[r++].push_back(number_text(law.*p.estimate));
     for (const double x : {law.error_fitted, law.error_held_out, law.error_cross}) rows[r++].push_back(percent(x));
     rows[r++].push_back(number(law.criterion, 5));
   }
@@ -39,7 +39,7 @@ std::string parameters_text(const LawTableEntry& entry) {
 std::string partners_text(const MultiContactLaw& law) {
   Rows rows{{"neighbour", "R'/R", "w", "m", "h/min(R, R') to", "off by [%]"}};
   for (const PartnerRow& row : law.partners)
-    rows.push_back({to_string(row.kind), number(row.ratio), with_error(row.weight), with_error(row.exponent),
+    rows.push_back({to_string(row.kind), number(row.ratio), number_text(row.weight), number_text(row.exponent),
                     number(row.overlap_max, 3), percent(row.error)});
   if (rows.size() == 1) return "";
   return fmt::format("  neighbours of the {} law, nu = w v^m (a plane has w = m = 1)\n", to_string(law.form)) +
@@ -51,9 +51,9 @@ std::string slides_table(const LawTableEntry& e) {
   Rows rolls{{"rolling", "largest moment/FR", "stiffness/E R^2 R12"}};
   const auto add = [&](const char* name, const SlideLaw& slide) {
     const std::string from = slide.measured ? "" : " (not measured)";
-    rows.push_back({name, with_error(slide.friction) + from, with_error(slide.kt_ratio) + from});
-    rolls.push_back({name, slide.rolls ? with_error(slide.rolling_friction) : "not measured: free",
-                     slide.rolls ? with_error(slide.rolling) : "-"});
+    rows.push_back({name, number_text(slide.friction) + from, number_text(slide.kt_ratio) + from});
+    rolls.push_back({name, slide.rolls ? number_text(slide.rolling_friction) : "not measured: free",
+                     slide.rolls ? number_text(slide.rolling) : "-"});
   };
   add("on planes", e.slide_plane);
   add("on solid spheres", e.slide_solid);
@@ -99,9 +99,9 @@ std::string plot_of(const LawTableEntry& e, bool utf8) {
 
 std::string unloading_of(const LawTableEntry& e) {
   if (!e.unloading_measured) return "not measured";
-  std::string text = with_error(e.unloading) + " times as steep";
-  if (e.slide_solid.has_unloading) text += ", " + with_error(e.slide_solid.unloading) + " against solid spheres";
-  if (e.slide_soft.has_unloading) text += ", " + with_error(e.slide_soft.unloading) + " among soft particles";
+  std::string text = number_text(e.unloading) + " times as steep";
+  if (e.slide_solid.has_unloading) text += ", " + number_text(e.slide_solid.unloading) + " against solid spheres";
+  if (e.slide_soft.has_unloading) text += ", " + number_text(e.slide_soft.unloading) + " among soft particles";
   return text;
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "common/core/text.h"
+#include "common/data/estimate_words.h"
 #include "common/io/json_record.h"
 #include "pipelines/law/terminal_plot.h"
 
@@ -16,19 +18,13 @@ namespace {
 using nlohmann::json;
 using Row = std::vector<std::string>;
 
-std::string short_number(double x) { return fmt::format("{:.4g}", x); }
 std::string exact(double x) { return fmt::format("{}", x); }
 
 std::string interval_text(const std::optional<Quantity>& q, double unit) {
   if (!q || !q->interval) return "-";
-  // With as many digits as ends that differ need to do so.
-  constexpr int kMost = 9;
-  const auto end = [unit](double x, int digits) { return fmt::format("{:.{}g}", x * unit, digits); };
-  int digits = 3;
-  while (digits < kMost && q->interval->low < q->interval->high &&
-         end(q->interval->low, digits) == end(q->interval->high, digits))
-    ++digits;
-  return end(q->interval->low, digits) + ".." + end(q->interval->high, digits);
+  const auto [low, high] = std::pair{q->interval->low * unit, q->interval->high * unit};
+  const int digits = q->interval->low < q->interval->high ? digits_to_differ(low, high, 3, 9) : 3;
+  return rounded_text(low, {digits}) + ".." + rounded_text(high, {digits});
 }
 
 /// The tangential stiffness that runs would use.
@@ -51,9 +47,9 @@ std::string mark(const LawPoint& p) {
 }
 
 Row console_row(const LawPoint& p, const ValueTable& t, const ValueUnits& u) {
-  if (p.refused) return {short_number(p.delta), "refused", "", "", "", "", mark(p)};
+  if (p.refused) return {rounded_text(p.delta), "refused", "", "", "", "", mark(p)};
   const auto& kt = tangential(p, t.use_secant);
-  return {short_number(p.delta),
+  return {rounded_text(p.delta),
           fmt::format("{:.3g}", p.force.value * u.force()),
           interval_text(p.force, u.force()),
           fmt::format("{:.3g}", p.stiffness.value * u.stiffness()),

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "common/core/text.h"
 #include "common/data/macro_band.h"
 #include "pipelines/report/html.h"
 
@@ -53,8 +54,7 @@ std::string law_paragraph(const std::vector<MacroCurve>& curves) {
   std::set<std::string> pictures;
   for (const MacroCurve& c : curves)
     if (c.soft > 0 || !c.law.form) pictures.insert(picture_of(c.law));
-  std::string text;
-  for (const std::string& line : lines) text += (text.empty() ? "Laws: " : "; ") + line;
+  std::string text = lines.empty() ? "" : "Laws: " + join_text(lines, "; ");
   for (const std::string& picture : pictures)
     if (!picture.empty()) text += ". Which material: " + picture;
   return text.empty() ? "" : paragraph(text + ".");

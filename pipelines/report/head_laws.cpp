@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "common/core/text.h"
 #include "common/io/scene.h"
 #include "pipelines/law/named_laws.h"
 #include "pipelines/report/engine_style.h"
@@ -80,8 +81,7 @@ std::string material_of_scene(const std::string& scene) {
   for (const auto& [key, value] : flat_scene(scene, "scene"))
     for (const std::string table : kMaterialTables)
       if (key.starts_with(table)) said.push_back(key.substr(table == "material." ? table.size() : 0) + " = " + value);
-  std::string text;
-  for (std::size_t k = 0; k < std::min(said.size(), kMost); ++k) text += (k > 0 ? ", " : "") + said[k];
+  const std::string text = join_text(std::span(said).first(std::min(said.size(), kMost)));
   return said.size() > kMost ? text + fmt::format(" and {} more keys of the scene", said.size() - kMost) : text;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/core/text.h"
 #include "pipelines/report/assets.h"
 
 namespace softgrain::report {
@@ -31,9 +32,9 @@ bool is_long(const std::string& cell) {
 /// "Table of stage, engine, modulus and 3 more columns, 6 rows".
 std::string summary_of(const std::vector<std::string>& header, std::size_t rows) {
   constexpr std::size_t kNamed = 3;
-  std::string text = "Table of ";
-  for (std::size_t k = 0; k < std::min(header.size(), kNamed); ++k) text += (k == 0 ? "" : ", ") + header[k];
-  const std::size_t more = header.size() - std::min(header.size(), kNamed);
+  const std::size_t named = std::min(header.size(), kNamed);
+  std::string text = "Table of " + join_text(std::span(header).first(named));
+  const std::size_t more = header.size() - named;
   if (more > 0) text += " and " + std::to_string(more) + " more column" + (more == 1 ? "" : "s");
   return text + ", " + std::to_string(rows) + (rows == 1 ? " row" : " rows");
 }

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "common/core/text.h"
+
 namespace softgrain::report {
 namespace {
 
@@ -14,12 +16,6 @@ constexpr const char* kNarrowSpace = "\u202f";
 
 std::string typographic_minus(const std::string& text) {
   return !text.empty() && text.front() == '-' ? kMinus + text.substr(1) : text;
-}
-
-void drop_trailing_zeros(std::string& text) {
-  if (text.find('.') == std::string::npos) return;
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
 }
 
 int decimal_exponent(double value) { return static_cast<int>(std::floor(std::log10(std::abs(value)))); }
@@ -50,8 +46,7 @@ std::string format_number(double value, int digits) {
   const bool plain = exponent >= -4 && exponent < 6;
   const double shown = plain ? value : value / std::pow(10.0, exponent);
   const int decimals = plain ? std::max(0, digits - 1 - exponent) : digits - 1;
-  std::string text = fmt::format("{:.{}f}", shown, decimals);
-  drop_trailing_zeros(text);
+  const std::string text = without_trailing_zeros(fmt::format("{:.{}f}", shown, decimals));
   return typographic_minus(text) + (plain ? "" : "\u00d710" + superscript(exponent));
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "common/core/text.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/sections.h"
@@ -56,7 +57,7 @@ std::string verdict(const RunData& run, const AnySummary& summary) {
 /// Command, seed, threads, time.
 std::string run_line(const RunData& run, const AnySummary& summary) {
   std::string out;
-  const auto add = [&](const std::string& text) { out += (out.empty() ? "" : ", ") + text; };
+  const auto add = [&](const std::string& text) { append_part(out, text, ", "); };
   if (const auto& p = summary.provenance) {
     if (!is_set(run)) add(fmt::format("seed {}", p->seed));
     add(p->threads == 1 ? "one thread" : fmt::format("{} threads", p->threads));

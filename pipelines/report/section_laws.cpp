@@ -19,9 +19,7 @@ struct UnitScale {
   std::string unit;
 };
 
-std::string interval(const Estimate& e) {
-  return interval_known(e.low, e.high) ? format_number(e.low) + " .. " + format_number(e.high) : "not determined";
-}
+std::string interval(const Estimate& e) { return ends_text(e.low, e.high, {format_number}); }
 
 /// The parameter in the given unit, empty when it has none.
 std::string in_unit(const Estimate& e, const std::vector<UnitScale>& units, std::size_t which) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "common/core/text.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/runs_figures.h"
@@ -139,7 +140,7 @@ std::string links(const RunData& run, const SetSummary& set) {
     const std::filesystem::path page = std::filesystem::path(one.directory) / "report.html";
     std::error_code ignored;
     if (!std::filesystem::exists(std::filesystem::path(run.directory) / page, ignored)) continue;
-    out += (out.empty() ? "" : ", ") + ("<a href=\"" + escape(page.string()) + "\">" + escape(one.name) + "</a>");
+    append_part(out, "<a href=\"" + escape(page.string()) + "\">" + escape(one.name) + "</a>", ", ");
   }
   return out.empty() ? "" : "<p>Reports of the runs: " + out + ".</p>\n";
 }
@@ -171,7 +172,7 @@ std::vector<HeadLine> set_lines(const RunData& run) {
   lines.emplace_back("Runs", fmt::format("{} runs{}, {} of them good.", set.runs.size(), kind, good));
   for (const SweptKey& one : set.over) {
     std::string values;
-    for (const std::string& value : one.values) values += (values.empty() ? "" : ", ") + value;
+    for (const std::string& value : one.values) append_part(values, value, ", ");
     lines.emplace_back("Varied", one.key + " = " + values + ".");
   }
   for (const PointEntry& point : set.points) {

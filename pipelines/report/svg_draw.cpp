@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/core/text.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 
@@ -126,9 +127,7 @@ std::string data_value(double value) {
 
 std::string data_list(const std::string& name, const std::vector<double>& values) {
   if (values.empty()) return "";
-  std::string out = " data-" + name + "=\"";
-  for (std::size_t i = 0; i < values.size(); ++i) out += (i > 0 ? "," : "") + data_value(values[i]);
-  return out + "\"";
+  return " data-" + name + "=\"" + join_text(values, ",", data_value) + "\"";
 }
 
 /// The legend entry that hides and shows it.
@@ -167,9 +166,7 @@ double Frame::py(double value) const {
 }
 
 std::string number(double pixels) {
-  std::string text = fmt::format("{:.2f}", pixels);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
+  std::string text = without_trailing_zeros(fmt::format("{:.2f}", pixels));
   return text == "-0" ? "0" : text;
 }
 

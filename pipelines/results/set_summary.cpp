@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 
@@ -57,7 +58,7 @@ std::string point_name(const std::vector<SweptKey>& over, const std::map<std::st
   std::string out;
   for (const SweptKey& one : over)
     if (const auto at = values.find(one.key); at != values.end())
-      out += (out.empty() ? "" : ", ") + short_key(over, one.key) + " = " + at->second;
+      append_part(out, short_key(over, one.key) + " = " + at->second, ", ");
   return out.empty() ? "all runs" : out;
 }
 

@@ -8,6 +8,7 @@
 
 #include "common/core/cost.h"
 #include "common/core/parallel_tasks.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 
@@ -73,7 +74,7 @@ void Findings::close_times() {
   std::string parts;
   for (const auto& [part, seconds] : times_) {
     facts["core_seconds_parts"][part] = seconds;
-    if (seconds >= kTrifle * total) parts += (parts.empty() ? "" : ", ") + part + " " + time_text(seconds);
+    if (seconds >= kTrifle * total) append_part(parts, part + " " + time_text(seconds), ", ");
   }
   add("core_seconds", total, "time: about " + time_text(total) + " of one core (" + parts + ")");
   if (total > kDay) warn("the run takes about " + time_text(total) + " of one core: see what can be smaller");

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "macrosim/lammps_run/points_file.h"
 #include "pipelines/export/export_files.h"
 #include "pipelines/report/figures.h"
@@ -105,9 +106,7 @@ bool keeps_states(const std::string& directory, const std::vector<fs::path>& fou
 }
 
 std::string listed(const std::vector<fs::path>& files) {
-  std::string text;
-  for (const fs::path& file : files) text += (text.empty() ? "" : ", ") + file.filename().string();
-  return text;
+  return join_text(files, ", ", [](const fs::path& file) { return file.filename().string(); });
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/core/text.h"
+
 namespace softgrain {
 
 namespace {
@@ -13,11 +15,7 @@ std::string quoted(const std::string& cell) {
   return out + "\"";
 }
 
-std::string csv_line(const std::vector<std::string>& cells) {
-  std::string line;
-  for (std::size_t k = 0; k < cells.size(); ++k) line += (k == 0 ? "" : ",") + quoted(cells[k]);
-  return line + "\n";
-}
+std::string csv_line(const std::vector<std::string>& cells) { return join_text(cells, ",", quoted) + "\n"; }
 
 std::string markdown_line(const std::vector<std::string>& cells) {
   std::string line = "|";

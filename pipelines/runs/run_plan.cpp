@@ -7,6 +7,7 @@
 #include <set>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/io/text_file.h"
 
 namespace softgrain {
@@ -132,7 +133,7 @@ std::string file_word(const std::string& text) {
 std::string run_name(const RunPlan& plan, const PlannedRun& run) {
   std::string out;
   const auto add = [&](const std::string& key, const std::string& value) {
-    out += (out.empty() ? "" : "_") + file_word(key) + "=" + file_word(value);
+    append_part(out, file_word(key) + "=" + file_word(value), "_");
   };
   for (std::size_t k = 0; k < plan.over.size(); ++k) add(short_key(plan.over, plan.over[k].key), run.values[k]);
   if (run.seed) add("seed", std::to_string(*run.seed));
@@ -195,11 +196,7 @@ RunPlan make_plan(const Texts& over, const std::string& seeds, const Texts& set)
     if (one.key == "seed" && !seeds.empty()) problems.emplace_back("--seeds: the key seed is swept by --over as well");
   if (over.empty() && seeds.empty()) problems.emplace_back("nothing is swept: give --over key=a,b,c or --seeds 1..8");
   require_few(plan, problems);
-  if (!problems.empty()) {
-    std::string text;
-    for (const std::string& one : problems) text += (text.empty() ? "" : "\n") + one;
-    throw InputError(text);
-  }
+  if (!problems.empty()) throw InputError(join_text(problems, "\n"));
   plan.runs = product_of(plan);
   name_runs(plan);
   return plan;

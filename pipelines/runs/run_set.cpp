@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "common/core/text.h"
 #include "common/io/interrupt.h"
 #include "common/io/text_file.h"
 #include "pipelines/kinds/kinds.h"
@@ -62,7 +63,7 @@ class AllErrors {
     std::string text;
     for (const std::string& one : order_) {
       const std::set<std::string>& runs = runs_.at(one);
-      text += (text.empty() ? "" : "\n") + one;
+      append_part(text, one, "\n");
       if (runs.size() == all) continue;
       text += fmt::format(" (in the run {}{})", *runs.begin(),
                           runs.size() > 1 ? fmt::format(" and {} more", runs.size() - 1) : "");

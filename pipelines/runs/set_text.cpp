@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "common/core/text.h"
 #include "pipelines/law/terminal_plot.h"
 #include "pipelines/report/run_values.h"
 
@@ -84,17 +85,13 @@ std::string over_seeds(const SetSummary& summary) {
 }  // namespace
 
 std::string number_text(double value, double error) {
-  if (!std::isfinite(value)) return "-";
-  return std::isfinite(error) && error > 0.0 ? fmt::format("{:.4g} +- {:.2g}", value, error)
-                                             : fmt::format("{:.4g}", value);
+  return with_error(value, error > 0.0 ? if_finite(error) : std::nullopt, {.undefined = "-"});
 }
 
 std::string varied_text(const SetSummary& summary) {
-  std::string text;
-  for (const SweptKey& one : summary.over) text += (text.empty() ? "sweep over " : ", ") + one.key;
+  std::string text = summary.over.empty() ? "" : "sweep over " + join_text(summary.over, ", ", &SweptKey::key);
   if (!summary.seeds.empty())
-    text += fmt::format("{}{} seed{}", text.empty() ? "" : "; ", summary.seeds.size(),
-                        summary.seeds.size() == 1 ? "" : "s");
+    append_part(text, fmt::format("{} seed{}", summary.seeds.size(), summary.seeds.size() == 1 ? "" : "s"));
   return text;
 }
 
@@ -104,7 +101,7 @@ std::string differences_text(const SetSummary& summary) {
   std::string text;
   for (const SweptKey& one : summary.over) {
     std::string values;
-    for (const std::string& value : one.values) values += (values.empty() ? "" : ", ") + value;
+    for (const std::string& value : one.values) append_part(values, value, ", ");
     text += fmt::format("varied: {} = {}\n", one.key, values);
   }
   std::size_t shown = 0;
@@ -112,7 +109,7 @@ std::string differences_text(const SetSummary& summary) {
     if (++shown > kShown) continue;
     std::string values;
     for (std::size_t k = 0; k < one.values.size(); ++k)
-      values += fmt::format("{}{} {}", values.empty() ? "" : ", ", letter(k), one.values[k]);
+      append_part(values, fmt::format("{} {}", letter(k), one.values[k]), ", ");
     text += fmt::format("differs: {}: {}\n", one.key, values);
   }
   if (shown > kShown) text += fmt::format("differs: {} more keys\n", shown - kShown);

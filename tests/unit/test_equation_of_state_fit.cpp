@@ -119,7 +119,7 @@ Coverage coverage(StateForm form, int seeds) {
   for (int seed = 0; seed < seeds; ++seed) {
     const StateFit fit = fitted(t, static_cast<std::uint64_t>(1000 + seed));
     EXPECT_TRUE(fit.usable) << fit.message;
-    const auto holds = [](const StateEstimate& e, double truth) { return e.low <= truth && truth <= e.high ? 1 : 0; };
+    const auto holds = [](const Estimate& e, double truth) { return e.low <= truth && truth <= e.high ? 1 : 0; };
     out.hits[0] += holds(fit.modulus, t.modulus);
     out.hits[1] += holds(fit.exponent, t.exponent);
     out.hits[2] += holds(fit.groups[0].onset, onset_of(t, 2.4));
@@ -203,7 +203,7 @@ OwnModuli own_moduli(double deviation, int groups, int seeds) {
     const auto curves = curves_with_own_moduli(t, deviation, groups, 100 + static_cast<std::uint64_t>(seed), another);
     const StateFit fit = fit_equation_of_state(curves, {StateForm::porosity, 60, 1});
     EXPECT_TRUE(fit.usable) << fit.message;
-    const auto holds = [](const StateEstimate& e, double x) { return e.low <= x && x <= e.high; };
+    const auto holds = [](const Estimate& e, double x) { return e.low <= x && x <= e.high; };
     out.mean += holds(fit.modulus, t.modulus) ? 1 : 0;
     out.another += holds(fit.modulus, another) ? 1 : 0;
     out.refused += fit.one_modulus ? 0 : 1;
@@ -444,7 +444,7 @@ TEST(EquationOfStateFit, OneSampleInEveryGroupHasNoErrorsAndSaysSo) {
   const StateFit fit = fitted(t, 1);
   EXPECT_TRUE(fit.usable);
   EXPECT_NE(fit.message.find("errors are not known"), std::string::npos);
-  EXPECT_TRUE(std::isinf(fit.modulus.error));
+  EXPECT_TRUE(std::isinf(fit.modulus.standard_error));
   test::expect_refused<InputError>([&] { extrapolate_onset(fit, 12.0); }, "two samples");
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "common/core/limits.h"
 #include "common/data/estimate_words.h"
@@ -19,6 +20,43 @@ TEST(FewSamples, WidenByStudentsT) {
   EXPECT_NEAR(few_samples_factor(7), std::sqrt(7.0 / 6.0) * 2.446912 / 1.959964, 1e-6);
   EXPECT_NEAR(few_samples_factor(100000), 1.0, 1e-4);
   EXPECT_EQ(few_samples_factor(1), kInfinity);
+}
+
+TEST(FewSamples, StudentsTIsAsInTables) {
+  EXPECT_NEAR(student95(4.0), 2.776445, 1e-6);
+  EXPECT_NEAR(student_quantile(0.995, 4.0), 4.604095, 1e-6);
+  EXPECT_NEAR(student_quantile(0.9995, 9.0), 4.780913, 1e-6);
+  EXPECT_EQ(student_quantile(0.995, 0.5), kInfinity);
+  EXPECT_NEAR(student_over_normal(4.0), 2.776445 / 1.959964, 1e-6);
+}
+
+TEST(FewSamples, IntervalsGoByStudentsT) {
+  const auto [low, high] = student_interval(2.0, 0.5, 4.0);
+  EXPECT_NEAR(low, 2.0 - 0.5 * 2.776445, 1e-6);
+  EXPECT_NEAR(high, 2.0 + 0.5 * 2.776445, 1e-6);
+  const Estimate free = student_estimate(2.0, 0.5, 4.0);
+  EXPECT_EQ(free.value, 2.0);
+  EXPECT_EQ(free.standard_error, 0.5);
+  EXPECT_EQ(free.low, low);
+  EXPECT_EQ(free.high, high);
+  const Estimate bounded = student_estimate(2.0, 0.5, 4.0, 1.0, 3.0);
+  EXPECT_EQ(bounded.low, 1.0);
+  EXPECT_EQ(bounded.high, 3.0);
+  const Estimate unknown = student_estimate(2.0, 0.5, 0.0, 1.0, 3.0);
+  EXPECT_EQ(unknown.value, 2.0);
+  EXPECT_EQ(unknown.standard_error, kInfinity);
+  EXPECT_EQ(unknown.low, -kInfinity);
+  EXPECT_EQ(unknown.high, kInfinity);
+}
+
+TEST(FewSamples, AMeanOfNHasOneDegreeLess) {
+  const std::vector<double> five{1.0, 2.0, 3.0, 4.0, 5.0};
+  const Estimate e = mean_estimate(mean_error(five), 0.0);
+  EXPECT_EQ(e.value, 3.0);
+  EXPECT_NEAR(e.standard_error, std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(e.low, 3.0 - std::sqrt(0.5) * 2.776445, 1e-6);
+  EXPECT_NEAR(e.high, 3.0 + std::sqrt(0.5) * 2.776445, 1e-6);
+  EXPECT_EQ(mean_estimate(mean_error(std::vector{2.0})).high, kInfinity);
 }
 
 TEST(FewSamples, WidenEachSideAndStayAboveZero) {

@@ -116,7 +116,7 @@ TEST(ResponsePrediction, IntervalsHoldTheTruthOfScatteredSamples) {
     const ResponsePrediction found =
         predict_response(fitted(made, static_cast<std::uint64_t>(seed)), made.responses, 12.0, {});
     if (!found.usable) continue;
-    const StateEstimate& e = found.axial[5];
+    const Estimate& e = found.axial[5];
     hits += e.low <= t.axial(12.0, 5) && t.axial(12.0, 5) <= e.high ? 1 : 0;
     width += (e.high - e.low) / e.value / kSeeds;
   }

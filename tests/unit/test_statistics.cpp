@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "common/core/error.h"
@@ -55,6 +56,21 @@ TEST(Statistics, TheLongFormIsTheSame) {
     EXPECT_NEAR(m.mean / mean, 1.0, 1e-13);
     EXPECT_NEAR(m.deviation / std::sqrt(squares / (static_cast<double>(n) - 1.0)), 1.0, 1e-13);
   }
+}
+
+TEST(Statistics, AFiniteMeanLeavesOutTheRest) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const MeanError m = finite_mean(Values{1.0, std::nan(""), 3.0, infinity});
+  EXPECT_EQ(m.n, 2U);
+  EXPECT_EQ(m.mean, 2.0);
+  EXPECT_DOUBLE_EQ(m.error, 1.0);
+  EXPECT_EQ(finite_mean(Values{infinity}).n, 0U);
+  struct Part {
+    double value;
+  };
+  const std::vector<Part> parts{{1.0}, {std::nan("")}, {5.0}};
+  EXPECT_EQ(finite_mean(parts, &Part::value).mean, 3.0);
+  EXPECT_EQ(finite_mean(parts, [](const Part& p) { return 2.0 * p.value; }).mean, 6.0);
 }
 
 TEST(Statistics, RepetitionsCountAsTheValuesWrittenOut) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/core/text.h"
 #include "pipelines/kinds/cohesive_powder/scene.h"
 #include "pipelines/kinds/cohesive_powder/summary.h"
 #include "pipelines/report/html.h"
@@ -163,7 +164,7 @@ std::string comparison_figure(const std::vector<VariantEntry>& entries, const st
 std::string links(const std::vector<VariantEntry>& entries) {
   std::string names;
   for (const VariantEntry& e : entries)
-    if (e.status != RunStatus::not_run) names += (names.empty() ? "" : ", ") + e.name;
+    if (e.status != RunStatus::not_run) append_part(names, e.name, ", ");
   if (names.empty()) return "";
   return paragraph("Each variant has a directory of its own with all its data: " + names +
                    "; softgrain report on that directory shows its packings.");

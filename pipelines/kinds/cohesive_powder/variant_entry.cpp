@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 
@@ -150,7 +151,7 @@ std::string reason_of(const VariantRun& ended) {
   std::string out;
   for (const std::string& text : ended.run.remarks.value_or(std::vector<std::string>{})) {
     const bool tells = ended.powder.samples.empty() || text.find("not at rest") != std::string::npos;
-    if (tells) out += (out.empty() ? "" : "; ") + text;
+    if (tells) append_part(out, text);
   }
   return out;
 }

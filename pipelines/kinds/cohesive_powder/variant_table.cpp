@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/core/text.h"
 #include "pipelines/kinds/cohesive_powder/variants.h"
 
 namespace softgrain {
@@ -30,30 +31,24 @@ std::vector<std::string> compared(const std::vector<VariantEntry>& entries) {
 /// A number in full precision; empty where it is not finite.
 std::string exact(double x) { return std::isfinite(x) ? nlohmann::json(x).dump() : ""; }
 
-std::string rounded(double x, const char* format) {
-  return std::isfinite(x) ? fmt::format(fmt::runtime(format), x) : "";
-}
+constexpr NumberForm kFourDecimals{4, true};
 
-/// "0.7105 +- 0.0011", with an error where there is one.
-std::string with_error(double value, double error, const char* format) {
-  std::string text = rounded(value, format);
-  if (!text.empty() && std::isfinite(error)) text += " +- " + rounded(error, "{:.2g}");
-  return text;
-}
-
-std::string ours(const VariantEntry& entry, const std::string& quantity, const char* format) {
-  return with_error(entry.ours(quantity).mean, entry.ours(quantity).error, format);
+/// "0.7105 +- 0.0011"; empty where there is no value.
+std::string ours(const VariantEntry& entry, const std::string& quantity, const NumberForm& form) {
+  const QuantityMean own = entry.ours(quantity);
+  return with_error(own.mean, if_finite(own.error), {.value = form, .undefined = ""});
 }
 
 std::string theirs(const VariantEntry& entry, const std::string& quantity) {
-  return with_error(entry.theirs(quantity).value, entry.theirs(quantity).error, "{:.5g}");
+  const auto published = entry.theirs(quantity);
+  return with_error(published.value, if_finite(published.error), {.value = {5}, .undefined = ""});
 }
 
 /// "+0.0012 (0.8 errors)"
 std::string difference(const VariantEntry& entry, const std::string& quantity) {
   const PublishedDifference off = entry.off(quantity);
-  const std::string errors = rounded(off.in_errors, "{:+.1f}");
-  return rounded(off.value, "{:+.2g}") + (errors.empty() ? "" : " (" + errors + ")");
+  const std::string errors = rounded_text(off.in_errors, {1, true, true}, "");
+  return rounded_text(off.value, {2, false, true}, "") + (errors.empty() ? "" : " (" + errors + ")");
 }
 
 std::string samples_text(const VariantEntry& entry) {
@@ -98,8 +93,8 @@ TextTable powder_console_table(const std::vector<VariantEntry>& entries) {
   for (const VariantEntry& e : entries) {
     std::vector<std::string> row{e.name, to_string(e.status), samples_text(e)};
     for (const std::string& name : published)
-      row.insert(row.end(), {ours(e, name, "{:.4f}"), theirs(e, name), difference(e, name)});
-    for (const std::string& name : others) row.push_back(ours(e, name, "{:.4g}"));
+      row.insert(row.end(), {ours(e, name, kFourDecimals), theirs(e, name), difference(e, name)});
+    for (const std::string& name : others) row.push_back(ours(e, name, {4}));
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -110,7 +105,7 @@ std::string powder_variant_line(const VariantEntry& entry) {
   if (entry.status == RunStatus::not_run) return line + "not run\n";
   for (const std::string& name : compared({entry})) {
     const std::string published = theirs(entry, name);
-    line += fmt::format("{} {}{}, ", name, ours(entry, name, "{:.4f}"),
+    line += fmt::format("{} {}{}, ", name, ours(entry, name, kFourDecimals),
                         published.empty() ? "" : " (published " + published + ")");
   }
   line += samples_text(entry) + " samples at rest";

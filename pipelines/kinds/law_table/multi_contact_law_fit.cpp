@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/data/multi_contact_choice.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
 #include "pipelines/law/law_json.h"
@@ -117,8 +118,10 @@ void add_entry(MultiContactLawFit& fit, const MultiContactMeasurements& data, co
   std::string failed;
   for (const MultiContactLaw& law : entry.laws)
     if (law.replicates_failed > 0)
-      failed += fmt::format("{}{} law {} of {}", failed.empty() ? "" : ", ", to_string(law.form), law.replicates_failed,
-                            law.replicates_failed + static_cast<int>(law.replicates.size()));
+      append_part(failed,
+                  fmt::format("{} law {} of {}", to_string(law.form), law.replicates_failed,
+                              law.replicates_failed + static_cast<int>(law.replicates.size())),
+                  ", ");
   if (!failed.empty())
     fit.remarks.push_back(
         fmt::format("solid fraction {:.3f}: refits to drawn packings that did not come to a minimum, left out of the "

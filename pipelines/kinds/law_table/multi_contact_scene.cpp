@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "common/core/text.h"
 #include "common/data/slide_direction.h"
 #include "microsim/multi_contact_arrangements.h"
 #include "pipelines/kinds/soft_particle/scene.h"
@@ -252,12 +253,7 @@ std::vector<MultiContactStage> stages_of(const ConfigurationKeys& w, const std::
 }
 
 /// "0.25", "1", "2.5": as people write it.
-std::string short_number(double x) {
-  std::string text = std::to_string(x);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text;
-}
+std::string short_number(double x) { return without_trailing_zeros(std::to_string(x)); }
 
 std::string default_name(const ConfigurationKeys& w, bool free) {
   std::string name = to_string(w.arrangement) + "-" + (w.partner ? to_string(*w.partner) : "mixed");

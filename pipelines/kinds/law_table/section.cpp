@@ -7,6 +7,7 @@
 #include "calibrate/multi_contact_form_fit.h"
 #include "calibrate/multi_contact_states.h"
 #include "common/contact/multi_contact_from_table.h"
+#include "common/data/estimate_words.h"
 #include "common/data/law_remarks.h"
 #include "common/data/multi_contact_choice.h"
 #include "pipelines/kinds/law_table/results.h"
@@ -101,10 +102,8 @@ std::string group_figure(const Group& group, const std::vector<MultiContactState
 }
 
 /// "0.73 ± 0.19"; a number that is fixed has no error, one whose error is not known says so.
-std::string with_error(const Estimate& e) {
-  if (!std::isfinite(e.standard_error)) return format_number(e.value, 3) + " (error not known)";
-  return e.standard_error > 0.0 ? format_number(e.value, 3) + " ± " + format_number(e.standard_error, 2)
-                                : format_number(e.value, 3);
+std::string error_text(const Estimate& e) {
+  return estimate_with_error(e, {format_number, " ± ", " (error not known)"});
 }
 
 std::string error_table(const LawTableEntry& entry) {
@@ -128,7 +127,7 @@ std::string parameter_table(const LawTableEntry& entry) {
                    "error, leave one out [%]", "information criterion"});
   for (const MultiContactLaw& law : entry.laws) {
     std::vector<std::string> cells{form_label(entry, law)};
-    for (const Estimate* e : {&law.a, &law.b, &law.delta, &law.m0, &law.m1, &law.m2}) cells.push_back(with_error(*e));
+    for (const Estimate* e : {&law.a, &law.b, &law.delta, &law.m0, &law.m1, &law.m2}) cells.push_back(error_text(*e));
     for (const double x : {law.error_fitted, law.error_held_out, law.error_cross})
       cells.push_back(format_number(100.0 * x, 3));
     cells.push_back(format_number(law.criterion, 4));

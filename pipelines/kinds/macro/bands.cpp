@@ -9,6 +9,7 @@
 #include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 #include "pipelines/compare/compare.h"
 
 namespace softgrain {
@@ -72,8 +73,7 @@ class DrawnBand {
     record_.noise = noise;
     for (const BandOf of : {BandOf::axial, BandOf::lateral}) {
       if (!std::all_of(ran.begin(), ran.end(), [&](const MacroCurve* c) { return like(*c, curve, of); })) {
-        curve.note +=
-            (curve.note.empty() ? "" : "; ") + std::string("no band: with some draw of the law the test ended early");
+        append_part(curve.note, "no band: with some draw of the law the test ended early");
         return;
       }
       const std::vector<double>& stress = banded_stress(curve, of);

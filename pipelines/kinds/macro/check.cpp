@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/data/estimate_words.h"
 #include "common/data/law_remarks.h"
 #include "macrosim/cell_specimen.h"
@@ -315,7 +316,7 @@ std::string test_text(const MacroSpec& spec) {
   if (spec.test != MacroTest::stages)
     return fmt::format("{} test to a strain of {}", to_string(spec.test), spec.strain_end);
   std::string names;
-  for (const MacroStage& stage : spec.stages) names += (names.empty() ? "" : ", ") + stage.record.name;
+  for (const MacroStage& stage : spec.stages) append_part(names, stage.record.name, ", ");
   return fmt::format("test in {} stage{}: {}", spec.stages.size(), spec.stages.size() == 1 ? "" : "s", names);
 }
 

@@ -8,6 +8,7 @@
 
 #include "common/contact/law_file.h"
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/dynamics/force_pass.h"
 #include "common/io/progress.h"
 #include "common/io/text_file.h"
@@ -111,8 +112,7 @@ class Sample {
       read_states(rows, macro, out);
     } catch (const InputError& e) {  // a cell that has become too small for its bodies
       out.curve.usable = false;
-      out.curve.note +=
-          (out.curve.note.empty() ? "" : "; ") + fmt::format("its last state cannot be read: {}", e.what());
+      append_part(out.curve.note, fmt::format("its last state cannot be read: {}", e.what()));
     }
     return out;
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/io/csv_file.h"
 #include "common/neighbours/hierarchical_grid.h"
 #include "pipelines/kinds/macro/twin_cache.h"
@@ -27,7 +28,7 @@ std::size_t column_of(const CsvFile& csv, const char* name, Unit unit, const cha
     return k;
   }
   std::string found;
-  for (const CsvColumn& c : csv.columns()) found += (found.empty() ? "" : ", ") + c.title;
+  for (const CsvColumn& c : csv.columns()) append_part(found, c.title, ", ");
   throw InputError(fmt::format("{}: needs a column \"{}\"; a packing has x [m], y [m], z [m], r [m], kind; found: {}",
                                csv.where(csv.header_line()), example, found));
 }

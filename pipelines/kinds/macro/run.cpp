@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "common/core/few_samples.h"
+#include "common/core/text.h"
 #include "pipelines/kinds/macro/bands.h"
 #include "pipelines/kinds/macro/check.h"
 #include "pipelines/kinds/macro/lammps_stage.h"
@@ -21,10 +22,6 @@ namespace {
 std::string lateral_ratio(const MacroCurve& c) {
   if (c.stress_axial.back() == 0.0) return "undefined (no axial stress)";
   return fmt::format("{:.3f}", c.stress_lateral.back() / c.stress_axial.back());
-}
-
-std::string with_error(const MeanError& m) {
-  return m.n > 1 ? fmt::format("{:.4g} +- {:.2g}", m.mean, m.error) : fmt::format("{:.4g}", m.mean);
 }
 
 /// A slope whose error is as large as itself is none.

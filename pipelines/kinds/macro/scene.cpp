@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/io/text_file.h"
 #include "common/packing/grading_scene.h"
 #include "macrosim/preparation.h"
@@ -280,9 +281,7 @@ void require_known_contents(const SceneTable& macro, const MacroSetup& setup, co
 
 std::string assumed_text(const MacroSetup& setup) {
   if (setup.assumed.empty()) return "";
-  std::string all;
-  for (const std::string& one : setup.assumed) all += (all.empty() ? "" : ", ") + one;
-  return "the law does not say all of the grains' material; of solid grains this is taken: " + all;
+  return "the law does not say all of the grains' material; of solid grains this is taken: " + join_text(setup.assumed);
 }
 
 namespace {

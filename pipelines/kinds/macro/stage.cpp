@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "common/core/parallel_tasks.h"
+#include "common/core/text.h"
 #include "common/io/progress.h"
 #include "common/state/system_io.h"
 #include "macrosim/cell_test.h"
@@ -168,8 +169,8 @@ RunOutcome run_task(const Stage& stage, const Kind& kind, typename Kind::State& 
     if (recorded.strain.empty()) throw;
     state.curve = std::move(recorded);
     state.curve.usable = false;
-    state.curve.note += (state.curve.note.empty() ? "" : "; ") +
-                        fmt::format("broke off beyond strain {:.4g}: {}", state.curve.strain.back(), e.what());
+    append_part(state.curve.note,
+                fmt::format("broke off beyond strain {:.4g}: {}", state.curve.strain.back(), e.what()));
     mine.reach(1.0);
   }
   return {state.curve, states.take()};

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/compare/stage_results.h"
 
@@ -146,8 +147,8 @@ std::vector<std::string> first_point_remarks(const MacroSpec& spec, const std::v
     const std::string reason = why(c);
     auto at = std::find_if(below.begin(), below.end(), [&](const Below& b) { return b.reason == reason; });
     if (at == below.end()) at = below.insert(below.end(), {reason, asked, "", ""});
-    at->engines += (at->engines.empty() ? "'" : ", '") + c.engine + "'";
-    at->stresses += (at->stresses.empty() ? "" : ", ") + fmt::format("{:.3g}", mean);
+    append_part(at->engines, "'" + c.engine + "'", ", ");
+    append_part(at->stresses, rounded_text(mean, {3}), ", ");
   }
   std::vector<std::string> out;
   for (const Below& b : below)

@@ -33,17 +33,14 @@ std::vector<StateCurve> curves_of_all(const std::vector<EquationInput>& variants
 }
 
 /// phi_J of all samples of a span, with K and n of `fit`.
-std::optional<StateEstimate> measured_onset(const StateFit& fit, StateForm form, const std::vector<StateCurve>& curves,
-                                            double span) {
+std::optional<Estimate> measured_onset(const StateFit& fit, StateForm form, const std::vector<StateCurve>& curves,
+                                       double span) {
   std::vector<double> onsets;
   for (const StateCurve& c : curves)
     if (std::abs(c.span / span - 1.0) < 1e-6)
       onsets.push_back(fitted_onset(form, fit.modulus.value, fit.exponent.value, c));
   if (onsets.empty()) return std::nullopt;
-  const MeanError mean = mean_error(onsets);
-  if (mean.n < 2) return StateEstimate{mean.mean, kInfinity, -kInfinity, kInfinity};
-  const double half = student95(static_cast<double>(mean.n - 1)) * mean.error;
-  return StateEstimate{mean.mean, mean.error, std::max(0.0, mean.mean - half), std::min(1.0, mean.mean + half)};
+  return mean_estimate(mean_error(onsets), 0.0, 1.0);
 }
 
 /// Larger spans take no part, in K and n neither.

@@ -36,9 +36,9 @@ struct EquationInput {
   double exponent = 0.0;  ///< exponent of the power law of their sizes; 0: another form
 };
 
-void fields(auto&& visit, Of<StateEstimate> auto& e) {
+void fields(auto&& visit, Of<Estimate> auto& e) {
   visit("value", e.value);
-  visit("standard_error", e.error);
+  visit("standard_error", e.standard_error);
   range_field(visit, "interval", e.low, e.high);
 }
 
@@ -47,7 +47,7 @@ struct OnsetSummary {
   std::string name;
   double span = 0.0;
   int samples = 0;
-  StateEstimate onset;
+  Estimate onset;
   double own_modulus = 0.0;  ///< K of this variant alone, n being that of all
 };
 
@@ -65,7 +65,7 @@ struct OnsetFormSummary {
   bool usable = false;
   std::string message;
   std::vector<double> parameters;
-  StateEstimate onset;
+  Estimate onset;
 };
 
 void fields(auto&& visit, Of<OnsetFormSummary> auto& s) {
@@ -83,8 +83,8 @@ struct ExtrapolationSummary {
   double largest_fitted = 0.0;
   bool usable = false;
   std::string message;
-  std::optional<StateEstimate> onset;
-  std::optional<StateEstimate> measured;  ///< measured phi_J, where a variant has that span
+  std::optional<Estimate> onset;
+  std::optional<Estimate> measured;  ///< measured phi_J, where a variant has that span
   std::vector<OnsetFormSummary> forms;
 };
 
@@ -104,8 +104,8 @@ struct EquationSummary {
   StateForm form = StateForm::porosity;
   bool usable = false;
   std::string message;
-  StateEstimate modulus;
-  StateEstimate exponent;
+  Estimate modulus;
+  Estimate exponent;
   double pressure_deviation = 0.0;
   double modulus_scatter = 0.0;
   double collapse_probability = 0.0;

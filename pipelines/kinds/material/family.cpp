@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "common/core/text.h"
 #include "macrosim/test_protocol.h"
 
 namespace softgrain {
@@ -45,11 +46,7 @@ std::string stage_text(const MacroStage& stage) {
   return text + fmt::format(" in {} x {}, tolerance {:g}", stage.steps, stage.increments_per_step, stage.tolerance);
 }
 
-std::string test_text(const MacroSpec& spec) {
-  std::string text;
-  for (const MacroStage& stage : stages_of(spec)) text += (text.empty() ? "" : "; ") + stage_text(stage);
-  return text;
-}
+std::string test_text(const MacroSpec& spec) { return join_text(stages_of(spec), "; ", stage_text); }
 
 std::string number(double value) { return fmt::format("{:g}", value); }
 

@@ -8,6 +8,7 @@
 
 #include "calibrate/response_prediction.h"
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "macrosim/body_contacts.h"
 #include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/material/scene.h"
@@ -183,8 +184,10 @@ std::string value_text(const char* name, const PredictedValue& v, double scale) 
                                  scale * v.predicted.low, scale * v.predicted.high);
   text += fmt::format(", {:.0f} % wide)", 100.0 * v.width());
   if (!v.measured) return text;
-  return text + fmt::format(", measured {:.3f}{}: {}", scale * v.measured->mean,
-                            v.measured->n > 1 ? fmt::format(" +- {:.3f}", scale * v.measured->error) : "",
+  const MeanError& m = *v.measured;
+  const auto error = m.n > 1 ? std::optional(scale * m.error) : std::nullopt;
+  return text + fmt::format(", measured {}: {}",
+                            with_error(scale * m.mean, error, {.value = {3, true}, .error = {3, true}}),
                             v.inside() ? "inside" : "outside");
 }
 

@@ -23,7 +23,7 @@ struct PredictionInput {
 
 /// One quantity at one point of the test. Inside: the mean of what was measured lies in the interval.
 struct PredictedValue {
-  StateEstimate predicted;
+  Estimate predicted;
   std::optional<MeanError> measured;
 
   [[nodiscard]] bool inside() const { return predicted.low <= measured->mean && measured->mean <= predicted.high; }
@@ -61,7 +61,7 @@ struct PredictionSummary {
   double largest_fitted = 0.0;
   bool usable = false;
   std::string message{};  ///< the forms of onset, or why there is none
-  std::optional<StateEstimate> solid_fraction{};
+  std::optional<Estimate> solid_fraction{};
   int samples_measured = 0;
   std::vector<PredictedPoint> points{};
 };

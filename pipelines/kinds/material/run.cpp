@@ -7,6 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/core/limits.h"
+#include "common/core/text.h"
 #include "common/data/estimate_words.h"
 #include "common/io/text_file.h"
 #include "macrosim/body_contacts.h"
@@ -269,24 +270,22 @@ std::vector<PredictionSummary> predictions(const MaterialScene& scene, const std
   return predict_spans(inputs, scene.equation, seed);
 }
 
-std::string text_of(const StateEstimate& e) { return interval_text(e.value, e.low, e.high); }
-
 std::string equation_text(const EquationSummary& s) {
   if (!s.usable) return "equation of state: not usable: " + s.message + "\n";
   std::string text =
       fmt::format("equation of state, {} form: K = {}, n = {}; pressures follow it to {:.2g} %\n", to_string(s.form),
-                  text_of(s.modulus), text_of(s.exponent), 100.0 * s.pressure_deviation);
+                  interval_text(s.modulus), interval_text(s.exponent), 100.0 * s.pressure_deviation);
   if (s.message != "fitted") text += "  " + s.message + "\n";
   for (const OnsetSummary& o : s.onsets)
-    text += fmt::format("  {}: phi_J = {}, K by itself {:.4g}\n", o.name, text_of(o.onset), o.own_modulus);
+    text += fmt::format("  {}: phi_J = {}, K by itself {:.4g}\n", o.name, interval_text(o.onset), o.own_modulus);
   if (s.onsets.size() > 1)
     text +=
         fmt::format("  K of variants scatters by {:.2g} %; as much or more with a probability of {:.2g} if it is one\n",
                     100.0 * s.modulus_scatter, s.collapse_probability);
   for (const ExtrapolationSummary& e : s.extrapolations)
     text += fmt::format("  {}, span {:g}: {}{}\n", e.family, e.span,
-                        e.onset ? "phi_J = " + text_of(*e.onset) : "not extrapolated: " + e.message,
-                        e.measured ? ", measured " + text_of(*e.measured) : "");
+                        e.onset ? "phi_J = " + interval_text(*e.onset) : "not extrapolated: " + e.message,
+                        e.measured ? ", measured " + interval_text(*e.measured) : "");
   return text;
 }
 
@@ -298,9 +297,8 @@ std::string console_summary(const MaterialSummary& s) {
     text +=
         fmt::format("{}: {} sample{} of {} grains", v.name, v.runs.samples, v.runs.samples == 1 ? "" : "s", v.grains);
     if (v.solid_fraction_start)
-      text +=
-          fmt::format(", solid fraction {:.4f}{} at the start", v.solid_fraction_start->mean,
-                      v.solid_fraction_start->n > 1 ? fmt::format(" +- {:.4f}", v.solid_fraction_start->error) : "");
+      text += fmt::format(", solid fraction {} at the start",
+                          with_error(*v.solid_fraction_start, {.value = {4, true}, .error = {4, true}}));
     text += "\n";
     for (const StageMeans& m : v.runs.stages) {
       if (m.axial_end && m.ratio_end)
@@ -388,7 +386,7 @@ ExitStatus write_only(const MaterialScene& scene, const Run& run) {
   summary.youngs_modulus = common_modulus(scene);
   for (const MaterialVariant& v : scene.variants) add_directories(v, run, summary);
   std::string directories;
-  for (const auto& [name, directory] : summary.head.files) directories += (directories.empty() ? "" : ", ") + directory;
+  for (const auto& [name, directory] : summary.head.files) append_part(directories, directory, ", ");
   run.context.finish(json_of(summary), run.provenance, written_text(directories));
   return ExitStatus::good;
 }

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 
+#include "common/data/estimate_words.h"
 #include "macrosim/body_contacts.h"
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/material/scene.h"
@@ -137,11 +138,9 @@ std::string share_table(const std::vector<Variant>& variants) {
              "share of the largest radius. Mean over samples ± standard error.");
 }
 
-std::string interval(const StateEstimate& e, int digits = 4) {
-  if (!std::isfinite(e.low) || !std::isfinite(e.high))
-    return format_number(e.value, digits) + " (interval not determined)";
-  return fmt::format("{} ({} to {})", format_number(e.value, digits), format_number(e.low, digits),
-                     format_number(e.high, digits));
+std::string interval(const Estimate& e, int digits = 4) {
+  return fmt::format("{} ({})", format_number(e.value, digits),
+                     ends_text(e.low, e.high, {format_number, digits, " to ", "interval not determined", true}));
 }
 
 /// p/E over x, every sample with the onset of its variant, and the curve that all share.

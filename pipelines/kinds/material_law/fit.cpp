@@ -16,14 +16,6 @@ namespace softgrain {
 
 namespace {
 
-/// Mean over samples with Student's interval.
-Estimate mean_of_samples(const std::vector<double>& values) {
-  const MeanError m = mean_error(values);
-  if (m.n < 2) return {m.mean, kInfinity, -kInfinity, kInfinity};
-  const double half = student95(static_cast<double>(m.n) - 1.0) * m.error;
-  return {m.mean, m.error, std::max(0.0, m.mean - half), m.mean + half};
-}
-
 class MaterialLawFit {
  public:
   MaterialLawFit(const MaterialLawScene& scene, const std::vector<VariantResult>& results, const StateFit& states,
@@ -34,8 +26,8 @@ class MaterialLawFit {
     out_.summary.form = out_.card.form = scene_.material.equation.form;
     out_.summary.split = out_.card.split = scene_.split;
     describe();
-    out_.card.modulus = estimate_of(states_.modulus);
-    out_.card.exponent = estimate_of(states_.exponent);
+    out_.card.modulus = states_.modulus;
+    out_.card.exponent = states_.exponent;
     add("K", out_.card.modulus);
     add("n", out_.card.exponent);
     fit_excess();
@@ -130,7 +122,7 @@ class MaterialLawFit {
       if (!ratios.empty()) samples.push_back(mean_error(ratios).mean);
     }
     if (samples.empty()) return;
-    out_.card.lateral_ratio = mean_of_samples(samples);
+    out_.card.lateral_ratio = mean_estimate(mean_error(samples), 0.0);
     add("K0", out_.card.lateral_ratio);
   }
 

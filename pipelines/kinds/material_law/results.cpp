@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "common/core/text.h"
 #include "pipelines/kinds/law_table/law_check.h"
 #include "pipelines/kinds/material_law/summary.h"
 #include "pipelines/report/number_format.h"
@@ -14,9 +15,9 @@ namespace {
 std::vector<HeadLine> lines_of_law(const report::RunData& run) {
   const auto law = run.summary_as<MaterialLawSummary>().law;
   if (law.numbers.empty()) return {};
-  std::string text;
-  for (const LawNumber& n : law.numbers)
-    text += (text.empty() ? "" : ", ") + n.name + " = " + report::format_number(n.estimate.value, 3);
+  const std::string text = join_text(law.numbers, ", ", [](const LawNumber& n) {
+    return n.name + " = " + report::format_number(n.estimate.value, 3);
+  });
   return {{"Cell law", text + (law.usable ? "." : "; not usable.")}};
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/core/text.h"
 #include "common/data/estimate_words.h"
 #include "common/io/text_file.h"
 #include "pipelines/kinds/material/run.h"
@@ -13,15 +14,11 @@ namespace softgrain {
 
 namespace {
 
-std::string text_of(const Estimate& e) { return interval_text(e); }
-
 std::string law_text(const CellLawSummary& s) {
-  std::string text = fmt::format("cell law, {} form:", to_string(s.form));
-  for (std::size_t k = 0; k < s.numbers.size(); ++k)
-    text += fmt::format("{} {} = {}", k == 0 ? "" : ",", s.numbers[k].name, text_of(s.numbers[k].estimate));
-  text += "\n";
+  const auto number = [](const LawNumber& n) { return fmt::format(" {} = {}", n.name, interval_text(n.estimate)); };
+  std::string text = fmt::format("cell law, {} form:{}\n", to_string(s.form), join_text(s.numbers, ",", number));
   for (const MixtureSummary& m : s.mixtures)
-    text += fmt::format("  V_f/V_c = {:.3g}: W/V_c = {}{}\n", m.ratio, text_of(m.pores),
+    text += fmt::format("  V_f/V_c = {:.3g}: W/V_c = {}{}\n", m.ratio, interval_text(m.pores),
                         s.band ? fmt::format(", fitted {:.4g}", m.fitted) : "");
   if (s.usable)
     text += fmt::format("  W/V_c is {:.2g} about its form, stress ratios of the fines {:.2g} about the law\n",

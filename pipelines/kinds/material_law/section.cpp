@@ -25,10 +25,7 @@ std::string meaning_of(const std::string& name) {
   return "lateral over axial stress of the fines";
 }
 
-std::string interval_of(const Estimate& e) {
-  if (!interval_known(e.low, e.high)) return "not determined";
-  return fmt::format("{} to {}", format_number(e.low, 3), format_number(e.high, 3));
-}
+std::string interval_of(const Estimate& e) { return ends_text(e.low, e.high, {format_number, 3, " to "}); }
 
 std::string of_pair(const CellLawSummary& law, const std::string& name) {
   for (const LawNumber& n : law.of_pair)

@@ -6,12 +6,6 @@
 
 namespace softgrain {
 
-void fields(auto&& visit, Of<Estimate> auto& e) {
-  visit("value", e.value);
-  visit("standard_error", e.standard_error);
-  range_field(visit, "interval", e.low, e.high);
-}
-
 /// A number of the law under its name in the card.
 struct LawNumber {
   std::string name;

@@ -9,6 +9,7 @@
 #include "common/core/limits.h"
 #include "common/core/particles.h"
 #include "common/core/random.h"
+#include "common/core/text.h"
 #include "common/packing/grading.h"
 #include "macrosim/constructed_packing.h"
 #include "pipelines/kinds/macro/packing_source.h"
@@ -236,7 +237,7 @@ std::string other_fines(const MaterialModel& model, const MacroSpec& spec) {
   if (!model.card) return "";
   const CellCard& card = *model.card;
   std::string text;
-  const auto add = [&text](const std::string& one) { text += (text.empty() ? "" : "; ") + one; };
+  const auto add = [&text](const std::string& one) { append_part(text, one); };
   const double span = card.split * spec.solid_polydispersity;
   constexpr double kAlike = 0.1;
   if (std::abs(span / card.fines_ratio - 1.0) > kAlike)

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/core/text.h"
 #include "pipelines/kinds/material_models/summary.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
@@ -15,11 +16,11 @@ namespace softgrain {
 namespace report {
 namespace {
 
-std::string percent(double x) { return std::isfinite(x) ? fmt::format("{:.1f} %", 100.0 * x) : "–"; }
-
-std::string with_error(double x, double error) {
-  return std::isfinite(error) && std::isfinite(x) ? fmt::format("{:.1f} ± {:.1f} %", 100.0 * x, 100.0 * error)
-                                                  : percent(x);
+/// "12.3 %" of a share, "12.3 ± 0.4 %" with its error; "–" where it is not finite.
+std::string percent(double share, double error = kNaN) {
+  if (!std::isfinite(share)) return "–";
+  const ErrorForm form{.value = {1, true}, .error = {1, true}, .between = " ± "};
+  return with_error(100.0 * share, if_finite(100.0 * error), form) + " %";
 }
 
 std::string score_table(const std::vector<ModelScore>& scores, bool blind) {
@@ -28,8 +29,8 @@ std::string score_table(const std::vector<ModelScore>& scores, bool blind) {
                    "remark"});
   for (const ModelScore& s : scores)
     if (s.blind == blind)
-      table.row({s.variant, s.model, format_count(s.bodies), with_error(s.axial, s.axial_error),
-                 with_error(s.lateral, s.lateral_error), percent(s.axial_at_2), percent(s.axial_at_end),
+      table.row({s.variant, s.model, format_count(s.bodies), percent(s.axial, s.axial_error),
+                 percent(s.lateral, s.lateral_error), percent(s.axial_at_2), percent(s.axial_at_end),
                  percent(s.ratio_at_2), percent(s.ratio_at_6), percent(s.unloading), percent(s.truth_error),
                  format_number(s.evaluations, 3), format_number(s.seconds, 3), format_number(s.seconds_all, 3),
                  s.remark});

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/core/limits.h"
+#include "common/core/text.h"
 #include "pipelines/compare/stage_match.h"
 #include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/macro/scene.h"
@@ -49,8 +50,7 @@ Pairs pairs_of(const ModelRun& run, std::string& remark) {
       out.truth.push_back(t);
       out.model.push_back(m);
     } else if (t.usable) {
-      remark += fmt::format("{}sample {} left out: {}", remark.empty() ? "" : "; ", k,
-                            m.note.empty() ? "it ends early" : m.note);
+      append_part(remark, fmt::format("sample {} left out: {}", k, m.note.empty() ? "it ends early" : m.note));
     }
   }
   return out;
@@ -142,8 +142,8 @@ void add_costs(const Pairs& pairs, ModelScore& s) {
   if (model.contact_evaluations == 0) s.evaluations = s.seconds = s.seconds_all = kInfinity;
 }
 
-std::string percent(double x) { return std::isfinite(x) ? fmt::format("{:+.1f} %", 100.0 * x) : "-"; }
-std::string times(double x) { return std::isfinite(x) ? fmt::format("{:.3g}", x) : "-"; }
+std::string percent(double x) { return percent_text(x, {1, true, true}, "-"); }
+std::string times(double x) { return rounded_text(x, {3}, "-"); }
 
 }  // namespace
 
@@ -197,7 +197,7 @@ ModelScore score(const ModelRun& run, bool blind) {
   }
   s.unloading = unloading_of(pairs.model) / unloading_of(truth) - 1.0;
   add_costs(pairs, s);
-  if (!run.remark.empty()) s.remark += (s.remark.empty() ? "" : "; ") + run.remark;
+  if (!run.remark.empty()) append_part(s.remark, run.remark);
   return s;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/core/text.h"
 #include "pipelines/kinds/particles/scene.h"
 #include "pipelines/kinds/particles/summary.h"
 #include "pipelines/report/html.h"
@@ -15,9 +16,7 @@ namespace {
 constexpr std::size_t kRows = 50;
 
 std::string vector_text(const std::vector<double>& v) {
-  std::string out;
-  for (const double x : v) out += (out.empty() ? "" : ", ") + format_number(x, 6);
-  return "(" + out + ")";
+  return "(" + join_text(v, ", ", [](double x) { return format_number(x, 6); }) + ")";
 }
 
 /// The id of a grain, the name of a wall.

@@ -8,6 +8,7 @@
 
 #include "calibrate/threshold_fit.h"
 #include "common/contact/multi_contact_table_file.h"
+#include "common/core/text.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/kinds/law_table/multi_contact_check.h"
 #include "pipelines/kinds/law_table/multi_contact_stage.h"
@@ -211,14 +212,15 @@ PipelineSummary summarise(const PipelineSetup& setup, const PipelineResult& r, c
   return s;
 }
 
-std::string rounded(double x) { return std::isfinite(x) ? fmt::format("{:.0f}", x) : "(undefined)"; }
+std::string whole_number(double x) { return rounded_text(x, {0, true}, "(undefined)"); }
 
 std::string difference_text(const Comparison& c) {
   std::string text;
   for (const ComparedQuantity& q : headline_of(c))
-    text += (text.empty() ? "" : ", ") +
-            (q.is_ratio ? fmt::format("{} {:.2f}", q.what, q.value.mean)
-                        : fmt::format("{} differs by {} %", q.what, rounded(100.0 * q.value.mean)));
+    append_part(text,
+                q.is_ratio ? fmt::format("{} {:.2f}", q.what, q.value.mean)
+                           : fmt::format("{} differs by {} %", q.what, whole_number(100.0 * q.value.mean)),
+                ", ");
   return text;
 }
 
@@ -233,8 +235,8 @@ std::string console_summary(const PipelineSetup& setup, const PipelineResult& r)
                     !multi_contact         ? ""
                     : setup.measured_table ? ", multi-contact law (measured above),"
                                            : ", multi-contact law (from the table),",
-                    difference_text(*r.comparison), rounded(r.comparison->speedup_contact_evaluations),
-                    rounded(r.comparison->speedup_seconds));
+                    difference_text(*r.comparison), whole_number(r.comparison->speedup_contact_evaluations),
+                    whole_number(r.comparison->speedup_seconds));
   if (multi_contact)
     text += fmt::format("macro, pair law (as published, measured above): {}\n", difference_text(*r.pair_comparison));
   return text;

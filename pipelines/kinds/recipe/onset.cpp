@@ -63,8 +63,10 @@ struct LevelForms::Parts {
       const StateGroup* group = fit.find(variants[v].name);
       if (group == nullptr) throw UnusableResult(variants[v].name + " bears at too few points to tell its onset");
       estimate[v] = group->onset.value;
-      measured[v] = estimate_of(group->onset);
-      error[v] = std::isfinite(group->onset.error) && group->onset.error > 0.0 ? group->onset.error : 1.0;
+      measured[v] = group->onset;
+      error[v] = std::isfinite(group->onset.standard_error) && group->onset.standard_error > 0.0
+                     ? group->onset.standard_error
+                     : 1.0;
       const auto place = 2 + static_cast<std::size_t>(group - fit.groups.data());
       for (std::size_t r = 0; r < replicates.size(); ++r) replicates[r][v] = fit.replicates[r][place];
       if (scene.checked == v) continue;
@@ -155,7 +157,7 @@ OnsetByForms LevelForms::joined_onset(std::size_t first, std::size_t count, doub
     e = {e.value, kInfinity, -kInfinity, kInfinity};
     return out;
   }
-  const double students = student95(parts_->degrees) / kNormal95;
+  const double students = student_over_normal(parts_->degrees);
   const auto interval = [&](double value, const std::vector<double>& replicates) {
     const auto [low, high] = interval95(replicates);
     return widened(value, low, high, students, true);

@@ -100,7 +100,7 @@ class RecipeRun {
     c.levels = static_cast<std::int64_t>(scene_.checked_levels);
     c.grains = v.setup.spec.bodies;
     c.span = v.setup.spec.solid_polydispersity;
-    c.measured = estimate_of(group->onset);
+    c.measured = group->onset;
     c.predicted = forms.joined_onset(0, scene_.checked_levels);
     c.outside = std::max({0.0, c.predicted.onset.low - c.measured.value, c.measured.value - c.predicted.onset.high});
     if (c.outside > 0.0)
@@ -140,8 +140,8 @@ class RecipeRun {
   WholeLaw whole_law(const StateFit& states, double widen, const LevelForms& forms) {
     WholeLaw law;
     law.form = scene_.material.equation.form;
-    law.modulus = estimate_of(states.modulus);
-    law.exponent = estimate_of(states.exponent);
+    law.modulus = states.modulus;
+    law.exponent = states.exponent;
     law.onset = forms.joined_onset(0, scene_.levels.size(), widen).onset;
     law.shape = shape_of(scene_, results_, states);
     law.start_pressure = scene_.material.variants.front().setup.spec.start_pressure;
@@ -277,8 +277,6 @@ class RecipeRun {
   RecipeSummary summary_;
 };
 
-std::string text_of(const Estimate& e) { return interval_text(e); }
-
 std::string recipe_text(const RecipeSummary& s) {
   const RecipeOutcome& r = s.recipe;
   std::string text;
@@ -286,7 +284,7 @@ std::string recipe_text(const RecipeSummary& s) {
     text +=
         fmt::format("  level {}: {:.3g} to {:.3g} mm, {:.3g} % of the volume, phi_J alone {:.4f}, with all finer {}",
                     level.level, 1e3 * level.diameter_low, 1e3 * level.diameter_high, 100.0 * level.share, level.onset,
-                    text_of(level.with_finer.onset));
+                    interval_text(level.with_finer.onset));
     if (level.filling)
       text += fmt::format("; finer grains take up {:.2g} times its voids{}", *level.filling,
                           *level.filling > 1.0 ? ": it floats" : ": it bears");
@@ -296,13 +294,14 @@ std::string recipe_text(const RecipeSummary& s) {
     text += fmt::format(
         "  check: {} levels with all grains ({}, span {:.3g}): phi_J = {:.4f}, predicted {} (levels {:.4f}, rods "
         "{:.4f}){}\n",
-        r.check->levels, r.check->grains, r.check->span, r.check->measured.value, text_of(r.check->predicted.onset),
-        r.check->predicted.levels, r.check->predicted.rods, r.check->outside > 0.0 ? ": OUTSIDE" : "");
+        r.check->levels, r.check->grains, r.check->span, r.check->measured.value,
+        interval_text(r.check->predicted.onset), r.check->predicted.levels, r.check->predicted.rods,
+        r.check->outside > 0.0 ? ": OUTSIDE" : "");
   if (!r.onset) return text;
   text +=
       fmt::format("the whole, span {:.3g}: phi_J = {} (levels {:.4f}, rods {:.4f}), solid fraction at the start {}\n",
-                  r.span, text_of(*r.onset), r.levels.front().with_finer.levels, r.levels.front().with_finer.rods,
-                  text_of(*r.solid_fraction));
+                  r.span, interval_text(*r.onset), r.levels.front().with_finer.levels, r.levels.front().with_finer.rods,
+                  interval_text(*r.solid_fraction));
   for (const RecipeCurve& c : r.curves) {
     if (c.axial.empty()) continue;
     text += fmt::format("  {}: axial stress {:.3g} E{} at a strain of {:.3g}", c.name, c.axial.back(),

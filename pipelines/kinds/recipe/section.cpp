@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/data/estimate_words.h"
 #include "pipelines/kinds/recipe/run.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
@@ -14,8 +15,7 @@ namespace softgrain::report {
 namespace {
 
 std::string range_of(double low, double high, int digits = 3) {
-  return std::isfinite(low) && std::isfinite(high) ? format_number(low, digits) + " to " + format_number(high, digits)
-                                                   : "–";
+  return ends_text(low, high, {format_number, digits, " to ", "–", true});
 }
 
 std::string constituent_table(const RecipeOutcome& r) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "common/core/text.h"
 #include "pipelines/compare/differences.h"
 #include "pipelines/kinds/soft_particle/results.h"
 #include "pipelines/report/html.h"
@@ -26,9 +27,7 @@ std::string unlike_published(const SoftParticleSpec& spec) {
   published.friction = law::friction;
   published.exponent = law::exponent;
   published.polydispersity = law::polydispersity;
-  std::string text;
-  for (const std::string& one : differences(spec, published).obstacles) text += (text.empty() ? "" : "; ") + one;
-  return text;
+  return join_text(differences(spec, published).obstacles, "; ");
 }
 
 void add_reference_curves(Plot& plot, const SoftParticleSpec& spec, PairKind kind, double last) {

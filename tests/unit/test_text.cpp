@@ -1,0 +1,112 @@
+// Texts of several parts, numbers with their errors, and ends of intervals, character for character.
+#include "common/core/text.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "common/core/limits.h"
+#include "common/data/estimate_words.h"
+
+namespace softgrain {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+std::string write(double value, int digits) { return rounded_text(value, {digits}); }
+
+TEST(JoinText, PutsASeparatorBetweenPartsOnly) {
+  EXPECT_EQ(join_text(Texts{"a", "b", "c"}), "a, b, c");
+  EXPECT_EQ(join_text(Texts{"a"}, "; "), "a");
+  EXPECT_EQ(join_text(Texts{}), "");
+  EXPECT_EQ(join_text(Texts{"", "b"}), ", b") << "an empty part is a part";
+  EXPECT_EQ(join_text(std::array{3, 20}, " x "), "3 x 20");
+}
+
+TEST(JoinText, TakesAFunctionOrAMember) {
+  struct Named {
+    std::string name;
+  };
+  EXPECT_EQ(join_text(std::vector<Named>{{"a"}, {"b"}}, " and ", &Named::name), "a and b");
+  EXPECT_EQ(join_text(std::vector{1.0, 2.5}, ",", [](double x) { return rounded_text(2.0 * x); }), "2,5");
+}
+
+TEST(AppendPart, StartsWithoutASeparator) {
+  std::string text;
+  append_part(text, "a");
+  EXPECT_EQ(text, "a");
+  append_part(text, "b");
+  append_part(text, "c", ", ");
+  EXPECT_EQ(text, "a; b, c");
+  append_part(text, "");
+  EXPECT_EQ(text, "a; b, c; ");
+}
+
+TEST(WithoutTrailingZeros, KeepsZerosBeforeThePoint) {
+  EXPECT_EQ(without_trailing_zeros("0.250000"), "0.25");
+  EXPECT_EQ(without_trailing_zeros("10.00"), "10");
+  EXPECT_EQ(without_trailing_zeros("100"), "100");
+  EXPECT_EQ(without_trailing_zeros("-0.00"), "-0");
+}
+
+TEST(RoundedText, CountsDigitsOrDecimals) {
+  EXPECT_EQ(rounded_text(0.71051), "0.7105");
+  EXPECT_EQ(rounded_text(123456.0, {2}), "1.2e+05");
+  EXPECT_EQ(rounded_text(0.71051, {2, true}), "0.71");
+  EXPECT_EQ(rounded_text(1.25, {1, true, true}), "+1.2");
+  EXPECT_EQ(rounded_text(1.25, {2, false, true}), "+1.2");
+  EXPECT_EQ(rounded_text(-1.5, {2, false, true}), "-1.5");
+  EXPECT_EQ(rounded_text(kInfinity, {3}), "inf");
+  EXPECT_EQ(rounded_text(kInfinity, {3}, "undefined"), "undefined");
+  EXPECT_EQ(rounded_text(kNaN, {3}, ""), "");
+  EXPECT_EQ(rounded_text(2.0, {3}, "undefined"), "2");
+}
+
+TEST(PercentText, IsOfAShare) {
+  EXPECT_EQ(percent_text(0.1254), "12.5 %");
+  EXPECT_EQ(percent_text(0.1254, {6}), "12.54 %");
+  EXPECT_EQ(percent_text(0.1254, {1, true, true}), "+12.5 %");
+  EXPECT_EQ(percent_text(kNaN, {1, true}, "-"), "-");
+}
+
+TEST(WithError, HasAnErrorWhereThereIsOne) {
+  EXPECT_EQ(with_error(0.71051, 0.00112), "0.7105 +- 0.0011");
+  EXPECT_EQ(with_error(0.71051, std::nullopt), "0.7105");
+  EXPECT_EQ(with_error(0.71051, if_finite(kNaN)), "0.7105");
+  EXPECT_EQ(with_error(0.71051, if_finite(0.25)), "0.7105 +- 0.25");
+  EXPECT_EQ(with_error(12.34, 0.46, {.value = {1, true}, .error = {1, true}, .between = " ± "}), "12.3 ± 0.5");
+  EXPECT_EQ(with_error(kNaN, 0.46, {.undefined = "-"}), "-");
+  EXPECT_EQ(with_error(kNaN, std::nullopt), "nan");
+}
+
+TEST(WithError, OfOneSampleHasNone) {
+  EXPECT_EQ(with_error(mean_error(std::vector{1.0, 2.0, 3.0})), "2 +- 0.58");
+  EXPECT_EQ(with_error(mean_error(std::vector{2.0})), "2");
+}
+
+TEST(EndsText, SaysWhatIsNotKnown) {
+  EXPECT_EQ(ends_text(0.0441, 0.0453, {write}), "0.0441 .. 0.0453");
+  EXPECT_EQ(ends_text(0.04412, 0.04531, {write, 3, " to "}), "0.0441 to 0.0453");
+  EXPECT_EQ(ends_text(-kInfinity, kInfinity, {write}), "not determined");
+  EXPECT_EQ(ends_text(0.5, 0.5, {write}), "not determined");
+  EXPECT_EQ(ends_text(0.5, 0.5, {.number = write, .may_be_equal = true}), "0.5 .. 0.5");
+  EXPECT_EQ(ends_text(0.5, kInfinity, {write, 3, " to ", "–", true}), "–");
+}
+
+TEST(EstimateWithError, TellsFixedNumbersFromUnknownErrors) {
+  EXPECT_EQ(estimate_with_error({0.7333, 0.1912, 0.0, 1.0}, {write}), "0.733 +- 0.19");
+  EXPECT_EQ(estimate_with_error({0.7333, 0.0, 0.0, 1.0}, {write}), "0.733");
+  EXPECT_EQ(estimate_with_error({0.7333, kInfinity, 0.0, 1.0}, {write}), "0.733 (?)");
+  EXPECT_EQ(estimate_with_error({0.7333, 0.1912, 0.0, 1.0}, {write, " ± ", ""}), "0.733 ± 0.19");
+}
+
+TEST(DigitsToDiffer, StopsAtTheFirstDifference) {
+  EXPECT_EQ(digits_to_differ(132.9, 132.9001, 4, 12), 7);
+  EXPECT_EQ(digits_to_differ(1.0, 2.0, 3, 9), 3);
+  EXPECT_EQ(digits_to_differ(1.0, 1.0, 3, 9), 9);
+}
+
+}  // namespace
+}  // namespace softgrain
