@@ -19,8 +19,11 @@ std::string rows(const AnySummary& summary, const std::string& engine) {
   const auto add = [&](const char* what, const std::string& value) {
     if (!value.empty()) table.row({what, value});
   };
-  const Provenance p =
-      summary.provenance.value_or(Provenance{summary.version, summary.commit, "", 0, 0, summary.command, ""});
+  Provenance said;  // what summaries without a provenance say
+  said.version = summary.version;
+  said.commit = summary.commit;
+  said.command = summary.command;
+  const Provenance p = summary.provenance.value_or(said);
   add("version", p.version);
   add("commit", p.commit);
   add("compiler", p.compiler);
