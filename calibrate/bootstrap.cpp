@@ -9,6 +9,7 @@
 #include "calibrate/replicates.h"
 #include "calibrate/threshold_model.h"
 #include "common/core/limits.h"
+#include "common/core/random.h"
 #include "common/core/statistics.h"
 
 namespace softgrain {
@@ -45,10 +46,10 @@ Replicate refit(const BootstrapInput& input, const FitCurves& curves) {
   }
   Replicate out;
   out.law = joint.parameters.law_parameters();
-  const bool finite = std::all_of(out.law.begin(), out.law.end(), [](double x) { return std::isfinite(x); });
+  const bool finite = std::ranges::all_of(out.law, [](double x) { return std::isfinite(x); });
   if (!finite || joint.fit.end == FitEnd::failed || joint.fit.rank_deficient) return out;
-  const bool bound = joint.delta_at_limit || std::find(joint.exponent_at_bound.begin(), joint.exponent_at_bound.end(),
-                                                       true) != joint.exponent_at_bound.end();
+  const bool bound =
+      joint.delta_at_limit || std::ranges::find(joint.exponent_at_bound, true) != joint.exponent_at_bound.end();
   out.outcome = bound ? Outcome::at_bound : Outcome::inside;
   return out;
 }

@@ -10,6 +10,7 @@
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/core/limits.h"
+#include "common/core/random.h"
 #include "common/core/statistics.h"
 
 namespace softgrain {

@@ -100,8 +100,7 @@ std::vector<GivenError> errors_of(const std::vector<ForceCurve>& samples, double
   std::vector<double> count;
   for (const ForceCurve& s : samples)
     for (const ForcePoint& p : s.normal) {
-      auto found =
-          std::find_if(out.begin(), out.end(), [&](const auto& g) { return std::abs(g.delta - p.delta) < kSame; });
+      auto found = std::ranges::find_if(out, [&](const auto& g) { return std::abs(g.delta - p.delta) < kSame; });
       const auto k = static_cast<std::size_t>(found - out.begin());
       if (found == out.end()) {
         out.push_back({p.delta, 0.0});

@@ -176,8 +176,7 @@ class FaceFrictionSearch {
     std::vector<std::vector<double>> curves = model_(trials);
     out_.evaluations += static_cast<int>(trials.size());
     for (std::size_t k = 0; k < trials.size(); ++k) {
-      const bool finite =
-          std::all_of(curves[k].begin(), curves[k].end(), [](double value) { return std::isfinite(value); });
+      const bool finite = std::ranges::all_of(curves[k], [](double value) { return std::isfinite(value); });
       if (curves[k].size() == data_.weight.size() && finite) continue;
       (void)not_usable(fmt::format("the cell law gives no curve of the fines with mu_f = {:.3g}, chi = {:.3g}",
                                    trials[k].friction, trials[k].stiffness));

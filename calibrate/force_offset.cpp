@@ -172,7 +172,7 @@ std::optional<ForceOffset> offset_of(const ForceCurve& sample) {
   constexpr double kProbability = 0.9995;
   if (sample.normal.size() < kLeastPoints || !(largest_force(sample) > 0.0)) return std::nullopt;
   const WeightedCurve curve(sample.normal);
-  if (!std::all_of(curve.weight.begin(), curve.weight.end(), [](double w) { return std::isfinite(w); }))
+  if (!std::ranges::all_of(curve.weight, [](double w) { return std::isfinite(w); }))
     return std::nullopt;  // all forces are the same
   const std::vector<OffsetLaw> laws = profile(curve, true);
   const OffsetLaw law = best_of(laws);

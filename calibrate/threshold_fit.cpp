@@ -126,7 +126,7 @@ void judge_fit(Work& w) {
 /// Overlaps above the threshold that hold the normal force, less its numbers a, b and delta.
 std::ptrdiff_t normal_freedom(const Work& w) {
   const std::vector<double>& delta = w.means[0].delta;
-  const auto above = std::count_if(delta.begin(), delta.end(), [&](double d) { return d > w.joint.parameters.delta; });
+  const auto above = std::ranges::count_if(delta, [&](double d) { return d > w.joint.parameters.delta; });
   return above - static_cast<std::ptrdiff_t>(kClearNeeded[0]);
 }
 
@@ -203,10 +203,10 @@ double default_secant_angle(PairKind kind, const std::vector<const PackingRun*>&
   constexpr double kPublished = 1.0;
   constexpr double kOfTwo = 0.5;
   const auto measured = [](const PackingRun* run) {
-    return std::any_of(run->tangential.begin(), run->tangential.end(),
-                       [](const TangentialPoint& p) { return same_angle(std::abs(p.angle_deg), kOfTwo); });
+    return std::ranges::any_of(run->tangential,
+                               [](const TangentialPoint& p) { return same_angle(std::abs(p.angle_deg), kOfTwo); });
   };
-  const bool of_two = kind == PairKind::soft_soft && std::any_of(runs.begin(), runs.end(), measured);
+  const bool of_two = kind == PairKind::soft_soft && std::ranges::any_of(runs, measured);
   return of_two ? kOfTwo : kPublished;
 }
 

@@ -75,7 +75,7 @@ void write_bands(const h5::Group& root, const LawCard& card) {
 
 /// Whether the bands belong to the numbers of the card, which people may have changed.
 bool same_numbers(const h5::Group& law, const ThresholdPowerLaw& card) {
-  return std::all_of(kLawParameters.begin(), kLawParameters.end(), [&](const LawParameterName& p) {
+  return std::ranges::all_of(kLawParameters, [&](const LawParameterName& p) {
     if (!law.has(p.key)) return false;
     const std::vector<double> row = law.doubles(p.key);
     const double value = (card.*p.estimate).value;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <span>
 
 #include "common/core/text.h"
 #include "common/data/card_text.h"

@@ -69,7 +69,7 @@ std::string pair_law_remark() {
 }
 
 bool use_pair_law(const std::vector<MacroCurve>& curves) {
-  return std::any_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.law.form == LawForm::pair; });
+  return std::ranges::any_of(curves, [](const MacroCurve& c) { return c.law.form == LawForm::pair; });
 }
 
 }  // namespace softgrain

@@ -34,7 +34,7 @@ class AlongEntries {
     std::vector<double> y;
     for (const LawTableEntry& e : table_.entries) y.push_back(get(e));
     // What one entry does not know is not known between entries.
-    const auto unknown = std::find_if(y.begin(), y.end(), [](double v) { return !std::isfinite(v); });
+    const auto unknown = std::ranges::find_if(y, [](double v) { return !std::isfinite(v); });
     if (unknown != y.end()) return *unknown;
     return MonotoneCurve(fractions_, y).value(x_);
   }
@@ -74,8 +74,8 @@ void require_alike(const LawTable& table) {
 /// A law between entries is as good as the worst of them.
 void take_worst_status(const LawTable& table, std::size_t k, MultiContactLaw& law) {
   const auto bad = [&](LawStatus status) {
-    const auto at = std::find_if(table.entries.begin(), table.entries.end(),
-                                 [&](const LawTableEntry& e) { return e.laws[k].status == status; });
+    const auto at =
+        std::ranges::find_if(table.entries, [&](const LawTableEntry& e) { return e.laws[k].status == status; });
     if (at == table.entries.end()) return false;
     law.status = at->laws[k].status;
     law.reason = at->laws[k].reason;
@@ -173,8 +173,8 @@ std::string off_the_entries(const LawTableEntry& at, const LawTableEntry& below,
 
 /// What to say about an interpolated entry.
 std::string interpolation_remark(const LawTable& table, const LawTableEntry& at) {
-  const auto above = std::find_if(table.entries.begin(), table.entries.end(),
-                                  [&](const LawTableEntry& e) { return e.solid_fraction > at.solid_fraction; });
+  const auto above =
+      std::ranges::find_if(table.entries, [&](const LawTableEntry& e) { return e.solid_fraction > at.solid_fraction; });
   const auto below = above - 1;
   std::string text = off_the_entries(at, *below, *above);
   if (below->best != above->best)
@@ -190,7 +190,7 @@ std::string interpolation_remark(const LawTable& table, const LawTableEntry& at)
 
 const LawTableEntry& main_entry(const LawTable& table) {
   if (table.entries.empty()) throw InputError("law table: it has no entries");
-  const auto marked = std::find_if(table.entries.begin(), table.entries.end(), [](const auto& e) { return e.main; });
+  const auto marked = std::ranges::find_if(table.entries, [](const auto& e) { return e.main; });
   if (marked != table.entries.end()) return *marked;
   return *std::max_element(table.entries.begin(), table.entries.end(), [](const auto& a, const auto& b) {
     return std::pair{configurations(a), a.packings} < std::pair{configurations(b), b.packings};
@@ -205,7 +205,7 @@ std::vector<PartnerRow> MultiContactLaw::rows(PartnerKind kind) const {
 }
 
 const MultiContactLaw* LawTableEntry::find(LawForm form) const {
-  const auto at = std::find_if(laws.begin(), laws.end(), [&](const MultiContactLaw& l) { return l.form == form; });
+  const auto at = std::ranges::find_if(laws, [&](const MultiContactLaw& l) { return l.form == form; });
   return at == laws.end() ? nullptr : &*at;
 }
 

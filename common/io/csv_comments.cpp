@@ -33,9 +33,8 @@ std::vector<std::string> words_of(const std::string& text, const char* separator
 /// A few words that can be the name of a quantity, no sentence.
 bool is_name(const std::string& text, bool with_unit) {
   if (text.empty() || text.size() > kLongestName || !is_letter(text.front())) return false;
-  const bool plain = std::all_of(text.begin(), text.end(), [](char c) {
-    return is_letter(c) || is_digit(c) || std::string(" _-/'.").find(c) != std::string::npos;
-  });
+  const bool plain = std::ranges::all_of(
+      text, [](char c) { return is_letter(c) || is_digit(c) || std::string(" _-/'.").find(c) != std::string::npos; });
   return plain && words_of(text).size() <= (with_unit ? 6U : 3U);
 }
 
@@ -85,7 +84,7 @@ std::string near_name(const std::string& key, const std::vector<std::string>& kn
     if (name.size() < kLeastLetters) continue;
     long_names.push_back(name);
     const std::vector<std::string> parts = words_of(key);
-    if (std::find(parts.begin(), parts.end(), name) != parts.end()) return name;
+    if (std::ranges::find(parts, name) != parts.end()) return name;
     if ((" " + key + " ").find(" " + name + " ") != std::string::npos) return name;
   }
   return key.size() < kLeastLetters ? "" : nearest_word(key, long_names);
@@ -124,7 +123,7 @@ void CsvFile::read_comment(const std::string& line, int number) {
         colon != std::string::npos && is_name(trimmed(words.substr(colon + 1, equals - colon - 1)), true))
       words = trimmed(words.substr(colon + 1));  // "material: E = 0.5 MPa"
   const std::vector<std::string> parts = words_of(words, ",;");
-  const bool several = equals != std::string::npos && std::all_of(parts.begin(), parts.end(), [](const std::string& p) {
+  const bool several = equals != std::string::npos && std::ranges::all_of(parts, [](const std::string& p) {
                          return p.find_first_of("=:") != std::string::npos;
                        });
   if (!several) return read_setting(words, number);
@@ -154,7 +153,7 @@ void CsvFile::read_setting(const std::string& text, int number) {
 std::vector<CsvSetting> CsvFile::all_of(const CsvNames& names) const {
   std::vector<CsvSetting> found;
   for (const CsvSetting& s : settings_)
-    if (std::find(names.begin(), names.end(), s.key) != names.end()) found.push_back(s);
+    if (std::ranges::find(names, s.key) != names.end()) found.push_back(s);
   return found;
 }
 
@@ -244,7 +243,7 @@ void CsvFile::require_known_comments(const std::vector<CsvNames>& known, const s
   for (const CsvNames& one : known) names.insert(names.end(), one.begin(), one.end());
   const std::string first_names = join_text(known, ", ", [](const CsvNames& one) { return one.front(); });
   for (const CsvSetting& s : settings_) {
-    if (std::find(names.begin(), names.end(), s.key) != names.end()) continue;
+    if (std::ranges::find(names, s.key) != names.end()) continue;
     const std::string near = near_name(s.key, names);
     const bool number = is_quantity(s.value);
     if (s.bare && s.unit.empty()) continue;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 
 #include "common/core/error.h"
 #include "common/core/text.h"
@@ -84,7 +83,7 @@ std::vector<std::string> split(const std::string& line, char separator) {
 
 bool is_missing(const std::string& cell) {
   constexpr std::array kMissing{"", "-", "nan", "na", "n/a"};
-  return std::find(kMissing.begin(), kMissing.end(), csv::lower(cell)) != kMissing.end();
+  return std::ranges::find(kMissing, csv::lower(cell)) != kMissing.end();
 }
 
 /// What looks like a blank or a minus sign in a spreadsheet and is another character.
@@ -173,9 +172,7 @@ void CsvFile::require_known_columns(const CsvNames& known, const std::string& wh
   const CsvNames labels{"id",      "no",       "nr",     "index",   "name", "label",
                         "comment", "comments", "remark", "remarks", "note", "notes"};
   for (const CsvColumn& c : columns_) {
-    const auto is_in = [&](const CsvNames& names) {
-      return std::find(names.begin(), names.end(), c.name) != names.end();
-    };
+    const auto is_in = [&](const CsvNames& names) { return std::ranges::find(names, c.name) != names.end(); };
     if (is_in(known) || is_in(labels)) continue;
     const std::string near = nearest_word(c.name, known);
     throw InputError(where(header_line_) + ": column \"" + c.title + "\" is not understood" +

@@ -30,7 +30,7 @@ std::string text_of(const toml::node& node) {
 }
 
 bool holds_tables(const toml::array& list) {
-  return !list.empty() && std::all_of(list.begin(), list.end(), [](const toml::node& n) { return n.is_table(); });
+  return !list.empty() && std::ranges::all_of(list, [](const toml::node& n) { return n.is_table(); });
 }
 
 void flatten(const toml::node& node, const std::string& path, Flat& out) {

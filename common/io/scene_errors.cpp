@@ -1,10 +1,10 @@
 // All errors of a scene in one message.
 #include <algorithm>
+#include <span>
 #include <utility>
 
-#include "common/io/scene_impl.h"
-
 #include "common/core/text.h"
+#include "common/io/scene_impl.h"
 
 namespace softgrain {
 

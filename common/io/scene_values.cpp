@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <sstream>
 #include <type_traits>
 
 #include "common/core/error.h"
@@ -98,7 +97,7 @@ std::string choice_of(const Table& table, const std::string& key, const toml::no
   std::string value = text_of(table, key, node);
   const std::vector<std::string> known(words.begin(), words.end());
   for (const std::string_view name : {std::string_view(value), current_name(value)})
-    if (std::find(known.begin(), known.end(), name) != known.end()) return std::string(name);
+    if (std::ranges::find(known, name) != known.end()) return std::string(name);
   std::string problem = "must be ";
   for (const std::string& word : known)
     problem += (&word == &known.front() ? "\"" : &word == &known.back() ? " or \"" : ", \"") + word + "\"";

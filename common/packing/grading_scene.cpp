@@ -127,8 +127,8 @@ void require_sieve_columns(const CsvFile& csv) {
   CsvNames known{"opening", "passing"};
   for (const CsvColumn& c : csv.columns()) {
     const bool same = is_retained(c) || c.name.starts_with("mass") || c.name.starts_with("mesh");
-    const bool counts = std::find(kPassing.begin(), kPassing.end(), c.name) != kPassing.end() ||
-                        std::find(kOpening.begin(), kOpening.end(), c.name) != kOpening.end();
+    const bool counts =
+        std::ranges::find(kPassing, c.name) != kPassing.end() || std::ranges::find(kOpening, c.name) != kOpening.end();
     if (same || counts) known.push_back(c.name);
   }
   csv.require_known_columns(known, "a sieve curve");
@@ -224,7 +224,7 @@ Grading read_list(const SceneTable& t, int dimension) {
     counts = t.numbers("counts", Unit::none, Range::not_negative());
     if (counts.size() != radii.size())
       t.throw_error("counts", fmt::format("has {} values; radii has {}: one for each", counts.size(), radii.size()));
-    if (std::none_of(counts.begin(), counts.end(), [](double n) { return n > 0.0; }))
+    if (std::ranges::none_of(counts, [](double n) { return n > 0.0; }))
       t.throw_error("counts", "at least one must be above 0");
   }
   return Grading::list(std::move(radii), dimension, std::move(counts));
@@ -262,7 +262,7 @@ Grading read_radii(const std::string& path, int dimension) {
     if (!(counts.back() >= 0.0)) throw InputError(fmt::format("{}: a count must not be negative", csv.where(row.line)));
   }
   if (radii.empty()) throw InputError(path + ": no sizes");
-  if (count >= 0 && std::none_of(counts.begin(), counts.end(), [](double n) { return n > 0.0; }))
+  if (count >= 0 && std::ranges::none_of(counts, [](double n) { return n > 0.0; }))
     throw InputError(path + ": no size has a count above 0");
   return Grading::list(std::move(radii), dimension, std::move(counts));
 }

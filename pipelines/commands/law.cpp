@@ -29,7 +29,7 @@ void print(const std::string& text) { write_standard_output(text); }
 void print(const json& object) { print(object.dump(2, ' ', false, json::error_handler_t::replace) + "\n"); }
 
 bool has(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
+  return std::ranges::find(names, name) != names.end();
 }
 
 void refuse(const LawOptions& o, std::initializer_list<const char*> names, const std::string& why) {
@@ -99,7 +99,7 @@ std::optional<double> fraction_of(const LawOptions& o) {
 std::vector<PairKind> kinds_of(const LawOptions& o) {
   std::vector<PairKind> kinds;
   for (const PairKind kind : kPairKinds)
-    if (std::find(o.kinds.begin(), o.kinds.end(), kind) != o.kinds.end()) kinds.push_back(kind);
+    if (std::ranges::find(o.kinds, kind) != o.kinds.end()) kinds.push_back(kind);
   return kinds;
 }
 
@@ -132,7 +132,7 @@ std::vector<ValueTable> card_tables(const LawOptions& o, const LawFile& file, st
   const std::vector<PairKind> wanted = kinds_of(o);
   for (const PairKind kind : kPairKinds) {
     const PairLaw* pair = file.card->find(kind);
-    const bool named = std::find(wanted.begin(), wanted.end(), kind) != wanted.end();
+    const bool named = std::ranges::find(wanted, kind) != wanted.end();
     if (wanted.empty() ? pair == nullptr || !has_numbers(pair->status) : !named) continue;
     const auto values = [&](const std::vector<double>& at) { return law::card_values(*file.card, kind, at, o.beyond); };
     if (pair == nullptr) (void)values({});  // says what is wrong

@@ -1,7 +1,5 @@
 #include "pipelines/commands/observables.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <filesystem>
 #include <map>

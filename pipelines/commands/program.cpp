@@ -203,7 +203,7 @@ void require_command(int argc, char** argv) {
   for (const Command& c : kCommands) names.emplace_back(c.name);
   names.emplace_back("law");
   const std::string word = argv[1];
-  if (std::find(names.begin(), names.end(), word) != names.end()) return;
+  if (std::ranges::find(names, word) != names.end()) return;
   const std::string near = nearest_word(word, names);
   throw InputError("unknown command '" + word + "'; " + (near.empty() ? "" : "nearest is '" + near + "'; ") +
                    "commands are " + join_text(names));

@@ -254,7 +254,7 @@ std::vector<ComparedQuantity> headline_of(const Comparison& c) {
                                     {"strain along axes that go by stress", c.strain_difference},
                                     {"unloading modulus over that of the twin", c.unloading_ratio, true},
                                     {"axial stress where it is not given", c.axial_difference}};
-  const bool any = std::any_of(c.samples.begin(), c.samples.end(), [](const auto& s) { return s.axial_imposed; });
+  const bool any = std::ranges::any_of(c.samples, [](const auto& s) { return s.axial_imposed; });
   if (!any) out.back().what = "axial stress";
   std::erase_if(out, [](const ComparedQuantity& q) { return q.value.n == 0; });
   return out;

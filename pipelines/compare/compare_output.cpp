@@ -140,7 +140,7 @@ std::string text_of(const MacroPart& part) {
   const Comparison& c = part.result;
   std::string out =
       fmt::format("macro: {} against {}, {} samples\n", part.candidate_engine, part.reference_engine, c.samples.size());
-  const bool given = std::any_of(c.samples.begin(), c.samples.end(), [](const auto& s) { return s.axial_imposed; });
+  const bool given = std::ranges::any_of(c.samples, [](const auto& s) { return s.axial_imposed; });
   if (c.deviator_difference.n > 0)
     out += fmt::format("  deviator, relative L2 difference        {}\n", percent(c.deviator_difference));
   if (c.strain_difference.n > 0)

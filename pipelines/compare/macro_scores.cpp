@@ -294,7 +294,7 @@ std::pair<double, double> mean_and_variation(const std::vector<double>& forces) 
 
 double kolmogorov_smirnov(std::vector<double> a, std::vector<double> b) {
   const auto unordered = [](const std::vector<double>& v) {
-    return std::any_of(v.begin(), v.end(), [](double x) { return std::isnan(x); });
+    return std::ranges::any_of(v, [](double x) { return std::isnan(x); });
   };
   if (a.empty() || b.empty() || unordered(a) || unordered(b)) return kNaN;
   std::sort(a.begin(), a.end());
@@ -316,7 +316,7 @@ std::vector<EngineScore> score_engines(const std::vector<MacroCurve>& curves) {
   std::vector<EngineScore> scores;
   for (const MacroCurve& first : curves) {
     const auto known = [&](const EngineScore& s) { return s.engine == first.engine; };
-    if (std::none_of(scores.begin(), scores.end(), known)) scores.push_back(score_of(curves, first.engine));
+    if (std::ranges::none_of(scores, known)) scores.push_back(score_of(curves, first.engine));
   }
   return scores;
 }

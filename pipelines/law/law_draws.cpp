@@ -191,7 +191,7 @@ std::vector<std::vector<double>> pair_draws(const PairLaw& p, std::int64_t count
   std::vector<double> mean = pair_numbers(p);
   std::vector<double> covariance = p.covariance;
   if (covariance.size() != kPairNumbers * kPairNumbers ||
-      std::all_of(covariance.begin(), covariance.end(), [](double c) { return c == 0.0; }))
+      std::ranges::all_of(covariance, [](double c) { return c == 0.0; }))
     throw InputError("bands: the law card has no covariance of its " + to_string(p.kind) +
                      " law: calibrate it from measurements of several packings (\"softgrain calibrate\")");
   if (p.band_origin != kFromResiduals && p.packings > 1) {

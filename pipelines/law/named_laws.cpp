@@ -159,7 +159,7 @@ std::function<std::string(const System3&)> measured_note(const LawCard& card, co
 
 bool has_soft(const System3& s) {
   const auto& material = s.particles.material;
-  return std::find(material.begin(), material.end(), 1) != material.end();  // of make_law_system
+  return std::ranges::find(material, 1) != material.end();  // of make_law_system
 }
 
 std::function<std::string(const System3&)> card_note(const LawCard& card, const MacroSpec& spec) {

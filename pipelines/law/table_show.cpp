@@ -1,8 +1,6 @@
 // A law table as text for a terminal.
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "common/core/text.h"
 #include "common/data/estimate_words.h"
 #include "common/data/multi_contact_choice.h"

@@ -69,8 +69,7 @@ std::string legend(const ValueTable& t) {
 
 /// Whether any of the overlaps has a force to be sure of.
 bool any_contact(const ValueTable& t) {
-  return std::any_of(t.points.begin(), t.points.end(),
-                     [](const LawPoint& p) { return p.where != Where::no_contact && !p.refused; });
+  return std::ranges::any_of(t.points, [](const LawPoint& p) { return p.where != Where::no_contact && !p.refused; });
 }
 
 std::string origin_of(const ValueTable& t) {
@@ -107,11 +106,10 @@ std::string values_text(const ValueTable& t, const ValueUnits& u) {
   text += aligned(rows, 0, 0) + legend(t);
   const std::string origin = origin_of(t);
   if (!any_contact(t)) return text;
-  const bool beyond = std::any_of(t.points.begin(), t.points.end(),
-                                  [](const LawPoint& p) { return p.where == Where::beyond && !p.refused; });
-  const bool inside = std::any_of(t.points.begin(), t.points.end(), [](const LawPoint& p) {
-    return p.where == Where::inside || p.where == Where::below;
-  });
+  const bool beyond =
+      std::ranges::any_of(t.points, [](const LawPoint& p) { return p.where == Where::beyond && !p.refused; });
+  const bool inside = std::ranges::any_of(
+      t.points, [](const LawPoint& p) { return p.where == Where::inside || p.where == Where::below; });
   if (!origin.empty()) text += "  intervals: " + origin + "\n";
   if (origin.empty() && inside) text += "  no intervals: none are stored with this law, or none are determined\n";
   if (beyond) text += "  no interval beyond the measured range: nothing says how far off the law is\n";

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 #include "common/core/text.h"
@@ -20,7 +21,7 @@ constexpr std::size_t kMostLaws = 4;
 
 void add_once(std::vector<HeadLine>& lines, const char* label, const std::string& text) {
   const HeadLine line{label, text + "."};
-  if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
+  if (std::ranges::find(lines, line) == lines.end()) lines.push_back(line);
 }
 
 /// Adds the laws that curves were computed with, and their engine where it is not "law".

@@ -1,6 +1,7 @@
 #include "pipelines/report/html.h"
 
 #include <algorithm>
+#include <span>
 
 #include "common/core/text.h"
 #include "pipelines/report/assets.h"
@@ -80,8 +81,7 @@ std::string HtmlTable::html() const {
   std::vector<std::string> classes(header_.size());
   for (std::size_t i = 0; i < classes.size(); ++i) {
     if (i < left_columns_) classes[i] = "l";
-    if (i > 0 && std::any_of(rows_.begin(), rows_.end(), [i](const auto& cells) { return is_long(cells[i]); }))
-      classes[i] = "t";
+    if (i > 0 && std::ranges::any_of(rows_, [i](const auto& cells) { return is_long(cells[i]); })) classes[i] = "t";
   }
   std::string out = "<details class=\"table\"><summary>" + escape(summary_of(header_, rows_.size())) +
                     "</summary>\n<div class=\"scroll\"><table><thead>" + table_row(header_, classes, "th") +

@@ -19,8 +19,7 @@ namespace {
 constexpr std::size_t kColumns = 4;  ///< numbers in the table of runs
 
 const RunValue* find(const RunEntry& run, const std::string& number) {
-  const auto at =
-      std::find_if(run.numbers.begin(), run.numbers.end(), [&](const RunValue& v) { return v.name == number; });
+  const auto at = std::ranges::find_if(run.numbers, [&](const RunValue& v) { return v.name == number; });
   return at == run.numbers.end() ? nullptr : &*at;
 }
 
@@ -166,8 +165,7 @@ std::vector<HeadLine> set_lines(const RunData& run) {
   const auto set = run.summary_as<SetSummary>();
   std::vector<HeadLine> lines;
   if (set.runs.empty()) return lines;
-  const auto good =
-      std::count_if(set.runs.begin(), set.runs.end(), [](const RunEntry& r) { return r.status == RunStatus::good; });
+  const auto good = std::ranges::count_if(set.runs, [](const RunEntry& r) { return r.status == RunStatus::good; });
   std::string kind = set.kind.empty() ? "" : " of a scene of kind " + set.kind;
   lines.emplace_back("Runs", fmt::format("{} runs{}, {} of them good.", set.runs.size(), kind, good));
   for (const SweptKey& one : set.over) {

@@ -172,7 +172,7 @@ std::string number(double pixels) {
 
 double text_width(const std::string& utf8, double font_size) {
   const auto continuation = [](char ch) { return (static_cast<unsigned char>(ch) & 0xc0U) == 0x80U; };
-  const auto letters = utf8.size() - static_cast<std::size_t>(std::count_if(utf8.begin(), utf8.end(), continuation));
+  const auto letters = utf8.size() - static_cast<std::size_t>(std::ranges::count_if(utf8, continuation));
   return 0.6 * font_size * static_cast<double>(letters);
 }
 

@@ -39,8 +39,7 @@ std::vector<RunValue> numbers_of(const std::vector<RunEntry>& runs) {
   std::vector<RunValue> out;
   for (const RunEntry& run : runs)
     for (const RunValue& v : run.numbers)
-      if (std::none_of(out.begin(), out.end(), [&](const RunValue& known) { return known.name == v.name; }))
-        out.push_back(v);
+      if (std::ranges::none_of(out, [&](const RunValue& known) { return known.name == v.name; })) out.push_back(v);
   return out;
 }
 
@@ -49,8 +48,8 @@ std::string with_unit(const std::string& name, const std::string& unit) {
 }
 
 std::string short_key(const std::vector<SweptKey>& over, const std::string& key) {
-  const auto same = std::count_if(over.begin(), over.end(),
-                                  [&](const SweptKey& one) { return last_part(one.key) == last_part(key); });
+  const auto same =
+      std::ranges::count_if(over, [&](const SweptKey& one) { return last_part(one.key) == last_part(key); });
   return same > 1 ? key : last_part(key);
 }
 
@@ -65,7 +64,7 @@ std::string point_name(const std::vector<SweptKey>& over, const std::map<std::st
 std::vector<PointEntry> points_of(const std::vector<SweptKey>& over, const std::vector<RunEntry>& runs) {
   std::vector<PointEntry> out;
   for (const RunEntry& run : runs) {
-    if (std::any_of(out.begin(), out.end(), [&](const PointEntry& p) { return p.values == run.values; })) continue;
+    if (std::ranges::any_of(out, [&](const PointEntry& p) { return p.values == run.values; })) continue;
     PointEntry point{.name = point_name(over, run.values), .values = run.values};
     std::vector<RunEntry> good;
     for (const RunEntry& other : runs) {

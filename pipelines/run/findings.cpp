@@ -44,7 +44,7 @@ void Findings::add_once(const std::string& key, const nlohmann::json& value, con
 }
 
 void Findings::warn(const std::string& text) {
-  if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) warnings_.push_back(text);
+  if (std::ranges::find(warnings_, text) == warnings_.end()) warnings_.push_back(text);
 }
 
 void Findings::warn_of_metres(const std::string& key, double radius) {
@@ -54,7 +54,7 @@ void Findings::warn_of_metres(const std::string& key, double radius) {
 }
 
 void Findings::spend(const std::string& part, double core_seconds) {
-  const auto known = std::find_if(times_.begin(), times_.end(), [&](const auto& t) { return t.first == part; });
+  const auto known = std::ranges::find_if(times_, [&](const auto& t) { return t.first == part; });
   if (known == times_.end())
     times_.emplace_back(part, core_seconds);
   else

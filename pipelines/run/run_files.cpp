@@ -51,7 +51,7 @@ bool same_place(const fs::path& a, const fs::path& b) {
 
 /// An input itself, or the other half of it.
 bool is_input(const fs::path& file, const std::vector<std::string>& inputs) {
-  return std::any_of(inputs.begin(), inputs.end(), [&](const std::string& input) {
+  return std::ranges::any_of(inputs, [&](const std::string& input) {
     const fs::path path(input);
     return same_place(file, path) ||
            (path.extension() == ".toml" && same_place(file, fs::path(path).replace_extension(".h5")));
@@ -98,11 +98,10 @@ void add_descriptions(std::vector<fs::path>& found, const std::vector<std::strin
 /// in the next one.
 bool keeps_states(const std::string& directory, const std::vector<fs::path>& found) {
   std::error_code error;
-  return std::any_of(fs::directory_iterator(directory, error), fs::directory_iterator(),
-                     [&](const fs::directory_entry& entry) {
-                       return holds_states(entry.path().filename().string()) &&
-                              std::find(found.begin(), found.end(), entry.path()) == found.end();
-                     });
+  return std::any_of(
+      fs::directory_iterator(directory, error), fs::directory_iterator(), [&](const fs::directory_entry& entry) {
+        return holds_states(entry.path().filename().string()) && std::ranges::find(found, entry.path()) == found.end();
+      });
 }
 
 std::string listed(const std::vector<fs::path>& files) {
@@ -139,7 +138,7 @@ void remove_earlier_run(const std::string& directory, const std::string& command
   refuse_to_lose_points(found);
   add_descriptions(found, inputs);
   // Figures go with the page that shows them, exported states with those that they were made from.
-  const auto goes = [&](const auto& is) { return std::any_of(found.begin(), found.end(), is); };
+  const auto goes = [&](const auto& is) { return std::ranges::any_of(found, is); };
   if (goes([](const fs::path& file) { return file.filename() == "report.html"; })) report::remove_figures(directory);
   if (!found.empty() && !keeps_states(directory, found)) remove_exports_of(directory);
   for (const fs::path& file : found) {

@@ -92,9 +92,9 @@ std::vector<SweptKey> read_keys(const Texts& over, const Texts& set, Texts& prob
       problems.push_back(option + ": must be of the form key=a,b,c");
       continue;
     }
-    if (std::any_of(keys.begin(), keys.end(), [&](const SweptKey& known) { return known.key == key; }))
+    if (std::ranges::any_of(keys, [&](const SweptKey& known) { return known.key == key; }))
       problems.push_back(option + ": the key is swept twice");
-    if (std::any_of(set.begin(), set.end(), [&](const std::string& one) { return key_of(one) == key; }))
+    if (std::ranges::any_of(set, [&](const std::string& one) { return key_of(one) == key; }))
       problems.push_back(option + ": the key is set by --set as well");
     keys.push_back({key, read_values(text.substr(text.find('=') + 1), option, problems)});
   }

@@ -146,8 +146,7 @@ void keep_names(const RunContext& context, const RunPlan& plan) {
   std::vector<std::string> before = lines_of(path);
   std::vector<std::string> names;
   for (const PlannedRun& run : plan.runs) names.push_back(run.name);
-  std::erase_if(before,
-                [&](const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); });
+  std::erase_if(before, [&](const std::string& name) { return std::ranges::find(names, name) != names.end(); });
   if (context.resume())
     names.insert(names.end(), before.begin(), before.end());
   else

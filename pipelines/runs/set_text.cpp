@@ -139,9 +139,8 @@ std::string curves_text(const SetSummary& summary, const std::string& base) {
     std::error_code ignored;
     if (!std::filesystem::is_directory(directory, ignored)) continue;
     const std::vector<RunCurve> curves = report::curves_of(directory.string());
-    const auto at = std::find_if(curves.begin(), curves.end(), [&](const RunCurve& c) {
-      return !c.x.empty() && (title.empty() || c.plot + c.name == title);
-    });
+    const auto at = std::ranges::find_if(
+        curves, [&](const RunCurve& c) { return !c.x.empty() && (title.empty() || c.plot + c.name == title); });
     if (at == curves.end()) continue;
     title = at->plot + at->name;
     plot.x_label = at->x_label;
@@ -180,8 +179,7 @@ TextTable table_of(const SetSummary& summary) {
     row.push_back(run.seed ? std::to_string(*run.seed) : "");
     row.push_back(to_string(run.status));
     for (const RunValue& n : numbers) {
-      const auto at =
-          std::find_if(run.numbers.begin(), run.numbers.end(), [&](const RunValue& v) { return v.name == n.name; });
+      const auto at = std::ranges::find_if(run.numbers, [&](const RunValue& v) { return v.name == n.name; });
       row.push_back(at == run.numbers.end() ? "" : text(at->value));
       row.push_back(at == run.numbers.end() ? "" : text(at->error));
     }

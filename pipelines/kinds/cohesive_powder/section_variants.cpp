@@ -64,8 +64,7 @@ using Quantity = std::pair<const char*, const char*>;
 /// Means and standard errors, one row per variant; columns without any value are left out.
 std::string quantity_table(const std::vector<VariantEntry>& entries, std::vector<Quantity> quantities) {
   std::erase_if(quantities, [&](const Quantity& q) {
-    return std::none_of(entries.begin(), entries.end(),
-                        [&](const VariantEntry& e) { return e.values.contains(q.first); });
+    return std::ranges::none_of(entries, [&](const VariantEntry& e) { return e.values.contains(q.first); });
   });
   if (quantities.empty()) return "";
   std::vector<std::string> header{"variant"};

@@ -23,7 +23,7 @@ std::vector<std::string> compared(const std::vector<VariantEntry>& entries) {
   std::vector<std::string> out;
   for (const std::string name : powder_comparable())
     if (name == "Phi" || name == "z" ||
-        std::any_of(entries.begin(), entries.end(), [&](const VariantEntry& e) { return e.published.contains(name); }))
+        std::ranges::any_of(entries, [&](const VariantEntry& e) { return e.published.contains(name); }))
       out.push_back(name);
   return out;
 }

@@ -25,8 +25,8 @@ bool all_converged(const MultiContactMeasurements& data) {
 /// Entries ascend in solid fraction; two at the same one could not be told apart.
 void insert(LawTable& table, LawTableEntry entry) {
   constexpr double kSame = 1e-6;
-  const auto at = std::find_if(table.entries.begin(), table.entries.end(),
-                               [&](const LawTableEntry& e) { return e.solid_fraction > entry.solid_fraction - kSame; });
+  const auto at = std::ranges::find_if(
+      table.entries, [&](const LawTableEntry& e) { return e.solid_fraction > entry.solid_fraction - kSame; });
   if (at != table.entries.end() && at->solid_fraction < entry.solid_fraction + kSame)
     throw InputError(
         fmt::format("law table: two measurements have the same solid fraction {:.6f}; every entry needs its own",
@@ -103,7 +103,7 @@ void require_law_of_multi_contact(const SceneTable& root, const MultiContactSetu
                    fmt::format("below min_packings = {} of [calibrate{}]: there would be no fit", fit.min_packings,
                                root.table_or_empty("calibrate").has("multi_contact") ? ".multi_contact" : ""));
   const auto& all = setup.configurations;
-  if (std::none_of(all.begin(), all.end(), [](const MultiContactConfiguration& c) {
+  if (std::ranges::none_of(all, [](const MultiContactConfiguration& c) {
         return c.partners.size() == 1 && c.partners[0].kind == PartnerKind::plane && !c.held_out && !c.centre_free;
       }))
     root.add_error("configuration", "a law table needs one plane alone (arrangement \"one\", partner \"plane\")");

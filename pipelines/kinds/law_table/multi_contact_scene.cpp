@@ -284,7 +284,7 @@ void press_soft_neighbours(MultiContactConfiguration& c, double depth) {
 void read_press(const SceneTable& t, MultiContactPath path, MultiContactConfiguration& c) {
   if (!t.has("pressed")) return;
   const double depth = t.number("pressed", Unit::none, kShare);
-  if (std::none_of(c.partners.begin(), c.partners.end(), [](const auto& p) { return p.kind == PartnerKind::soft; }))
+  if (std::ranges::none_of(c.partners, [](const auto& p) { return p.kind == PartnerKind::soft; }))
     t.add_error("pressed", "no neighbour is soft: there is nothing that the planes could press");
   if (!c.centre_free) t.add_error("pressed", "only around a free shell: centre = \"free\"");
   if (!goes_straight(path) || path == MultiContactPath::sequential)
@@ -317,8 +317,8 @@ MultiContactConfiguration read_configuration(const SceneTable& t) {
 }
 
 void require_packings(const SceneTable& t, const MultiContactConfiguration& c, std::int64_t pool) {
-  const auto softs = std::count_if(c.partners.begin(), c.partners.end(),
-                                   [](const MultiContactPartner& p) { return p.kind == PartnerKind::soft; });
+  const auto softs =
+      std::ranges::count_if(c.partners, [](const MultiContactPartner& p) { return p.kind == PartnerKind::soft; });
   if (softs >= pool)
     t.add_error("partner", std::to_string(softs) +
                                " soft neighbours and the centre need as many different packings: raise "
@@ -364,8 +364,8 @@ void read_plan(const SceneTable& root, MultiContactSetup& setup) {
   for (const SceneTable& t : root.tables("plan")) {
     PlannedPackings p{t.text("configuration"), t.number("depth", Unit::none, kShare, 1.0),
                       t.count("packings", 2, 100000)};
-    const auto named = std::find_if(setup.configurations.begin(), setup.configurations.end(),
-                                    [&](const MultiContactConfiguration& c) { return c.name == p.configuration; });
+    const auto named = std::ranges::find_if(
+        setup.configurations, [&](const MultiContactConfiguration& c) { return c.name == p.configuration; });
     if (named == setup.configurations.end())
       t.add_error("configuration", "no [[configuration]] has this name");
     else if (p.depth < 1.0 && !may_be_cut(*named))

@@ -34,8 +34,8 @@ constexpr Group kGroups[] = {{"planes", "Planes, used in the fit", PartnerKind::
 /// Plain loading only: other paths to the same overlaps would be drawn on top of each other.
 bool belongs(const MultiContactStates& c, const Group& g) {
   const auto& stages = c.configuration->stages;
-  const auto loads = std::count_if(stages.begin(), stages.end(),
-                                   [](const MultiContactStage& s) { return s.move == MultiContactMove::load; });
+  const auto loads =
+      std::ranges::count_if(stages, [](const MultiContactStage& s) { return s.move == MultiContactMove::load; });
   const MultiContactUse wanted = g.held_out ? MultiContactUse::predicted : MultiContactUse::fitted;
   return c.all_of(g.kind) && c.use == wanted && loads == 1 && c.states.size() > 1 && !loading_states(c).empty();
 }

@@ -72,7 +72,7 @@ class DrawnBand {
   void add(const std::vector<const MacroCurve*>& ran, double noise, MacroCurve& curve) {
     record_.noise = noise;
     for (const BandOf of : {BandOf::axial, BandOf::lateral}) {
-      if (!std::all_of(ran.begin(), ran.end(), [&](const MacroCurve* c) { return like(*c, curve, of); })) {
+      if (!std::ranges::all_of(ran, [&](const MacroCurve* c) { return like(*c, curve, of); })) {
         append_part(curve.note, "no band: with some draw of the law the test ended early");
         return;
       }
@@ -214,7 +214,7 @@ std::vector<BandedEnd> banded_ends(const std::vector<MacroCurve>& curves) {
   std::vector<BandedEnd> out;
   std::vector<std::string> seen;
   for (const MacroCurve& first : curves) {
-    if (std::find(seen.begin(), seen.end(), first.engine) != seen.end()) continue;
+    if (std::ranges::find(seen, first.engine) != seen.end()) continue;
     seen.push_back(first.engine);
     for (const BandOf of : {BandOf::axial, BandOf::lateral}) {
       BandedEnd end{of, first.engine};

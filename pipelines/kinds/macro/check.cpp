@@ -43,7 +43,7 @@ struct BodyCounts {
 
 BodyCounts counts_of(const std::vector<MacroBody>& bodies) {
   return {static_cast<double>(bodies.size()),
-          static_cast<double>(std::count_if(bodies.begin(), bodies.end(), [](const MacroBody& b) { return b.soft; }))};
+          static_cast<double>(std::ranges::count_if(bodies, [](const MacroBody& b) { return b.soft; }))};
 }
 
 /// Counts the bodies of the samples that the run draws. Samples by construction must be packed to be counted, so only

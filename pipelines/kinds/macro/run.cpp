@@ -51,7 +51,7 @@ std::string console_summary(const LawIdentity& law, const std::vector<MacroCurve
                         c.usable ? "" : " (" + c.note + ")");
   std::vector<std::string> engines;
   for (const MacroCurve& c : curves)
-    if (std::find(engines.begin(), engines.end(), c.engine) == engines.end()) engines.push_back(c.engine);
+    if (std::ranges::find(engines, c.engine) == engines.end()) engines.push_back(c.engine);
   for (const std::string& engine : engines)
     for (const StageMeans& s : stage_means(curves, engine)) text += stage_line(engine, s);
   return text;
@@ -200,8 +200,8 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
   });
   const LawIdentity identity = law ? law->identity : curves.front().law;
 
-  const bool usable = all_carry_stress(curves) &&
-                      std::all_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.usable; });
+  const bool usable =
+      all_carry_stress(curves) && std::ranges::all_of(curves, [](const MacroCurve& c) { return c.usable; });
   MacroRunSummary summary = summarise(macro, identity, curves, usable);
   summary.bands = bands;
   summary.band_ends = banded_ends(curves);

@@ -427,7 +427,7 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   if (!root.has_errors()) require_room_for_images(macro, "bodies", out.setup, out.seed);
   refuse_idle_keys(macro, !out.setup.twins.empty(), true);  // --bands may give some
   if (out.law.table) add_error_beside(macro, {"kt"}, "goes with a law card; a law table has one tangential stiffness");
-  if (out.law.card && std::none_of(out.law.card->pairs.begin(), out.law.card->pairs.end(), has_tangential))
+  if (out.law.card && std::ranges::none_of(out.law.card->pairs, has_tangential))
     add_error_beside(macro, {"kt"}, "no tangential stiffness was measured for " + law_file + ": one is assumed");
   if (out.setup.twins.empty())
     add_error_beside(root, {"contents"}, "is of the soft particles of a resolved twin: goes with resolved = true");

@@ -145,7 +145,7 @@ std::vector<std::string> first_point_remarks(const MacroSpec& spec, const std::v
     const double mean = stress.mean();
     if (!(mean < kFarBelow * asked)) continue;
     const std::string reason = why(c);
-    auto at = std::find_if(below.begin(), below.end(), [&](const Below& b) { return b.reason == reason; });
+    auto at = std::ranges::find(below, reason, &Below::reason);
     if (at == below.end()) at = below.insert(below.end(), {reason, asked, "", ""});
     append_part(at->engines, "'" + c.engine + "'", ", ");
     append_part(at->stresses, rounded_text(mean, {3}), ", ");

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -10,7 +9,6 @@
 #include "calibrate/response_prediction.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
-#include "common/core/limits.h"
 #include "common/core/statistics.h"
 #include "macrosim/body_contacts.h"
 #include "pipelines/kinds/material/scene.h"

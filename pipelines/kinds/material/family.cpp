@@ -79,7 +79,7 @@ std::string material_family(const MaterialVariant& variant, const std::vector<Ma
   const std::vector<Property> own = properties_of(variant);
   for (std::size_t k = 0; k < own.size(); ++k) {
     const auto differs = [&](const MaterialVariant& v) { return properties_of(v)[k].value != own[k].value; };
-    if (std::none_of(all.begin(), all.end(), differs)) continue;
+    if (std::ranges::none_of(all, differs)) continue;
     if (own[k].name == "sizes of")  // their text is long
       text += own[k].value.empty() ? "" : ", sizes of " + (variant.packings.empty() ? variant.name : variant.packings);
     else

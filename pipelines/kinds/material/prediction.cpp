@@ -33,7 +33,7 @@ bool predictable(const MacroCurve& c) {
   if (!c.usable || c.stages.size() != 1 || !c.more.contains(kSolidFraction)) return false;
   const ResponseCurve r = response_of(c, "");
   const auto numbers = [](const std::vector<double>& v) {
-    return std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
+    return std::ranges::all_of(v, [](double x) { return std::isfinite(x); });
   };
   return !r.pressure.empty() && *std::min_element(r.pressure.begin(), r.pressure.end()) > 0.0 && numbers(r.ratio) &&
          numbers(r.deviator);
@@ -145,9 +145,9 @@ std::vector<PredictionSummary> predict_spans(const std::vector<PredictionInput>&
   if (settings.spans.empty()) return out;
   std::map<std::string, std::vector<std::pair<std::string, Group>>> families;  // loadings in the order of the scene
   for (const PredictionInput& in : inputs) {
-    if (std::none_of(in.curves.begin(), in.curves.end(), predictable)) continue;
+    if (std::ranges::none_of(in.curves, predictable)) continue;
     auto& loadings = families[in.family];
-    auto at = std::find_if(loadings.begin(), loadings.end(), [&](const auto& l) { return l.first == in.loading; });
+    auto at = std::ranges::find_if(loadings, [&](const auto& l) { return l.first == in.loading; });
     if (at == loadings.end()) at = loadings.insert(at, {in.loading, {}});
     at->second.inputs.push_back(&in);
   }

@@ -88,7 +88,7 @@ std::vector<MacroCurve> kept_tests(const MacroRuns& runs, const Run& run,
   });
   if (found) return curves;
   curves = go();
-  if (std::all_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.usable; }))
+  if (std::ranges::all_of(curves, [](const MacroCurve& c) { return c.usable; }))
     cache.keep(key, [&](const h5::Group& g) {
       for (std::size_t k = 0; k < curves.size(); ++k)
         write_macro_curve(g.create(fmt::format("sample_{}", k)), curves[k]);
@@ -241,7 +241,7 @@ std::vector<const VariantResult*> first_compressed(const std::vector<VariantResu
   bool found = false;
   for (const VariantResult& r : results) {
     found = found && r.variant->same_packings;
-    if (found || std::none_of(r.curves.begin(), r.curves.end(), takes_part)) continue;
+    if (found || std::ranges::none_of(r.curves, takes_part)) continue;
     found = true;
     out.push_back(&r);
   }

@@ -44,7 +44,7 @@ std::string cost_figure(const std::vector<ModelScore>& scores) {
              .y = {.label = "error of the axial stress [%]", .scale = Scale::logarithmic}});
   std::vector<std::string> models;
   for (const ModelScore& s : scores)
-    if (std::find(models.begin(), models.end(), s.model) == models.end()) models.push_back(s.model);
+    if (std::ranges::find(models, s.model) == models.end()) models.push_back(s.model);
   bool any = false;
   for (std::size_t k = 0; k < models.size(); ++k) {
     Series points{.label = models[k], .hover = "", .x = {}, .y = {}};
