@@ -29,7 +29,7 @@ class RestartEverywhere : public ::testing::TestWithParam<KindScene> {
   }
   /// Undisturbed; returns how long it took.
   [[nodiscard]] double run_whole() const {
-    return seconds_of([&] { EXPECT_TRUE(ended_with(wait_for(start("whole", 0)), GetParam().status)); });
+    return child_seconds_of([&] { EXPECT_TRUE(ended_with(wait_for(start("whole", 0)), GetParam().status)); });
   }
   int disturb(const std::string& name, const Disturbance& d) const {
     const int times = run_disturbed(d, runs_.out(name), GetParam().status, [&](int part) { return start(name, part); });
@@ -88,7 +88,7 @@ TEST(RestartQuickstart, SlowKilledFiftyTimesItEndsInTheSameBits) {
     return start_program(words);
   };
   int status = 0;
-  const double whole = seconds_of([&] { status = wait_for(start("whole", 0)); });
+  const double whole = child_seconds_of([&] { status = wait_for(start("whole", 0)); });
   ASSERT_TRUE(ended_with(status, 0)) << status;
   // Fifty parts of 1/40 of the run on average: what a kill takes back is the point under way on each thread.
   const int kills = run_disturbed({SIGKILL, 50, 0.05 * whole, 7}, directory.file("killed"), 0,

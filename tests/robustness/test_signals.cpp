@@ -97,7 +97,7 @@ TEST(Signals, EndCommandsThatSaveNothingAtOnce) {
   };
   for (const Busy& busy : commands) {
     SCOPED_TRACE(busy.words.front());
-    const double whole = seconds_of([&] { ASSERT_TRUE(WIFEXITED(wait_for(start_program(busy.words)))); });
+    const double whole = child_seconds_of([&] { ASSERT_TRUE(WIFEXITED(wait_for(start_program(busy.words)))); });
     for (const std::string& result : busy.results) EXPECT_TRUE(fs::exists(result)) << result;
     for (const int signal : {SIGINT, SIGTERM}) expect_to_end_at_once(busy, whole, signal);
   }

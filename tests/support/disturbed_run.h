@@ -42,7 +42,7 @@ inline int run_disturbed(const Disturbance& d, const std::string& directory, int
 }
 
 /// Processor time of the programs that `work` runs to their end [s]: it does not depend on what else the machine does.
-inline double seconds_of(const std::function<void()>& work) {
+inline double child_seconds_of(const std::function<void()>& work) {
   const auto used = [] {
     rusage children{};
     ::getrusage(RUSAGE_CHILDREN, &children);
