@@ -70,7 +70,7 @@ TEST(GrainBoxResume, InterruptedRunsEndInTheSameBits) {
   const TemporaryDirectory directory;
   const std::string scene = directory.file("scene.toml");
   write_text_atomic(scene, kScene);
-  const double seconds = seconds_of([&] { (void)run_scene(scene, directory.file("whole")); });
+  const double seconds = child_seconds_of([&] { (void)run_scene(scene, directory.file("whole")); });
   const auto whole = load_grain_boxes(directory.file("whole/grain_box.h5"));
   const std::string out = directory.file("stopped");
   const int stops = run_disturbed({SIGTERM, 12, 0.6 * seconds, 6}, out, 0, [&](int part) {
