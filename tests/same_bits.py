@@ -20,8 +20,11 @@ import sys
 import tempfile
 from pathlib import Path
 
-import h5py
-import numpy as np
+try:
+    import h5py
+    import numpy as np
+except ImportError:
+    sys.exit(f"{sys.argv[0]}: needs h5py and numpy (Debian: python3-h5py)" if "--self-test" not in sys.argv else 77)
 
 LEFT_OUT = ("provenance", "seconds", "table_id", "belongs_to", "command", "started", "finished", "law_path", "threads",
             "memory", "per_second", "ns_per_contact")
