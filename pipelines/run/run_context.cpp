@@ -190,7 +190,7 @@ Provenance RunContext::provenance(const Scene& scene, std::uint64_t used_seed) c
   p.threads = threads_;
   p.seed = used_seed;
   p.command = options_.command_line;
-  p.kind = scene.root().text("kind");
+  if (const SceneTable root = scene.root(); root.is_text("kind")) p.kind = root.text("kind");  // fits have none
   p.scene = scene.text();
   return p;
 }
