@@ -19,12 +19,12 @@ GUIDE = "pipelines/guide"
 # Page: its sources, keys that go through a variable there, and words that look like keys of scenes and are none.
 PAGES = {
     "scene_pipeline.md": (
-        ["pipelines/kinds/soft_particle/scene.cpp", "pipelines/kinds/pipeline/scene.cpp", "pipelines/kinds/macro/scene.cpp",
+        ["common/data/soft_particle_schema.cpp", "pipelines/kinds/soft_particle/scene.cpp", "pipelines/kinds/pipeline/scene.cpp", "pipelines/kinds/macro/scene.cpp",
          "pipelines/kinds/law_table/multi_contact_law_fit.cpp",
          "pipelines/kinds/macro_comparison/scene.cpp", "pipelines/law/named_laws.cpp",
          "pipelines/commands/calibrate.cpp", "pipelines/law/fit_settings.cpp",
          "pipelines/kinds/soft_particle/snapshot_recorder.cpp"],
-        {"beyond", "modulus_stress", "beta", "nu", "restitution", "rmax_over_shell", "shell_radius"}, {"cell", "entry", "pair", "macrosim"}),
+        {"beyond", "modulus_stress"}, {"cell", "entry", "pair", "macrosim"}),
     "scene_material_models.md": (["pipelines/kinds/material_models/scene.cpp"], {"name"}, set()),
     "scene_law_table.md": (
         ["pipelines/kinds/law_table/scene.cpp", "pipelines/kinds/law_table/multi_contact_scene.cpp", "pipelines/kinds/law_table/multi_contact_law_fit.cpp",
@@ -71,13 +71,15 @@ READERS = "has|is_text|is_list|number|count|flag|text|choice|vector3|numbers|tex
 CALL = re.compile(r'(?:\.|->)\s*(?:%s)(?:<\w+>)?\(\s*"([A-Za-z_]\w*)"' % READERS)
 # A table and a key handed to a helper: read_friction(t, "wall_mu", ...).
 HANDED = re.compile(r'\b(?:t|root|table|scene|macro|law|walls|material|loading|escape)\s*,\s*"([A-Za-z_]\w*)"')
+# The key in scenes of a number that is described once: {"friction", "mu", &S::friction, ...}.
+DESCRIBED = re.compile(r'\{"\w+", "(\w+)", &S::')
 KEY = re.compile(r"`\[{0,2}([A-Za-z_][\w.]*)\]{0,2}`")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 
 
 def keys_read(path):
     text = path.read_text()
-    return set(CALL.findall(text)) | set(HANDED.findall(text))
+    return set(CALL.findall(text)) | set(HANDED.findall(text)) | set(DESCRIBED.findall(text))
 
 
 def reads_scenes(path):

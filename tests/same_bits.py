@@ -26,15 +26,14 @@ try:
 except ImportError:
     sys.exit(f"{sys.argv[0]}: needs h5py and numpy (Debian: python3-h5py)" if "--self-test" not in sys.argv else 77)
 
-LEFT_OUT = ("provenance", "seconds", "table_id", "belongs_to", "command", "started", "finished", "law_path", "threads",
-            "memory", "per_second", "ns_per_contact")
-# Numbers of a text that change from run to run, and what stands for them.
+LEFT_OUT = ("provenance", "seconds", "table_id", "belongs_to")
+# What changes from run to run in a text, and what stands for it. Digits alone are never taken for a hash.
 CHANGING = [
     (re.compile(r"^\d{4}-\d\d-\d\d \d\d:\d\d:\d\d ", re.M), ""),
     (re.compile(r"\b\d{4}-\d\d-\d\d[T ]\d\d:\d\d(:\d\d)?Z?"), "DATE"),
     (re.compile(r"\bsoftgrain \d+\.\d+\.\d+ \([0-9a-f]{7,12}(-modified)?\)"), "softgrain VERSION"),
-    (re.compile(r"\b[0-9a-f]{12}(-modified)?\b"), "COMMIT"),
-    (re.compile(r"\b[0-9a-f]{16}\b"), "HASH"),
+    (re.compile(r"(?<![.0-9a-f])(?=[0-9]*[a-f])[0-9a-f]{12}(-modified)?\b"), "COMMIT"),
+    (re.compile(r"(?<![.0-9a-f])(?=[0-9]*[a-f])[0-9a-f]{16}\b"), "HASH"),
     (re.compile(r"\b\d+(\.\d+)?(e-?\d+)? (s|min|h|ms)( \d+ (s|min))?\b"), "TIME"),
     (re.compile(r"\b[\d.e+]+ times (faster|less time)"), "N times faster"),
     (re.compile(r"\bthreads?( = |: | )\d+"), "threads N"),
@@ -100,7 +99,7 @@ def json_differences(first, second, plain):
 def csv_cells(path, plain, which):
     rows = list(csv.reader(path.read_text().splitlines()))
     head = next((r for r in rows if r and not r[0].startswith("#")), [])
-    skipped = {k for k, name in enumerate(head) if left_out(name) or name.endswith("[s]")}
+    skipped = {k for k, name in enumerate(head) if left_out(name)}
     return [[plain(cell, which) for k, cell in enumerate(r) if k not in skipped] for r in rows]
 
 
@@ -201,6 +200,9 @@ def self_test():
         "a.json": ('{"x": 1.0, "seconds": 2, "note": "took 3 s"}', '{"x": 1.0, "seconds": 5, "note": "took 4 s"}',
                    '{"x": 1.0000000000000002, "seconds": 2, "note": "took 3 s"}'),
         "a.csv": ("x,core_seconds\n1,2\n", "x,core_seconds\n1,3\n", "x,core_seconds\n2,2\n"),
+        "b.csv": ("hash,x,time [s]\n0123456789abcdef,0.1234567890123456,1\n", "hash,x,time [s]\nf123456789abcdef,0.1234567890123456,1\n",
+                  "hash,x,time [s]\n0123456789abcdef,0.1234567890123457,1\n"),
+        "c.csv": ("x,time [s]\n1,1\n", "x,time [s]\n1,1\n", "x,time [s]\n1,2\n"),
         "a.txt": ("2026-01-01 10:00:00 F = 2 N in 3 min\n", "2026-01-02 11:00:00 F = 2 N in 4 min\n",
                   "2026-01-01 10:00:00 F = 3 N in 3 min\n"),
         "a.toml": ('value = 1.5\ntable_id = "a"\n', 'value = 1.5\ntable_id = "b"\n', 'value = 1.25\ntable_id = "a"\n'),
@@ -217,7 +219,7 @@ def self_test():
         for folder, value in zip(h5, (1.0, 1.0, 1.0 + 2e-16)):
             folder.mkdir(parents=True)
             with h5py.File(folder / "a.h5", "w") as f:
-                f["x"] = [value, np.nan]
+                f["memory"] = [value, np.nan]
                 f.attrs["seconds"] = len(str(folder))
         assert not compare(h5[0], h5[1]) and len(compare(h5[0], h5[2])) == 1
     print("same_bits: finds what differs in every kind of file")

@@ -166,7 +166,7 @@ std::vector<HeadLine> set_lines(const RunData& run) {
   std::vector<HeadLine> lines;
   if (set.runs.empty()) return lines;
   const auto good = std::ranges::count_if(set.runs, [](const RunEntry& r) { return r.status == RunStatus::good; });
-  std::string kind = set.kind.empty() ? "" : " of a scene of kind " + set.kind;
+  const std::string kind = run.kind().empty() ? "" : " of a scene of kind " + run.kind();
   lines.emplace_back("Runs", fmt::format("{} runs{}, {} of them good.", set.runs.size(), kind, good));
   for (const SweptKey& one : set.over) {
     std::string values;

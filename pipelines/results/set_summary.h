@@ -103,7 +103,6 @@ void fields(auto&& visit, Of<RunNorm> auto& s) {
 
 struct SetSummary {
   SummaryHead head;
-  std::string kind;
   std::vector<SweptKey> over;
   std::vector<std::int64_t> seeds;
   std::vector<SweptKey> differences;  ///< differences of the compared scenes: a value per run, "-" where it has none
@@ -115,7 +114,6 @@ struct SetSummary {
 
 void fields(auto&& visit, Of<SetSummary> auto& s) {
   fields(visit, s.head);
-  visit("kind", s.kind);
   visit("over", s.over, kLeftOut);
   visit("seeds", s.seeds, kLeftOut);
   visit("scene_differences", s.differences, kLeftOut);

@@ -217,7 +217,6 @@ void note_swept_keys(const RunPlan& plan, SetSummary& summary) {
 SetSummary summarise(const Scene& scene, const RunPlan& plan, std::vector<RunEntry> entries) {
   SetSummary summary;
   const std::string title = scene.root().text("title", "");
-  summary.kind = kind_of(scene).name;
   summary.over = plan.over;
   summary.seeds.assign(plan.seeds.begin(), plan.seeds.end());
   summary.runs = std::move(entries);

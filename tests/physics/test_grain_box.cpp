@@ -52,8 +52,8 @@ TEST(GrainBox, CompactionReachesThePressureWithFourContactsEverywhere) {
 }
 
 /// What is left to the solver without inertia when the box is handed on: few steps, since the pack is near the pressure
-/// and at rest. Handed on at a fifth of the pressure, packs of the size of the published ones go through long
-/// rearrangements, and one in three found no equilibrium.
+/// and at rest. Handed on at a fifth of the pressure, packs of the size of the published ones went through long
+/// rearrangements, and that of seed 1 found no equilibrium.
 void first_equilibrium_is_near(const GrainBoxSpec& spec, std::uint64_t seed) {
   CompactedPack compacted = compact_until_stress(spec, make_loose_pack(spec, seed));
   const LeastWorkResult first = advance(compacted.pack, std::vector<Vec3>(kBoxWalls), spec.solver);

@@ -88,6 +88,8 @@ TEST_F(MacroPackings, SummaryAndReportSayWhatThePreparationTook) {
 TEST_F(MacroPackings, WhatCannotBePreparedIsNotUsableAndSaysWhatWasReached) {
   expect(macro("run", "--set macro.preparation_passes=10"), 3, {"did not reach a pressure of 1e-05 E", "walls at"});
   EXPECT_EQ(summary("run")["status"], "not usable");
+  EXPECT_EQ(summary("run")["kind"], "macro") << "what broke off says what it was";
+  EXPECT_NE(summary("run")["provenance"]["scene"].get<std::string>().find("kind"), std::string::npos);
 }
 
 /// Four bodies in a square tube: two layers of a solid grain and a soft particle.

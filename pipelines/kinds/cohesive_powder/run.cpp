@@ -187,7 +187,7 @@ std::string add_means(const PowderSetup& setup, const std::vector<Sample>& sampl
 
 ExitStatus run_powder_ensemble(const PowderSetup& setup, const Run& run) {
   std::vector<Sample> samples;
-  run.context.guard([&] { samples = run_samples(setup, run); });
+  run.guard([&] { samples = run_samples(setup, run); });
   const PowderStructures structures = structures_of(samples, setup.structure);
   save_samples(run.path("powder.h5"), samples, structures, setup.spec, run.provenance);
   PowderSummary summary;

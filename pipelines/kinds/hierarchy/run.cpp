@@ -197,7 +197,7 @@ ExitStatus run_hierarchy(const Scene& scene, const CommonOptions& options) {
   const HierarchySetup setup = read_hierarchy_setup(scene);
   const Run run(scene, options, "run", setup.multi_contact.seed, {.text = sizes_text(setup.multi_contact.spec)});
   HierarchyRun result;
-  run.context.guard([&] {
+  run.guard([&] {
     run_levels(setup, run, result);
     check_levels(setup, run, result);
   });

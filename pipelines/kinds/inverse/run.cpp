@@ -145,7 +145,7 @@ ExitStatus run_inverse(const Scene& scene, const CommonOptions& options) {
     target += fmt::format("{:a} {:a} {:a}\n", setup.target.delta[j], setup.target.force[j], setup.target.error[j]);
   const Run run(scene, options, "run", setup.measure.seed, {.text = target + sizes_text(setup.measure.spec)});
   InverseResult result;
-  run.context.guard([&] { result = run_inverse_stage(setup, run); });
+  run.guard([&] { result = run_inverse_stage(setup, run); });
   save(result.confirmed, run.path("measurements.h5"), run.provenance);
   write_text_atomic(run.path("evaluations.csv"), evaluations_table(setup, result));
 

@@ -73,7 +73,7 @@ ExitStatus run_law_table(const Scene& scene, const CommonOptions& options) {
   const LawTableSetup setup = read_law_table(scene);
   const Run run(scene, options, "run", setup.multi_contact.seed, {.text = sizes_text(setup.multi_contact.spec)});
   LawTableRun result;
-  run.context.guard([&] { result = measure_and_fit(setup, run); });
+  run.guard([&] { result = measure_and_fit(setup, run); });
   return run.finish(summarise(setup, result, run), console_summary(result, run));
 }
 

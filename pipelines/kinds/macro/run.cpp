@@ -112,7 +112,7 @@ void add_directories(std::int64_t samples, const RunContext& context, MacroRunSu
 /// The input of LAMMPS, to be run elsewhere or with --resume; the packings stay in the store for that.
 ExitStatus write_only(const MacroScene& scene, const NamedLaws& law, const std::vector<ShellPacking>& contents,
                       const Run& run) {
-  run.context.guard([&] {
+  run.guard([&] {
     const auto packings = prepare_packings(scene.setup, run, kInitialFile);
     save_if_prepared(scene, packings, run);
     write_lammps_files(lammps_runs(scene, law, contents, run.provenance), packings, run.context);
@@ -194,7 +194,7 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
   if (lammps && lammps->write_only) return write_only(macro, *law, contents, run);
   std::vector<MacroCurve> curves;
   std::vector<BandRecord> bands;
-  run.context.guard([&] {
+  run.guard([&] {
     curves = law ? curves_of_run(macro, lammps, *law, contents, run, draws_of(macro, *law, contents), bands)
                  : run_macro_stage(macro.setup, {}, {}, run, {}, bands);
   });

@@ -199,7 +199,7 @@ ExitStatus run_macro_comparison(const Scene& scene, const CommonOptions& options
     (void)draws_for(s.setup, setup.laws_of(s), laws_for(setup.laws_of(s), s.setup.spec, fraction), fraction);
   }
   std::vector<SceneResult> results;
-  run.context.guard([&] {
+  run.guard([&] {
     for (const ComparisonScene& s : setup.scenes) results.push_back(run_scene(s, setup, contents, run));
   });
   const MacroComparisonSummary summary = summarise(setup, results, run);

@@ -186,7 +186,7 @@ VariantRuns run_variants(const MaterialScene& scene, const Run& run, const Varia
       failed(v, v.name, e.what() + std::string("; another seed or more grains (count) may do"));
     }
   };
-  run.context.guard([&] {
+  run.guard([&] {
     Packings packings;
     for (const MaterialVariant& v : scene.variants) {
       if (!v.same_packings) packings = prepared(v);
@@ -375,7 +375,7 @@ void add_directories(const MaterialVariant& v, const Run& run, MaterialSummary& 
 ExitStatus write_only(const MaterialScene& scene, const Run& run) {
   const NamedLaws laws = no_soft_laws();
   Packings packings;
-  run.context.guard([&] {
+  run.guard([&] {
     for (const MaterialVariant& v : scene.variants) {
       if (!v.same_packings) packings = packings_of(v, run);
       write_lammps_files(lammps_runs(scene, v, laws, run), *packings, run.context);

@@ -35,7 +35,7 @@ ExitStatus run_material_law(const Scene& scene, const CommonOptions& options) {
   write_text_atomic(run.path("material.csv"), as_csv(points_of(results)));
   MaterialLaw fitted;
   if (failures.empty())
-    run.context.guard([&, &all = results] { fitted = fit_material_law(law, all, measured.states, run.seed); });
+    run.guard([&, &all = results] { fitted = fit_material_law(law, all, measured.states, run.seed); });
   else
     fitted.problems.push_back("not all of its packings could be measured");
   MaterialLawSummary summary{std::move(measured.summary), std::move(fitted.summary)};

@@ -42,7 +42,7 @@ ExitStatus run_material_models(const Scene& file, const CommonOptions& options) 
   reject_failures(measured_variants.failures, measured.summary.head);
   write_text_atomic(run.path("material.csv"), as_csv(points_of(truths)));
   MaterialModelsSummary summary{std::move(measured.summary), {}};
-  run.context.guard([&] { summary.scores = run_models(scene, truths, run); });
+  run.guard([&] { summary.scores = run_models(scene, truths, run); });
   write_text_atomic(run.path("models.csv"), as_csv(table_of(summary.scores)));
   summary.material.head.files["models"] = run.path("models.csv");
   return run.finish(json_of(summary), console_summary(summary.material) + console_summary(summary.scores));

@@ -76,7 +76,7 @@ void measure_table(const PipelineSetup& setup, const Run& run, PipelineResult& r
   std::string why;
   try {
     std::vector<ShellPacking> packings = result.measured.packings;
-    run.context.guard(
+    run.guard(
         [&] { result.multi_contact = run_multi_contact_stage(wanted.multi_contact, run, fit.remarks, packings); });
     add_entry(fit, result.multi_contact, options, wanted.multi_contact.target);
   } catch (const InputError& e) {  // what is left could not be fitted
@@ -249,7 +249,7 @@ ExitStatus run_pipeline(const Scene& scene, const CommonOptions& options) {
                  .text = sizes_text(setup.measure.spec) + (setup.macro ? sizes_text(setup.macro->spec) : "") +
                          (setup.table ? setup.table->text : "")});
   PipelineResult result;
-  run.context.guard([&] { result.measured = run_measure_stage(setup.measure, run); });
+  run.guard([&] { result.measured = run_measure_stage(setup.measure, run); });
   for (const std::string& r : measurement_remarks(result.measured.data)) result.remarks.push_back(r);
   result.warnings = result.measured.left_out;
   result.usable = result.measured.enough_left;

@@ -28,7 +28,7 @@ ExitStatus run_soft_particle_scene(const Scene& scene, const CommonOptions& opti
   const MeasureSetup& setup = read.measure;
   const Run run(scene, options, "microsim", setup.seed, {.text = sizes_text(setup.spec)});
   MeasureResult result;
-  run.context.guard([&] { result = run_measure_stage(setup, run); });
+  run.guard([&] { result = run_measure_stage(setup, run); });
 
   SoftParticleSummary summary;
   summary.head.title = read.title;
