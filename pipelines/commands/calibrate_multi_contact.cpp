@@ -83,7 +83,7 @@ ExitStatus calibrate_multi_contact(const CommonOptions& options) {
   settings.fit.seed = context.seed(settings.fit.seed);
   const Provenance provenance = context.provenance(scene, settings.fit.seed);
   MultiContactLawFit fit;
-  context.guard([&] {
+  context.guard(provenance, [&] {
     for (const MultiContactMeasurements& d : data) {
       add_entry(fit, d, settings.fit, settings.target);
       if (fit.table.entries.size() == 1) fit.table.entries.front().main = true;

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 
-#include "common/core/error.h"
 #include "common/state/checkpoint.h"
 #include "pipelines/report/report.h"
 #include "pipelines/results/summary.h"
@@ -61,16 +60,6 @@ Run::Run(RunContext held, const Scene& scene, std::uint64_t scene_seed, const st
       seed(context.seed(scene_seed)),
       provenance(context.provenance(scene, seed)),
       store(context, scene, seed, text) {}
-
-void Run::guard(const std::function<void()>& work) const {
-  try {
-    work();
-  } catch (const UnusableResult& e) {
-    context.finish({{"status", to_string(RunStatus::not_usable)}, {"remarks", {e.what()}}}, provenance,
-                   "not usable: " + std::string(e.what()));
-    throw;
-  }
-}
 
 ExitStatus Run::finish(nlohmann::json summary, const std::string& console) const {
   if (!summary.contains("seconds")) summary["seconds"] = seconds();

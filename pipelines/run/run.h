@@ -65,9 +65,8 @@ class Run {
   /// Wall time since the beginning [s].
   [[nodiscard]] double seconds() const { return watch_.seconds(); }
 
-  /// Runs `work`; when it ends with UnusableResult (a lost grain, a preparation that does not jam...) a summary that
-  /// says so is written before the error goes on, so that the directory never looks like a run that is still going.
-  void guard(const std::function<void()>& work) const;
+  /// RunContext::guard with the provenance of this run.
+  void guard(const std::function<void()>& work) const { context.guard(provenance, work); }
 
   /// Ends the run: writes the summary ("provenance" added, and "seconds" unless it says itself what took how long) and
   /// the report, says `people`, how long it took and where the report is, and removes the kept tasks. Status not_usable

@@ -223,4 +223,14 @@ void RunContext::finish(nlohmann::json summary, const Provenance& provenance, co
   finish(std::move(summary), console);
 }
 
+void RunContext::guard(const Provenance& provenance, const std::function<void()>& work) const {
+  try {
+    work();
+  } catch (const UnusableResult& e) {
+    finish({{"status", to_string(RunStatus::not_usable)}, {"remarks", {e.what()}}}, provenance,
+           "not usable: " + std::string(e.what()));
+    throw;
+  }
+}
+
 }  // namespace softgrain

@@ -114,6 +114,10 @@ class RunContext {
   /// Writes and prints the summary as above, with "provenance" in it.
   void finish(nlohmann::json summary, const Provenance& provenance, const std::string& console) const;
 
+  /// Runs `work`; when it ends with UnusableResult (a lost grain, a preparation that does not jam...) a summary that
+  /// says so is written before the error goes on, so that the directory never looks like a run that is still going.
+  void guard(const Provenance& provenance, const std::function<void()>& work) const;
+
  private:
   CommonOptions options_;
   std::string command_;

@@ -35,7 +35,7 @@ class RecipeRun {
     std::erase_if(head().sizes, [](const SizesSummary& sizes) { return !sizes.of.starts_with("check"); });
     describe();
     write_text_atomic(run_.path("material.csv"), as_csv(points_of(results_)));
-    if (complete) run_.context.guard([&] { put_together(measured.states); });
+    if (complete) run_.guard([&] { put_together(measured.states); });
     return std::move(summary_);
   }
 
