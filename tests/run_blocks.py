@@ -107,7 +107,7 @@ RULES = [
     (r"\./softgrain run pipelines/(law_table|macro_vs_resolved)\.toml --out results/my_\w+", Check(slow=True)),
     (r"\./softgrain run pipelines/four_decades\.toml", Check()),
     (r"\./softgrain microsim pipelines/powder_\w+\.toml", Check()),
-    (r"\./softgrain law (show|eval|export) .*", Run()),
+    (r"\./softgrain law (show|eval|export) .*|\./softgrain schema .*", Run()),
     (r"\./softgrain calibrate pipelines/press_test\.csv --set mirror=true", Run()),
     (r"\./softgrain run pipelines/inverse\.toml", Check(slow=True)),
     (r"\./softgrain microsim pipelines/grainlearning_example/soft_particle\.toml .*", Run(statuses=(0, 3))),

@@ -44,7 +44,8 @@ std::string read_words(const SceneTable& root, std::initializer_list<const char*
 
 std::optional<Extrapolation> read_beyond(const SceneTable& table) {
   if (!table.has("beyond")) return std::nullopt;
-  return table.choice<Extrapolation>("beyond");
+  return table.choice<Extrapolation>({"beyond", "what holds beyond the measured range of a law card or law table",
+                                      "as the file says, else \"extrapolate\""});
 }
 
 namespace {

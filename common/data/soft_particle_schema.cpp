@@ -22,22 +22,27 @@ const auto& numbers() {
   const Range share = Range::closed(0.0, 1.0);
   static const std::array<SoftParticleNumber, 10> all{
       {{"shell_radius", "shell_radius", &S::shell_radius, Unit::length, positive, positive, "Rs", "Rs [m]", "Rs [m]",
-        true},
+        "Rs, radius of the shell (the sphere with the grains)", true},
        {"youngs_modulus", "E", &S::youngs_modulus, Unit::pressure, positive, positive, "E", "E [Pa]",
-        "E of the grains [Pa]", true},
+        "E of the grains [Pa]", "Young's modulus of the grains", true},
        {"poisson_ratio", "nu", &S::poisson_ratio, Unit::none, kPoissonRange, kPoissonRange, "nu", "nu",
-        "nu of the grains"},
-       {"friction", "mu", &S::friction, Unit::none, not_negative, not_negative, "mu", "mu", "mu of the grains"},
-       {"density", "density", &S::density, Unit::density, positive, positive, "density", "[kg/m^3]", ""},
-       {"restitution", "restitution", &S::restitution, Unit::none, share, share, "restitution", "", ""},
+        "nu of the grains", "Poisson's ratio of the grains"},
+       {"friction", "mu", &S::friction, Unit::none, not_negative, not_negative, "mu", "mu", "mu of the grains",
+        "friction between grains"},
+       {"density", "density", &S::density, Unit::density, positive, positive, "density", "[kg/m^3]", "",
+        "density of the grains"},
+       {"restitution", "restitution", &S::restitution, Unit::none, share, share, "restitution", "", "",
+        "coefficient of restitution of grains; sets the damping of the published relaxation"},
        {"exponent", "exponent", &S::exponent, Unit::none, any, above_one, "exponent", "b of P(r) ~ r^-b",
-        "exponent of the radii"},
+        "exponent of the radii", "b of P(r) ~ r^-b, the number of grains of radius r"},
        {"polydispersity", "polydispersity", &S::polydispersity, Unit::none, Range{1.0, kInfinity, false, false},
-        above_one, "polydispersity", "rmax/rmin", "polydispersity"},
+        above_one, "polydispersity", "rmax/rmin", "polydispersity", "largest over smallest grain radius"},
        {"rmax_over_shell", "rmax_over_shell", &S::rmax_over_shell, Unit::none, Range{0.0, 1.0, true, false},
-        Range{0.0, 1.0, true, true}, "rmax_over_shell", "rmax/Rs", "largest grain over Rs"},
+        Range{0.0, 1.0, true, true}, "rmax_over_shell", "rmax/Rs", "largest grain over Rs",
+        "radius of the largest grain over Rs"},
        {"beta", "beta", &S::beta, Unit::none, positive, above_one, "beta",
-        "volume of drawn grains over volume of the shell", "packing, beta"}}};
+        "volume of drawn grains over volume of the shell", "packing, beta",
+        "volume of the grains that are drawn, over the volume of the shell"}}};
   return all;
 }
 

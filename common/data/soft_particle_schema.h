@@ -20,6 +20,7 @@ struct SoftParticleNumber {
   const char* symbol;    ///< as comments of tables and messages call it
   const char* meaning;   ///< comment in cards; empty: none
   const char* compared;  ///< what `compare` calls it; empty: it does not compare it
+  const char* asked;     ///< what it means, said of the key in scenes
   bool always = false;   ///< always known, of an experiment too
 };
 

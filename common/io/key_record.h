@@ -15,12 +15,16 @@ enum class KeyForm { any, number, count, flag, text, choice, vector, numbers, te
 /// A key that was asked for.
 struct AskedKey {
   KeyForm form = KeyForm::any;
-  bool given = false;  ///< the scene has it
+  bool given = false;     ///< the scene has it
+  bool required = false;  ///< there is no fallback
   Unit unit = Unit::none;
   Range range{};                     ///< allowed range of numbers and counts
   std::vector<double> numbers{};     ///< what the reader got: numbers, counts, flags
   std::vector<std::string> texts{};  ///< texts and words that the reader got
   std::vector<std::string> words{};  ///< words that a choice allows
+  std::string meaning{};             ///< as in Key
+  std::string usual{};
+  bool retired = false;
 };
 
 /// Takes down, while it lives, the keys that this thread asks scenes for. One at a time.
@@ -35,13 +39,22 @@ class KeyRecord {
   /// laid over a scene (Scene::variant) is asked for counts for both places.
   [[nodiscard]] const std::map<std::string, AskedKey>& keys(const std::string& scene) { return keys_[scene]; }
 
+  /// Their paths, in the order in which they were first asked for.
+  [[nodiscard]] const std::vector<std::string>& order(const std::string& scene) { return orders_[scene]; }
+
+  /// Paths of tables whose names were asked for: what stands in them has names that the scene chooses.
+  [[nodiscard]] const std::vector<std::string>& free_tables(const std::string& scene) { return free_[scene]; }
+
   /// Adds what is known of a key to what was known before. For the sources of common/io.
   void note(const std::string& scene, const std::string& path, const AskedKey& asked);
+  void note_free(const std::string& scene, const std::string& path) { free_[scene].push_back(path); }
   /// Null: nobody takes keys down.
   static KeyRecord* current();
 
  private:
   std::map<std::string, std::map<std::string, AskedKey>> keys_;
+  std::map<std::string, std::vector<std::string>> orders_;
+  std::map<std::string, std::vector<std::string>> free_;
 };
 
 }  // namespace softgrain

@@ -53,6 +53,36 @@ struct Range {
   static Range above(double low) { return {low, std::numeric_limits<double>::infinity(), true, false}; }
 };
 
+/// "above 0", "from 0 to 0.5", "at least 0 and below 1"; empty when all numbers are allowed.
+std::string range_text(const Range& range);
+
+/// The SI unit of numbers of a dimension, "m"; angles are in degrees. Empty for none.
+std::string si_unit(Unit unit);
+
+/// The name of a key and what it means, said once: where the key is read (`softgrain schema`, tables of the guide).
+struct Key {
+  std::string name;
+  std::string meaning{};  ///< without an end stop
+  std::string usual{};    ///< what holds without the key, where the fallback does not say it
+  bool retired = false;   ///< read only to be refused with a hint
+
+  Key(const char* key) : name(key) {}             // NOLINT(google-explicit-constructor)
+  Key(std::string key) : name(std::move(key)) {}  // NOLINT(google-explicit-constructor)
+  /// A key of earlier versions, which is read to be refused with a hint.
+  static Key of_before(const char* name) {
+    Key key(name);
+    key.retired = true;
+    return key;
+  }
+  Key(std::string key, std::string means, std::string otherwise = "")
+      : name(std::move(key)), meaning(std::move(means)), usual(std::move(otherwise)) {}
+};
+
+// Keys that scenes of several kinds have.
+inline const Key kKindKey{"kind", "what the scene describes"};
+inline const Key kTitleKey{"title", "title of summary and report"};
+inline const Key kSeedKey{"seed", "seed of the random numbers; `--seed` replaces it"};
+
 /// One error: "file:line: key = value: what is wrong, allowed range".
 struct SceneError {
   std::size_t line = 0;  ///< 0: not of the file, but of the command line or of a file that the scene names
@@ -87,50 +117,50 @@ class SceneTable {
       const std::string& key) const;  ///< present and in quotes (a word such as "auto", or a number with unit)
   [[nodiscard]] bool is_list(const std::string& key) const;  ///< present and in brackets
 
-  [[nodiscard]] double number(const std::string& key, Unit unit, const Range& range = Range::any()) const;
-  [[nodiscard]] double number(const std::string& key, Unit unit, const Range& range, double fallback) const;
-  [[nodiscard]] std::int64_t count(const std::string& key, std::int64_t low, std::int64_t high) const;
-  [[nodiscard]] std::int64_t count(const std::string& key, std::int64_t low, std::int64_t high,
-                                   std::int64_t fallback) const;
-  [[nodiscard]] bool flag(const std::string& key, bool fallback) const;
-  [[nodiscard]] std::string text(const std::string& key) const;
-  [[nodiscard]] std::string text(const std::string& key, const std::string& fallback) const;
+  [[nodiscard]] double number(const Key& key, Unit unit, const Range& range = Range::any()) const;
+  [[nodiscard]] double number(const Key& key, Unit unit, const Range& range, double fallback) const;
+  [[nodiscard]] std::int64_t count(const Key& key, std::int64_t low, std::int64_t high) const;
+  [[nodiscard]] std::int64_t count(const Key& key, std::int64_t low, std::int64_t high, std::int64_t fallback) const;
+  [[nodiscard]] bool flag(const Key& key, bool fallback) const;
+  [[nodiscard]] std::string text(const Key& key) const;
+  [[nodiscard]] std::string text(const Key& key, const std::string& fallback) const;
   /// One of a list of words; the error names the nearest.
-  [[nodiscard]] std::string choice(const std::string& key, std::initializer_list<const char*> words) const;
-  [[nodiscard]] std::string choice(const std::string& key, const std::vector<const char*>& words) const;
-  [[nodiscard]] std::string choice(const std::string& key, std::initializer_list<const char*> words,
+  [[nodiscard]] std::string choice(const Key& key, std::initializer_list<const char*> words) const;
+  [[nodiscard]] std::string choice(const Key& key, const std::vector<const char*>& words) const;
+  [[nodiscard]] std::string choice(const Key& key, std::initializer_list<const char*> words,
+                                   const std::string& fallback) const;
+  [[nodiscard]] std::string choice(const Key& key, const std::vector<const char*>& words,
                                    const std::string& fallback) const;
   /// The value behind one of the words of an enum, of some of its values, and with a value for an absent key.
   template <NamedEnum Enum>
-  [[nodiscard]] Enum choice(const std::string& key) const {
+  [[nodiscard]] Enum choice(const Key& key) const {
     return *parse_enum<Enum>(choice(key, all_enum_names<Enum>()));
   }
   template <NamedEnum Enum>
-  [[nodiscard]] Enum choice(const std::string& key, std::initializer_list<Enum> allowed) const {
+  [[nodiscard]] Enum choice(const Key& key, std::initializer_list<Enum> allowed) const {
     std::vector<const char*> some;
     for (const EnumName<Enum>& w : enum_names<Enum>)
       if (std::find(allowed.begin(), allowed.end(), w.value) != allowed.end()) some.push_back(w.text);
     return *parse_enum<Enum>(choice(key, some));
   }
   template <NamedEnum Enum>
-  [[nodiscard]] Enum choice(const std::string& key, std::type_identity_t<Enum> fallback) const {
-    return has(key) ? choice<Enum>(key) : fallback;
+  [[nodiscard]] Enum choice(const Key& key, std::type_identity_t<Enum> fallback) const {
+    return *parse_enum<Enum>(choice(key, all_enum_names<Enum>(), to_string(fallback)));
   }
-  [[nodiscard]] Vec3 vector3(const std::string& key, Unit unit) const;
-  [[nodiscard]] Vec3 vector3(const std::string& key, Unit unit, const Vec3& fallback) const;
-  [[nodiscard]] std::vector<double> numbers(const std::string& key, Unit unit, const Range& range = Range::any()) const;
-  [[nodiscard]] std::vector<double> numbers(const std::string& key, Unit unit, const Range& range,
+  [[nodiscard]] Vec3 vector3(const Key& key, Unit unit) const;
+  [[nodiscard]] Vec3 vector3(const Key& key, Unit unit, const Vec3& fallback) const;
+  [[nodiscard]] std::vector<double> numbers(const Key& key, Unit unit, const Range& range = Range::any()) const;
+  [[nodiscard]] std::vector<double> numbers(const Key& key, Unit unit, const Range& range,
                                             const std::vector<double>& fallback) const;
-  [[nodiscard]] std::vector<std::string> texts(const std::string& key) const;
-  [[nodiscard]] std::vector<bool> flags(const std::string& key) const;
+  [[nodiscard]] std::vector<std::string> texts(const Key& key) const;
+  [[nodiscard]] std::vector<bool> flags(const Key& key) const;
 
-  [[nodiscard]] SceneTable table(const std::string& key) const;  ///< required sub-table
+  [[nodiscard]] SceneTable table(const Key& key) const;  ///< required sub-table
   /// Sub-table, or an empty one (all fallbacks hold) when absent.
-  [[nodiscard]] SceneTable table_or_empty(const std::string& key) const;
-  [[nodiscard]] std::vector<SceneTable> tables(
-      const std::string& key) const;                    ///< [[array of tables]], empty when absent
+  [[nodiscard]] SceneTable table_or_empty(const Key& key) const;
+  [[nodiscard]] std::vector<SceneTable> tables(const Key& key) const;  ///< [[array of tables]], empty when absent
   [[nodiscard]] std::vector<std::string> keys() const;  ///< names present, for tables with free names ([material.NAME])
-  [[nodiscard]] SceneTable named(const std::string& key) const;  ///< sub-table with a free name
+  [[nodiscard]] SceneTable named(const Key& key) const;  ///< sub-table with a free name
 
   /// "file:line" of a key (of the table itself when the key is absent), for messages of checks that span keys.
   [[nodiscard]] std::string where(const std::string& key) const;
@@ -219,19 +249,19 @@ std::map<std::string, std::string> flat_scene(const std::string& text, const std
 
 /// Throws InputError.
 template <int D>
-Vec<D> read_vector(const SceneTable& t, const std::string& key, Unit unit) {
+Vec<D> read_vector(const SceneTable& t, const Key& key, Unit unit) {
   if constexpr (D == 3) {
     return t.vector3(key, unit);
   } else {
     const std::vector<double> values = t.numbers(key, unit);
     if (values.size() == 2) return {{values[0], values[1]}};
-    t.add_error(key, "must have two components, as the scene has dimension = 2");
+    t.add_error(key.name, "must have two components, as the scene has dimension = 2");
     return {};
   }
 }
 template <int D>
-Vec<D> read_vector(const SceneTable& t, const std::string& key, Unit unit, const Vec<D>& fallback) {
-  return t.has(key) ? read_vector<D>(t, key, unit) : fallback;
+Vec<D> read_vector(const SceneTable& t, const Key& key, Unit unit, const Vec<D>& fallback) {
+  return t.has(key.name) ? read_vector<D>(t, key, unit) : fallback;
 }
 
 }  // namespace softgrain

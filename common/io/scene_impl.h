@@ -67,7 +67,7 @@ struct SceneTable::Impl {
   std::map<std::string, std::vector<std::shared_ptr<Impl>>> children;
 
   /// Tells who takes keys down, if anybody does.
-  void note_asked(const std::string& key, AskedKey asked) const;
+  void note_asked(const Key& key, AskedKey asked) const;
   /// The node under `key`, marked as known; null when absent.
   const toml::node* find(const std::string& key);
   /// The node under `key`, marked as known. Absence is an error that names the nearest key that is there.

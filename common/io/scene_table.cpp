@@ -156,13 +156,13 @@ bool SceneTable::is_list(const std::string& key) const {
   return node != nullptr && node->is_array();
 }
 
-SceneTable SceneTable::table(const std::string& key) const {
+SceneTable SceneTable::table(const Key& key) const {
   const bool there = impl_->value(
       [&] {
-        if (impl_->find(key) != nullptr) return true;
+        if (impl_->find(key.name) != nullptr) return true;
         if (impl_->missing) throw BadScene(impl_->document->name, {});
         throw BadScene(impl_->document->name,
-                       {{.line = impl_->line, .text = impl_->place + ": missing table [" + impl_->dotted(key) + "]"}});
+                       {{.line = impl_->line, .text = impl_->place + ": missing table [" + impl_->dotted(key.name) + "]"}});
       },
       false);
   SceneTable table = table_or_empty(key);
@@ -170,36 +170,36 @@ SceneTable SceneTable::table(const std::string& key) const {
   return table;
 }
 
-SceneTable SceneTable::table_or_empty(const std::string& key) const {
-  const toml::node* node = impl_->find(key);
+SceneTable SceneTable::table_or_empty(const Key& key) const {
+  const toml::node* node = impl_->find(key.name);
   const toml::table* table = impl_->value(
       [&] {
         if (node != nullptr && !node->is_table())
-          impl_->throw_error(key, *node, "must be a table [" + impl_->dotted(key) + "]");
+          impl_->throw_error(key.name, *node, "must be a table [" + impl_->dotted(key.name) + "]");
         return node == nullptr ? nullptr : node->as_table();
       },
       static_cast<const toml::table*>(nullptr));
   impl_->note_asked(key, {.form = KeyForm::table});
-  auto& made = impl_->children[key];
+  auto& made = impl_->children[key.name];
   if (made.empty()) {
-    made.push_back(impl_->make_child(key, table, false));
+    made.push_back(impl_->make_child(key.name, table, false));
     made.front()->missing = made.front()->replaced = node != nullptr && table == nullptr;
   }
   return SceneTable(made.front());
 }
 
-std::vector<SceneTable> SceneTable::tables(const std::string& key) const {
-  const toml::node* node = impl_->find(key);
+std::vector<SceneTable> SceneTable::tables(const Key& key) const {
+  const toml::node* node = impl_->find(key.name);
   impl_->note_asked(key, {.form = KeyForm::tables});
   if (node == nullptr) return {};
   const toml::array* array = node->as_array();
-  auto& made = impl_->children[key];
+  auto& made = impl_->children[key.name];
   const auto make = [&] {
-    const std::string problem = "must be an array of tables [[" + impl_->dotted(key) + "]]";
-    if (array == nullptr) impl_->throw_error(key, *node, problem);
+    const std::string problem = "must be an array of tables [[" + impl_->dotted(key.name) + "]]";
+    if (array == nullptr) impl_->throw_error(key.name, *node, problem);
     for (const toml::node& element : *array) {
-      if (!element.is_table()) impl_->throw_error(key, element, problem);
-      made.push_back(impl_->make_child(key, element.as_table(), true));
+      if (!element.is_table()) impl_->throw_error(key.name, element, problem);
+      made.push_back(impl_->make_child(key.name, element.as_table(), true));
       made.back()->path += "." + std::to_string(made.size() - 1);
     }
     return true;
@@ -212,12 +212,13 @@ std::vector<SceneTable> SceneTable::tables(const std::string& key) const {
 
 std::vector<std::string> SceneTable::keys() const {
   std::vector<std::string> names;
+  if (KeyRecord* const record = KeyRecord::current()) record->note_free(impl_->document->name, impl_->path);
   if (impl_->content == nullptr) return names;
   for (const auto& [key, node] : *impl_->content) names.emplace_back(key.str());
   return names;
 }
 
-SceneTable SceneTable::named(const std::string& key) const { return table(key); }
+SceneTable SceneTable::named(const Key& key) const { return table(key); }
 
 std::string SceneTable::where(const std::string& key) const {
   const toml::node* node = impl_->find(key);

@@ -22,17 +22,7 @@ constexpr double kLeast = 1e-30;
 constexpr double kMost = 1e30;
 
 /// "must be above 1", "must be from 0 to 0.5", "must be at least 0 and below 1".
-std::string describe(const Range& range) {
-  const bool low = std::isfinite(range.low);
-  const bool high = std::isfinite(range.high);
-  if (low && high && !range.low_open && !range.high_open)
-    return "must be from " + plain(range.low) + " to " + plain(range.high);
-  std::string text = "must be ";
-  if (low) text += (range.low_open ? "above " : "at least ") + plain(range.low);
-  if (low && high) text += " and ";
-  if (high) text += (range.high_open ? "below " : "at most ") + plain(range.high);
-  return text;
-}
+std::string describe(const Range& range) { return "must be " + range_text(range); }
 
 bool holds(const Range& range, double value) {
   return (range.low_open ? value > range.low : value >= range.low) &&
@@ -154,150 +144,158 @@ T value_of(Table& table, const std::string& key, Read read, const T& substitute,
       substitute, word);
 }
 
-/// The value, once who takes keys down knows of it.
-double noted(const Table& table, const std::string& key, Unit unit, const Range& range, double value) {
-  table.note_asked(key, {.form = KeyForm::number, .unit = unit, .range = range, .numbers = {value}});
+/// Takes down how a key was asked for, if anybody takes it down; the value.
+template <class T>
+T noted(const Table& table, const Key& key, AskedKey asked, const T& value) {
+  if (KeyRecord::current() != nullptr) table.note_asked(key, std::move(asked));
   return value;
 }
 
-std::int64_t noted(const Table& table, const std::string& key, std::int64_t low, std::int64_t high,
-                   std::int64_t value) {
-  table.note_asked(key, {.form = KeyForm::count,
-                         .range = Range::closed(static_cast<double>(low), static_cast<double>(high)),
-                         .numbers = {static_cast<double>(value)}});
-  return value;
+double read_number(Table& table, const Key& key, Unit unit, const Range& range, const double* fallback) {
+  const double value = value_of(
+      table, key.name, [&](const toml::node& n) { return number_of(table, key.name, n, unit, range); },
+      fallback == nullptr ? allowed_value(range) : *fallback, fallback);
+  return noted(table, key,
+               {.form = KeyForm::number, .required = !fallback, .unit = unit, .range = range, .numbers = {value}},
+               value);
 }
 
-std::string noted(const Table& table, const std::string& key, std::vector<std::string> words, std::string value) {
-  table.note_asked(key, {.form = words.empty() ? KeyForm::text : KeyForm::choice, .texts = {value}, .words = words});
-  return value;
+std::int64_t read_count(Table& table, const Key& key, std::int64_t low, std::int64_t high,
+                        const std::int64_t* fallback) {
+  const std::int64_t value = value_of(
+      table, key.name, [&](const toml::node& n) { return count_of(table, key.name, n, low, high); },
+      fallback == nullptr ? low : *fallback, fallback);
+  return noted(table, key,
+               {.form = KeyForm::count,
+                .required = !fallback,
+                .range = Range::closed(static_cast<double>(low), static_cast<double>(high)),
+                .numbers = {static_cast<double>(value)}},
+               value);
 }
 
-Vec3 noted(const Table& table, const std::string& key, Unit unit, const Vec3& value) {
-  table.note_asked(key, {.form = KeyForm::vector, .unit = unit, .numbers = {value[0], value[1], value[2]}});
-  return value;
+/// A text; one of `words` where there are any.
+std::string read_text(Table& table, const Key& key, std::span<const char* const> words, const std::string* fallback) {
+  const auto read = [&](const toml::node& n) {
+    return words.empty() ? text_of(table, key.name, n) : choice_of(table, key.name, n, words);
+  };
+  const std::string any = words.empty() ? "" : words.front();
+  const std::string value = value_of(table, key.name, read, fallback == nullptr ? any : *fallback, fallback, true);
+  return noted(table, key,
+               {.form = words.empty() ? KeyForm::text : KeyForm::choice,
+                .required = !fallback,
+                .texts = {value},
+                .words = {words.begin(), words.end()}},
+               value);
 }
 
-std::vector<double> noted(const Table& table, const std::string& key, Unit unit, const Range& range,
-                          std::vector<double> values) {
-  table.note_asked(key, {.form = KeyForm::numbers, .unit = unit, .range = range, .numbers = values});
-  return values;
+Vec3 read_vector3(Table& table, const Key& key, Unit unit, const Vec3* fallback) {
+  const Vec3 value = value_of(
+      table, key.name, [&](const toml::node& n) { return vector_of(table, key.name, n, unit); },
+      fallback == nullptr ? Vec3{} : *fallback, fallback);
+  return noted(
+      table, key,
+      {.form = KeyForm::vector, .required = !fallback, .unit = unit, .numbers = {value[0], value[1], value[2]}}, value);
+}
+
+std::vector<double> read_numbers(Table& table, const Key& key, Unit unit, const Range& range,
+                                 const std::vector<double>* fallback) {
+  const std::vector<double> values = value_of(
+      table, key.name, [&](const toml::node& n) { return numbers_of(table, key.name, n, unit, range); },
+      fallback == nullptr ? std::vector<double>() : *fallback, fallback);
+  return noted(table, key,
+               {.form = KeyForm::numbers, .required = !fallback, .unit = unit, .range = range, .numbers = values},
+               values);
+}
+
+/// A list of which `of(key, node)` reads one element.
+template <class T, class Element>
+std::vector<T> read_list(Table& table, const Key& key, Element of) {
+  const auto read = [&](const toml::node& node) {
+    std::vector<T> values;
+    for (const toml::node& element : array_of(table, key.name, node)) values.push_back(of(element));
+    return values;
+  };
+  return value_of(table, key.name, read, std::vector<T>(), nullptr, true);
 }
 
 }  // namespace
 
-double SceneTable::number(const std::string& key, Unit unit, const Range& range) const {
-  return noted(*impl_, key, unit, range,
-               value_of(
-                   *impl_, key, [&](const toml::node& n) { return number_of(*impl_, key, n, unit, range); },
-                   allowed_value(range)));
-}
-double SceneTable::number(const std::string& key, Unit unit, const Range& range, double fallback) const {
-  return noted(*impl_, key, unit, range,
-               value_of(
-                   *impl_, key, [&](const toml::node& n) { return number_of(*impl_, key, n, unit, range); }, fallback,
-                   &fallback));
-}
-
-std::int64_t SceneTable::count(const std::string& key, std::int64_t low, std::int64_t high) const {
-  return noted(*impl_, key, low, high,
-               value_of(
-                   *impl_, key, [&](const toml::node& n) { return count_of(*impl_, key, n, low, high); }, low));
-}
-std::int64_t SceneTable::count(const std::string& key, std::int64_t low, std::int64_t high,
-                               std::int64_t fallback) const {
-  return noted(
-      *impl_, key, low, high,
-      value_of(
-          *impl_, key, [&](const toml::node& n) { return count_of(*impl_, key, n, low, high); }, fallback, &fallback));
+std::string range_text(const Range& range) {
+  const bool low = std::isfinite(range.low);
+  const bool high = std::isfinite(range.high);
+  if (low && high && !range.low_open && !range.high_open)
+    return "from " + plain(range.low) + " to " + plain(range.high);
+  std::string text;
+  if (low) text += (range.low_open ? "above " : "at least ") + plain(range.low);
+  if (low && high) text += " and ";
+  if (high) text += (range.high_open ? "below " : "at most ") + plain(range.high);
+  return text;
 }
 
-bool SceneTable::flag(const std::string& key, bool fallback) const {
+double SceneTable::number(const Key& key, Unit unit, const Range& range) const {
+  return read_number(*impl_, key, unit, range, nullptr);
+}
+double SceneTable::number(const Key& key, Unit unit, const Range& range, double fallback) const {
+  return read_number(*impl_, key, unit, range, &fallback);
+}
+
+std::int64_t SceneTable::count(const Key& key, std::int64_t low, std::int64_t high) const {
+  return read_count(*impl_, key, low, high, nullptr);
+}
+std::int64_t SceneTable::count(const Key& key, std::int64_t low, std::int64_t high, std::int64_t fallback) const {
+  return read_count(*impl_, key, low, high, &fallback);
+}
+
+bool SceneTable::flag(const Key& key, bool fallback) const {
   const bool value = value_of(
-      *impl_, key, [&](const toml::node& n) { return flag_of(*impl_, key, n); }, fallback, &fallback, true);
-  impl_->note_asked(key, {.form = KeyForm::flag, .numbers = {value ? 1.0 : 0.0}});
-  return value;
+      *impl_, key.name, [&](const toml::node& n) { return flag_of(*impl_, key.name, n); }, fallback, &fallback, true);
+  return noted(*impl_, key, {.form = KeyForm::flag, .numbers = {value ? 1.0 : 0.0}}, value);
 }
 
-std::string SceneTable::text(const std::string& key) const {
-  return noted(
-      *impl_, key, std::vector<std::string>(),
-      value_of(
-          *impl_, key, [&](const toml::node& n) { return text_of(*impl_, key, n); }, std::string(), nullptr, true));
-}
-std::string SceneTable::text(const std::string& key, const std::string& fallback) const {
-  return noted(
-      *impl_, key, std::vector<std::string>(),
-      value_of(
-          *impl_, key, [&](const toml::node& n) { return text_of(*impl_, key, n); }, fallback, &fallback, true));
+std::string SceneTable::text(const Key& key) const { return read_text(*impl_, key, {}, nullptr); }
+std::string SceneTable::text(const Key& key, const std::string& fallback) const {
+  return read_text(*impl_, key, {}, &fallback);
 }
 
-std::string SceneTable::choice(const std::string& key, std::initializer_list<const char*> words) const {
-  return choice(key, std::vector<const char*>(words));
+std::string SceneTable::choice(const Key& key, std::initializer_list<const char*> words) const {
+  return read_text(*impl_, key, {words.begin(), words.size()}, nullptr);
 }
-std::string SceneTable::choice(const std::string& key, const std::vector<const char*>& words) const {
-  return noted(*impl_, key, std::vector<std::string>(words.begin(), words.end()),
-               value_of(
-                   *impl_, key, [&](const toml::node& n) { return choice_of(*impl_, key, n, words); },
-                   std::string(words.front()), nullptr, true));
+std::string SceneTable::choice(const Key& key, const std::vector<const char*>& words) const {
+  return read_text(*impl_, key, words, nullptr);
 }
-std::string SceneTable::choice(const std::string& key, std::initializer_list<const char*> words,
+std::string SceneTable::choice(const Key& key, std::initializer_list<const char*> words,
                                const std::string& fallback) const {
-  return noted(*impl_, key, std::vector<std::string>(words.begin(), words.end()),
-               value_of(
-                   *impl_, key,
-                   [&](const toml::node& n) {
-                     return choice_of(*impl_, key, n, {words.begin(), words.size()});
-                   },
-                   fallback, &fallback, true));
+  return read_text(*impl_, key, {words.begin(), words.size()}, &fallback);
+}
+std::string SceneTable::choice(const Key& key, const std::vector<const char*>& words,
+                               const std::string& fallback) const {
+  return read_text(*impl_, key, words, &fallback);
 }
 
-Vec3 SceneTable::vector3(const std::string& key, Unit unit) const {
-  return noted(*impl_, key, unit,
-               value_of(
-                   *impl_, key, [&](const toml::node& n) { return vector_of(*impl_, key, n, unit); }, Vec3{}));
-}
-Vec3 SceneTable::vector3(const std::string& key, Unit unit, const Vec3& fallback) const {
-  return noted(
-      *impl_, key, unit,
-      value_of(
-          *impl_, key, [&](const toml::node& n) { return vector_of(*impl_, key, n, unit); }, fallback, &fallback));
+Vec3 SceneTable::vector3(const Key& key, Unit unit) const { return read_vector3(*impl_, key, unit, nullptr); }
+Vec3 SceneTable::vector3(const Key& key, Unit unit, const Vec3& fallback) const {
+  return read_vector3(*impl_, key, unit, &fallback);
 }
 
-std::vector<double> SceneTable::numbers(const std::string& key, Unit unit, const Range& range) const {
-  return noted(*impl_, key, unit, range,
-               value_of(
-                   *impl_, key, [&](const toml::node& n) { return numbers_of(*impl_, key, n, unit, range); },
-                   std::vector<double>()));
+std::vector<double> SceneTable::numbers(const Key& key, Unit unit, const Range& range) const {
+  return read_numbers(*impl_, key, unit, range, nullptr);
 }
-std::vector<double> SceneTable::numbers(const std::string& key, Unit unit, const Range& range,
+std::vector<double> SceneTable::numbers(const Key& key, Unit unit, const Range& range,
                                         const std::vector<double>& fallback) const {
-  return noted(*impl_, key, unit, range,
-               value_of(
-                   *impl_, key, [&](const toml::node& n) { return numbers_of(*impl_, key, n, unit, range); }, fallback,
-                   &fallback));
+  return read_numbers(*impl_, key, unit, range, &fallback);
 }
 
-std::vector<std::string> SceneTable::texts(const std::string& key) const {
-  const auto read = [&](const toml::node& node) {
-    std::vector<std::string> values;
-    for (const toml::node& element : array_of(*impl_, key, node)) values.push_back(text_of(*impl_, key, element));
-    return values;
-  };
-  const std::vector<std::string> values = value_of(*impl_, key, read, std::vector<std::string>(), nullptr, true);
-  impl_->note_asked(key, {.form = KeyForm::texts, .texts = values});
-  return values;
+std::vector<std::string> SceneTable::texts(const Key& key) const {
+  const std::vector<std::string> values =
+      read_list<std::string>(*impl_, key, [&](const toml::node& n) { return text_of(*impl_, key.name, n); });
+  return noted(*impl_, key, {.form = KeyForm::texts, .required = true, .texts = values}, values);
 }
 
-std::vector<bool> SceneTable::flags(const std::string& key) const {
-  const auto read = [&](const toml::node& node) {
-    std::vector<bool> values;
-    for (const toml::node& element : array_of(*impl_, key, node)) values.push_back(flag_of(*impl_, key, element));
-    return values;
-  };
-  const std::vector<bool> values = value_of(*impl_, key, read, std::vector<bool>(), nullptr, true);
-  impl_->note_asked(key, {.form = KeyForm::flags, .numbers = std::vector<double>(values.begin(), values.end())});
-  return values;
+std::vector<bool> SceneTable::flags(const Key& key) const {
+  const std::vector<bool> values =
+      read_list<bool>(*impl_, key, [&](const toml::node& n) { return flag_of(*impl_, key.name, n); });
+  return noted(*impl_, key, {.form = KeyForm::flags, .required = true, .numbers = {values.begin(), values.end()}},
+               values);
 }
 
 }  // namespace softgrain

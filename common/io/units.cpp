@@ -157,6 +157,11 @@ std::string unknown_unit(std::string_view name, Unit unit) {
 
 }  // namespace
 
+std::string si_unit(Unit unit) {
+  const auto known = known_units(unit);
+  return known.empty() ? "" : std::string(known.front().name);
+}
+
 double parse_quantity(const std::string& text, Unit unit) {
   std::string_view rest = trim(text);
   if (rest.starts_with('+')) rest.remove_prefix(1);

@@ -17,6 +17,12 @@ namespace {
 
 const Range kExponents = Range::closed(-20.0, 20.0);
 
+const Key kFileKey{
+    "file", "`\"sieve-curve\"` or `\"list\"`: CSV file of the curve or of the sizes, its path relative to the scene"};
+const Key kExponentKey{"exponent",
+                       "`\"power-law\"`: b of the number density P(r) ~ r^-b; `\"fuller\"`: q of the passing volume "
+                       "(D^q - Dmin^q)/(Dmax^q - Dmin^q), above 0 to 3"};
+
 /// Shares that differ by less are the same: sums of percents that a spreadsheet rounded.
 constexpr double kRounding = 1e-9;
 
@@ -25,9 +31,10 @@ struct Ends {
   double high = 0.0;
 };
 
-Ends read_ends(const SceneTable& t) {
-  const double low = t.number("radius_min", Unit::length, Range::positive());
-  const double high = t.number("radius_max", Unit::length, Range::positive());
+/// `of`: what the radii are the ends of.
+Ends read_ends(const SceneTable& t, const std::string& of) {
+  const double low = t.number({"radius_min", "smallest radius of " + of}, Unit::length, Range::positive());
+  const double high = t.number({"radius_max", "largest radius of " + of}, Unit::length, Range::positive());
   if (!t.has_errors() && !(high > low)) t.throw_error("radius_max", "must be above radius_min");
   return {low, high};
 }
@@ -35,21 +42,26 @@ Ends read_ends(const SceneTable& t) {
 SizePiece read_class(const SceneTable& c, int dimension) {
   SizePiece p;
   if (c.has("radius")) {
-    p.low = p.high = c.number("radius", Unit::length, Range::positive());
+    p.low = p.high = c.number({"radius", "radius of a class of equal grains"}, Unit::length, Range::positive());
+    p.exponent = 1.0 + dimension;
   } else {
-    const Ends ends = read_ends(c);
+    const Ends ends = read_ends(c, "a class with a range of sizes, instead of `radius`");
     p.low = ends.low;
     p.high = ends.high;
+    p.exponent = c.number({"exponent",
+                           "b of the number density P(r) ~ r^-b in a class with a range of sizes; the default has the "
+                           "same volume in every decade"},
+                          Unit::none, kExponents, 1.0 + dimension);
   }
-  p.exponent = p.low == p.high ? 1.0 + dimension : c.number("exponent", Unit::none, kExponents, 1.0 + dimension);
-  p.volume = c.number("volume_share", Unit::none, Range{0.0, 1.0, true, false});
+  p.volume = c.number({"volume_share", "volume share of the class; all shares add up to 1"}, Unit::none,
+                      Range{0.0, 1.0, true, false});
   return p;
 }
 
 Grading read_classes(const SceneTable& t, int dimension) {
   std::vector<SizePiece> pieces;
   double sum = 0.0;
-  for (const SceneTable& c : t.tables("class")) {
+  for (const SceneTable& c : t.tables({"class", "`\"classes\"`: one class of sizes"})) {
     pieces.push_back(read_class(c, dimension));
     sum += pieces.back().volume;
   }
@@ -201,9 +213,14 @@ Grading curve_of(std::vector<SieveRow> rows, int dimension) {
 }
 
 Grading read_curve(const SceneTable& t, int dimension) {
-  if (t.has("file")) return read_sieve_curve(t.resolve(t.text("file")), dimension);
-  const std::vector<double> openings = t.numbers("openings", Unit::length, Range::positive());
-  std::vector<double> passing = t.numbers("passing", Unit::none, Range::closed(-kRounding, 1.0 + kRounding));
+  if (t.has("file")) return read_sieve_curve(t.resolve(t.text(kFileKey)), dimension);
+  const std::vector<double> openings =
+      t.numbers({"openings", "`\"sieve-curve\"` without a file: openings of the sieves (diameters)"}, Unit::length,
+                Range::positive());
+  std::vector<double> passing = t.numbers({"passing",
+                                           "`\"sieve-curve\"` without a file: shares of the volume that pass the "
+                                           "`openings`; the smallest must be 0, the largest 1"},
+                                          Unit::none, Range::closed(-kRounding, 1.0 + kRounding));
   for (double& share : passing)
     for (const double end : {0.0, 1.0})
       if (std::abs(share - end) < kRounding) share = end;
@@ -216,12 +233,14 @@ Grading read_curve(const SceneTable& t, int dimension) {
 }
 
 Grading read_list(const SceneTable& t, int dimension) {
-  if (t.has("file")) return read_radii(t.resolve(t.text("file")), dimension);
-  std::vector<double> radii = t.numbers("radii", Unit::length, Range::positive());
+  if (t.has("file")) return read_radii(t.resolve(t.text(kFileKey)), dimension);
+  std::vector<double> radii =
+      t.numbers({"radii", "`\"list\"` without a file: the sizes"}, Unit::length, Range::positive());
   if (radii.empty()) t.throw_error("radii", "at least one radius is needed");
   std::vector<double> counts;
   if (t.has("counts")) {
-    counts = t.numbers("counts", Unit::none, Range::not_negative());
+    counts = t.numbers({"counts", "`\"list\"`: number of grains of each size (weights by number)", "one of each"},
+                       Unit::none, Range::not_negative());
     if (counts.size() != radii.size())
       t.throw_error("counts", fmt::format("has {} values; radii has {}: one for each", counts.size(), radii.size()));
     if (std::ranges::none_of(counts, [](double n) { return n > 0.0; }))
@@ -268,19 +287,22 @@ Grading read_radii(const std::string& path, int dimension) {
 }
 
 Grading read_grading(const SceneTable& t, int dimension) {
-  const auto form = t.choice<GradingForm>("form");
+  const auto form = t.choice<GradingForm>({"form", "form of the size distribution"});
   if (form == GradingForm::classes) return read_classes(t, dimension);
   if (form == GradingForm::sieve_curve) return read_curve(t, dimension);
   if (form == GradingForm::list) return read_list(t, dimension);
-  const Ends ends = read_ends(t);
+  const Ends ends = read_ends(t, "`\"power-law\"`, `\"fuller\"` and `\"log-normal\"`");
   if (form == GradingForm::log_normal)
-    return Grading::log_normal(t.number("radius_median", Unit::length, Range::positive()),
-                               t.number("geometric_deviation", Unit::none, Range{1.0, 20.0, true, false}), ends.low,
-                               ends.high, dimension);
+    return Grading::log_normal(
+        t.number({"radius_median", "`\"log-normal\"`: half of the volume is in smaller grains"}, Unit::length,
+                 Range::positive()),
+        t.number({"geometric_deviation", "`\"log-normal\"`: exp of the standard deviation of ln r"}, Unit::none,
+                 Range{1.0, 20.0, true, false}),
+        ends.low, ends.high, dimension);
   if (form == GradingForm::fuller)
-    return Grading::fuller(t.number("exponent", Unit::none, Range{0.0, 3.0, true, false}), ends.low, ends.high,
+    return Grading::fuller(t.number(kExponentKey, Unit::none, Range{0.0, 3.0, true, false}), ends.low, ends.high,
                            dimension);
-  return Grading::power_law(t.number("exponent", Unit::none, kExponents), ends.low, ends.high, dimension);
+  return Grading::power_law(t.number(kExponentKey, Unit::none, kExponents), ends.low, ends.high, dimension);
 }
 
 Grading stored_grading(const std::string& text, int dimension) {
@@ -291,11 +313,11 @@ Grading stored_grading(const std::string& text, int dimension) {
   }
 }
 
-std::optional<Grading> read_sizes(const SceneTable& t, const std::string& key,
-                                  std::initializer_list<const char*> instead, int dimension) {
-  if (!t.has(key)) return std::nullopt;
+std::optional<Grading> read_sizes(const SceneTable& t, const Key& key, std::initializer_list<const char*> instead,
+                                  int dimension) {
+  if (!t.has(key.name)) return std::nullopt;
   for (const char* other : instead)
-    if (t.has(other)) t.add_error(other, "goes without " + key + ", which says all sizes");
+    if (t.has(other)) t.add_error(other, "goes without " + key.name + ", which says all sizes");
   const SceneTable sizes = t.table(key);
   std::optional<Grading> out;
   sizes.section([&] { out = read_grading(sizes, dimension); });

@@ -21,7 +21,7 @@ Grading stored_grading(const std::string& text, int dimension = 3);
 
 /// The table `key` of `table`, if there is one; keys that say the same another way are refused beside it. Within
 /// Scene::read mistakes are noted, and none comes back.
-std::optional<Grading> read_sizes(const SceneTable& table, const std::string& key,
+std::optional<Grading> read_sizes(const SceneTable& table, const Key& key,
                                   std::initializer_list<const char*> instead, int dimension = 3);
 
 /// A sieve analysis as CSV: columns "opening [mm]" (diameter; also sieve, size, diameter) and "passing [%]" of mass

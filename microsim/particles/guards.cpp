@@ -87,8 +87,12 @@ GuardRecord read_record(const h5::Group& g, const std::string& name) {
 
 namespace {
 
+const Key kActionKey{"action",
+                     "`\"count\"`: a remark in the summary; `\"stop\"`: the run ends in its present state, "
+                     "marked not usable, exit status 3"};
+
 /// Reads as many components as the scene has dimensions; the others are zero and never looked at.
-Vec3 read_corner(const SceneTable& t, const std::string& key, int dimension) {
+Vec3 read_corner(const SceneTable& t, const Key& key, int dimension) {
   return dimension == 3 ? t.vector3(key, Unit::length) : in_space<2>(read_vector<2>(t, key, Unit::length));
 }
 
@@ -107,24 +111,34 @@ void refuse_idle(const SceneTable& t, const GuardRule& rule, std::initializer_li
 
 GuardSpec read_guards(const SceneTable& t, int dimension) {
   GuardSpec out;
-  const SceneTable overlap = t.table_or_empty("overlap");
-  out.overlap.limit = overlap.number("limit", Unit::none, Range::positive(), out.overlap.limit);
-  out.overlap.action = overlap.choice<GuardAction>("action", out.overlap.action);
+  const SceneTable overlap = t.table_or_empty({"overlap", "guard of deep overlaps"});
+  out.overlap.limit = overlap.number({"limit", "largest overlap over the smaller radius"}, Unit::none,
+                                     Range::positive(), out.overlap.limit);
+  out.overlap.action = overlap.choice<GuardAction>(kActionKey, out.overlap.action);
   refuse_idle(overlap, out.overlap, {"limit"});
-  const SceneTable energy = t.table_or_empty("energy");
-  out.energy.limit = energy.number("limit", Unit::none, Range::positive(), out.energy.limit);
-  out.energy.action = energy.choice<GuardAction>("action", out.energy.action);
+  const SceneTable energy = t.table_or_empty({"energy", "guard of the energy of scenes that nothing drives"});
+  out.energy.limit = energy.number(
+      {"limit",
+       "scenes that nothing drives: kinetic, stored and potential energy above its smallest value so far, "
+       "over the largest kinetic plus stored energy"},
+      Unit::none, Range::positive(), out.energy.limit);
+  out.energy.action = energy.choice<GuardAction>(kActionKey, out.energy.action);
   refuse_idle(energy, out.energy, {"limit"});
-  const SceneTable escape = t.table_or_empty("escape");
-  if (escape.has("low")) out.low = read_corner(escape, "low", dimension);
-  if (escape.has("high")) out.high = read_corner(escape, "high", dimension);
+  const SceneTable escape = t.table_or_empty(
+      {"escape", "guard of particles that leave: centres behind a plane, or outside the box from `low` to `high`"});
+  if (escape.has("low"))
+    out.low = read_corner(escape, {"low", "lower corner of the box that no centre may leave", "no box"}, dimension);
+  if (escape.has("high"))
+    out.high = read_corner(escape, {"high", "upper corner of the box that no centre may leave", "no box"}, dimension);
   for (int k = 0; out.low && out.high && k < dimension; ++k)
     if (!((*out.low)[k] < (*out.high)[k])) escape.add_error("high", "must be above low along every axis");
-  out.escape.action = escape.choice<GuardAction>("action", out.escape.action);
+  out.escape.action = escape.choice<GuardAction>(kActionKey, out.escape.action);
   refuse_idle(escape, out.escape, {"low", "high"});
-  const SceneTable wall = t.table_or_empty("wall");
-  out.wall_travel.limit = wall.number("travel", Unit::length, Range::positive(), 0.0);
-  out.wall_travel.action = wall.choice<GuardAction>("action", out.wall_travel.action);
+  const SceneTable wall = t.table_or_empty({"wall", "guard of planes with a load that run away"});
+  out.wall_travel.limit = wall.number({"travel", "largest distance that a plane with a load may have moved",
+                                       "twice the distance through all particles"},
+                                      Unit::length, Range::positive(), 0.0);
+  out.wall_travel.action = wall.choice<GuardAction>(kActionKey, out.wall_travel.action);
   refuse_idle(wall, out.wall_travel, {"travel"});
   return out;
 }

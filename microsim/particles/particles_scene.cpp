@@ -128,13 +128,15 @@ void require_resolved(const Scene& scene, const System<D>& s) {
 
 template <int D>
 void read_output(const SceneTable& t, ParticlesSceneOf<D>& out) {
-  out.record = t.flag("record", true);
+  out.record = t.flag({"record", "false: no trajectory is written"}, true);
   if (!out.record && t.has("snapshots"))
     t.add_error("snapshots", "cannot be combined with record = false, which records nothing");
-  out.snapshots = t.count("snapshots", 0, 1'000'000, default_snapshots(out.system.particles.grains));
+  out.snapshots = t.count({"snapshots", "number of frames that keep their contacts, evenly spread, the last included",
+                           "100; above 2000 particles 200,000 over their number, at least 1"},
+                          0, 1'000'000, default_snapshots(out.system.particles.grains));
   if (!t.has("every")) return;
   if (!out.record) t.add_error("every", "cannot be combined with record = false, which records nothing");
-  const double every = t.number("every", Unit::time, Range::positive());
+  const double every = t.number({"every", "time between frames", "start and end"}, Unit::time, Range::positive());
   if (!(out.time.step > 0.0)) return;  // nothing is known of the time
   const double steps = std::round(every / out.time.step);
   if (steps >= static_cast<double>(out.time.steps)) return;
@@ -148,13 +150,17 @@ void read_output(const SceneTable& t, ParticlesSceneOf<D>& out) {
 
 template <int D>
 void read_checkpoint(const SceneTable& t, ParticlesSceneOf<D>& out) {
-  out.checkpoint_steps = t.count("every_steps", 0, std::int64_t{1} << 53, out.checkpoint_steps);
-  out.checkpoint_seconds = t.number("every_seconds", Unit::time, Range::positive(), out.checkpoint_seconds);
+  out.checkpoint_steps = t.count({"every_steps", "steps between checkpoints; 0: by time alone"}, 0,
+                                 std::int64_t{1} << 53, out.checkpoint_steps);
+  out.checkpoint_seconds = t.number({"every_seconds", "wall time between checkpoints"}, Unit::time, Range::positive(),
+                                    out.checkpoint_seconds);
 }
 
 }  // namespace
 
-int particles_dimension(const Scene& scene) { return static_cast<int>(scene.root().count("dimension", 2, 3, 3)); }
+int particles_dimension(const Scene& scene) {
+  return static_cast<int>(scene.root().count({"dimension", "3: spheres; 2: disks"}, 2, 3, 3));
+}
 
 namespace {
 
@@ -175,19 +181,21 @@ template <int D>
 ParticlesSceneOf<D> read_particles_scene(const Scene& scene, const std::optional<std::uint64_t>& seed) {
   if (particles_dimension(scene) != D) throw std::logic_error("a scene of another number of dimensions");
   return scene.read([&](const SceneTable& root) {
-    (void)root.choice("kind", {"particles"});
+    (void)root.choice(kKindKey, {"particles"});
     ParticlesSceneOf<D> out;
-    out.title = root.text("title", "");
+    out.title = root.text(kTitleKey, "");
     out.text = scene.text();
     System<D>& s = out.system;
-    s.gravity = read_vector<D>(root, "gravity", Unit::acceleration, {});
+    s.gravity = read_vector<D>(root, {"gravity", "acceleration vector"}, Unit::acceleration, {});
     s.materials = read_materials(root, D);
     SceneLaws laws = read_contacts(scene, s.materials, D);
     s.laws = laws.laws;
     out.law_files = std::move(laws.files);
     out.remarks = laws.remarks;
     SceneBodies<D> bodies = read_bodies<D>(scene, s.materials, seed);
-    root.table_or_empty("cell").section([&] { s.cell = read_cell(root, bodies); });
+    root.table_or_empty({"cell", "box with edges, periodic along some or all axes"}).section([&] {
+      s.cell = read_cell(root, bodies);
+    });
     s.particles = std::move(bodies.particles);
     if (bodies.sizes) out.law_files += bodies.sizes->text();
     out.sizes = std::move(bodies.sizes);
@@ -195,11 +203,11 @@ ParticlesSceneOf<D> read_particles_scene(const Scene& scene, const std::optional
     out.seed = bodies.seed;
     out.wall_name = std::move(bodies.wall_name);
     if (!root.has_errors()) root.check([&] { validate_combination(scene, s, laws); });
-    const SceneTable time = root.table("time");
+    const SceneTable time = root.table({"time", "simulated time and time step"});
     time.section([&] { out.time = read_time(time, s, laws.description, !root.has_errors()); });
-    read_output(root.table_or_empty("output"), out);
-    read_checkpoint(root.table_or_empty("checkpoint"), out);
-    out.guards = read_guards(root.table_or_empty("guards"), D);
+    read_output(root.table_or_empty({"output", "what is recorded of the run"}), out);
+    read_checkpoint(root.table_or_empty({"checkpoint", "how often the state is saved for `--resume`"}), out);
+    out.guards = read_guards(root.table_or_empty({"guards", "checks of the running simulation"}), D);
     if (!root.has_errors())
       root.check([&] {
         for (std::string& r : place_remarks(bodies, s, out.wall_name, out.guards, root.has("cell")))

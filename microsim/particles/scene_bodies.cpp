@@ -37,10 +37,11 @@ NewBody<3> solid_grain(const Vec3& x, double r, double density, std::int32_t mat
 /// About the axis out of the plane in two dimensions.
 template <int D>
 Rot<D> read_spin(const SceneTable& t) {
+  const Key key{"spin", "initial angular velocity; that of a disk is a number"};
   if constexpr (D == 3)
-    return t.vector3("spin", Unit::angular_velocity, {});
+    return t.vector3(key, Unit::angular_velocity, {});
   else
-    return {{t.number("spin", Unit::angular_velocity, Range::any(), 0.0)}};
+    return {{t.number(key, Unit::angular_velocity, Range::any(), 0.0)}};
 }
 
 template <int D>
@@ -72,7 +73,10 @@ void note_outside(Builder<D>& b) {
 template <int D>
 std::ptrdiff_t chosen_wall(const Builder<D>& b, const SceneTable& t, const Vec<D>& x) {
   if (!t.has("inside")) return wall_around(b, x);
-  const std::string name = t.text("inside");
+  const std::string name =
+      t.text({"inside",
+              "name of the sphere wall around the particle; `\"none\"`: outside all spheres, without the usual warning",
+              "the first sphere that contains its centre"});
   if (name == "none" || !b.valid) return -1;
   const auto found = std::find_if(b.walls.begin(), b.walls.end(), [&](const auto& w) { return w.name == name; });
   if (found == b.walls.end()) t.throw_error("inside", "no wall of this name");
@@ -83,16 +87,19 @@ std::ptrdiff_t chosen_wall(const Builder<D>& b, const SceneTable& t, const Vec<D
 
 template <int D>
 void add_table(Builder<D>& b, const SceneTable& t) {
-  const std::int32_t material = material_index(b.materials, t, "material");
-  const double r = t.number("radius", Unit::length, Range::positive());
-  NewBody<D> body = solid_grain(read_vector<D>(t, "position", Unit::length), r, density_of(b, t, material), material);
-  body.velocity = read_vector<D>(t, "velocity", Unit::velocity, {});
+  const std::int32_t material = material_index(b.materials, t, {"material", "material of the particle"});
+  const double r = t.number({"radius", "radius of the particle"}, Unit::length, Range::positive());
+  NewBody<D> body = solid_grain(read_vector<D>(t, {"position", "centre of the particle"}, Unit::length), r,
+                                density_of(b, t, material), material);
+  body.velocity = read_vector<D>(t, {"velocity", "initial velocity", "0"}, Unit::velocity, {});
   body.spin = read_spin<D>(t);
   b.grains.push_back(body);
   b.wall_of.push_back(chosen_wall(b, t, body.x));
   if (!t.has("inside")) note_outside(b);
   b.out.where.push_back(t.where("position"));
 }
+
+const Key kMaterialOfManyKey{"material", "material of all particles of `file` or `count`"};
 
 /// A file has three coordinates always; disks lie in z = 0.
 template <int D>
@@ -110,8 +117,9 @@ template <int D>
 void add_file(Builder<D>& b, const SceneTable& t) {
   if (!t.has("file")) return;
   if (t.has("sizes")) t.throw_error("file", "goes without sizes, which says all sizes");
-  b.out.many_file = b.scene.resolve(t.text("file"));
-  const std::int32_t material = material_index(b.materials, t, "material");
+  b.out.many_file = b.scene.resolve(
+      t.text({"file", "many particles: `N Lx Ly Lz`, then N lines `x y z r`; plain text or gzip; disks have z = 0"}));
+  const std::int32_t material = material_index(b.materials, t, kMaterialOfManyKey);
   const double density = density_of(b, t, material);
   if (t.has_errors()) return;
   const XyzrFile file = read_xyzr(b.out.many_file, [&](std::int64_t n) {
@@ -136,7 +144,7 @@ void add_drawn(Builder<D>& b, const SceneTable& root, const SceneTable& t, const
     if (seed) throw InputError("--seed: " + nothing);
     return;
   }
-  const std::int32_t material = material_index(b.materials, t, "material");
+  const std::int32_t material = material_index(b.materials, t, kMaterialOfManyKey);
   const double density = density_of(b, t, material);
   DrawnParticles<D> drawn = read_drawn<D>(root, t, b.walls, b.grains, seed);
   for (std::size_t k = 0; k < drawn.position.size(); ++k) {
@@ -246,8 +254,8 @@ void place_all(Builder<D>& b) {
 
 template <int D>
 void read_grains(Builder<D>& b, const SceneTable& root, const std::optional<std::uint64_t>& seed) {
-  for (const SceneTable& t : root.tables("particle")) t.section([&] { add_table(b, t); });
-  const SceneTable many = root.table_or_empty("particles");
+  for (const SceneTable& t : root.tables({"particle", "one particle"})) t.section([&] { add_table(b, t); });
+  const SceneTable many = root.table_or_empty({"particles", "many particles, from a file or placed at random"});
   many.section([&] { add_file(b, many); });
   many.section([&] { add_drawn(b, root, many, seed); });
   if (!root.has_errors()) root.check([&] { place_all(b); });

@@ -17,18 +17,20 @@ namespace {
 Material read_material(const SceneTable& t, const std::string& name, int dimension) {
   Material m;
   m.name = name;
-  m.rigid = t.flag("rigid", false);
+  m.rigid = t.flag({"rigid", "the material does not deform in contacts; a material `\"rigid\"` always exists"}, false);
   if (dimension == 2 && t.is_text("density"))
     t.add_error("density", "disks have a mass over their area: a number, kg/m^2");
-  m.density = t.number("density", dimension == 3 ? Unit::density : Unit::none, Range::positive(), 0.0);
+  m.density = t.number({"density", "density of particles of this material; of disks mass over area (a number, kg/m^2)",
+                        "- for particles"},
+                       dimension == 3 ? Unit::density : Unit::none, Range::positive(), 0.0);
   if (m.rigid) {
     for (const char* key : {"E", "nu"})
       if (t.has(key)) t.add_error(key, "a rigid material has none");
     return m;
   }
   if (!t.has("E") && !t.has("nu")) return m;  // enough for laws that need no elasticity
-  m.youngs_modulus = t.number("E", Unit::pressure, Range::positive());
-  m.poisson_ratio = t.number("nu", Unit::none, kPoissonRange);
+  m.youngs_modulus = t.number({"E", "Young's modulus; needed by `hertz-tsuji`"}, Unit::pressure, Range::positive());
+  m.poisson_ratio = t.number({"nu", "Poisson's ratio; needed by `hertz-tsuji`"}, Unit::none, kPoissonRange);
   return m;
 }
 
@@ -36,10 +38,11 @@ Material read_material(const SceneTable& t, const std::string& name, int dimensi
 
 std::vector<Material> read_materials(const SceneTable& root, int dimension) {
   std::vector<Material> out;
-  const SceneTable tables = root.table_or_empty("material");
+  const SceneTable tables =
+      root.table_or_empty({"material", "materials of particles and walls, a table with a free name each"});
   for (const std::string& name : tables.keys()) {
     if (name == "rigid") tables.add_error(name, "this name is taken by the rigid material that is always there");
-    out.push_back(read_material(tables.named(name), name, dimension));
+    out.push_back(read_material(tables.named({name, "properties of the material of this name"}), name, dimension));
   }
   if (out.empty() && root.has_errors()) root.throw_error("material", "without any, nothing else can be read");
   Material rigid;
@@ -49,7 +52,7 @@ std::vector<Material> read_materials(const SceneTable& root, int dimension) {
   return out;
 }
 
-std::int32_t material_index(const std::vector<Material>& materials, const SceneTable& table, const std::string& key) {
+std::int32_t material_index(const std::vector<Material>& materials, const SceneTable& table, const Key& key) {
   const std::string name = table.text(key);
   std::vector<std::string> known;
   for (const Material& m : materials) {
@@ -57,13 +60,13 @@ std::int32_t material_index(const std::vector<Material>& materials, const SceneT
     known.push_back(m.name);
   }
   const std::string near = nearest_word(name, known);
-  table.throw_error(key, "no such material" + (near.empty() ? "" : "; nearest is '" + near + "'"));
+  table.throw_error(key.name, "no such material" + (near.empty() ? "" : "; nearest is '" + near + "'"));
 }
 
 namespace {
 
 PairOfMaterials read_pair(const SceneTable& t, const std::vector<Material>& materials) {
-  const std::vector<std::string> names = t.texts("pair");
+  const std::vector<std::string> names = t.texts({"pair", "names of two materials"});
   if (names.size() != 2) t.throw_error("pair", "must name two materials");
   std::vector<std::string> known;
   for (const Material& m : materials) known.push_back(m.name);
@@ -79,13 +82,28 @@ PairOfMaterials read_pair(const SceneTable& t, const std::vector<Material>& mate
   return {index[0], index[1], names[0] + " and " + names[1]};
 }
 
-double read_friction(const SceneTable& t) { return t.number("mu", Unit::none, Range::not_negative()); }
-double read_restitution(const SceneTable& t) { return t.number("restitution", Unit::none, Range::closed(0.0, 1.0)); }
+const Key kTangentialStiffnessKey{"tangential_stiffness",
+                                  "`linear-spring`, `cohesive`: tangential stiffness (K_T); needed with friction only"};
+
+double read_friction(const SceneTable& t) {
+  return t.number({"mu", "friction coefficient", "-; law table: as measured"}, Unit::none, Range::not_negative());
+}
+double read_restitution(const SceneTable& t) {
+  return t.number({"restitution", "`hertz-tsuji`, `linear-spring`: coefficient of restitution"}, Unit::none,
+                  Range::closed(0.0, 1.0));
+}
+double read_normal_stiffness(const SceneTable& t) {
+  return t.number({"normal_stiffness", "`linear-spring`, `cohesive`: normal stiffness (K_N)"}, Unit::stiffness,
+                  Range::positive());
+}
 
 AnyLaw read_hertz(const SceneTable& t, const Material& a, const Material& b) {
   const double friction = read_friction(t);
   const double restitution = read_restitution(t);
-  const bool rescaled = t.choice("tangential", {"mindlin", "rescaled"}, "mindlin") == "rescaled";
+  const bool rescaled =
+      t.choice({"tangential",
+                "`hertz-tsuji`: `\"mindlin\"` is the total form, as published; `\"rescaled\"` never creates energy"},
+               {"mindlin", "rescaled"}, "mindlin") == "rescaled";
   for (const Material* m : {&a, &b})
     if (!m->rigid && !(m->youngs_modulus > 0.0))
       t.throw_error("pair", "the law needs E and nu of material '" + m->name + "'");
@@ -98,17 +116,17 @@ AnyLaw read_linear(const SceneTable& t) {
   LinearSpring law;
   law.friction = read_friction(t);
   law.damping = LinearSpring::zeta(read_restitution(t));
-  law.normal = t.number("normal_stiffness", Unit::stiffness, Range::positive());
+  law.normal = read_normal_stiffness(t);
   if (law.friction > 0.0 || t.has("tangential_stiffness"))  // of no friction it may be left out: it has no effect
-    law.tangential = t.number("tangential_stiffness", Unit::stiffness, Range::not_negative());
+    law.tangential = t.number(kTangentialStiffnessKey, Unit::stiffness, Range::not_negative());
   if (law.friction > 0.0 && law.tangential == 0.0) t.add_error("tangential_stiffness", "must be above 0 when mu is");
   return law;
 }
 
 /// A key that means nothing unless something else is above 0 (or there): needed then, refused otherwise.
-double read_when(const SceneTable& t, const std::string& key, Unit unit, bool used, const char* without) {
+double read_when(const SceneTable& t, const Key& key, Unit unit, bool used, const char* without) {
   if (used) return t.number(key, unit, Range::positive());
-  if (t.has(key)) t.add_error(key, without);
+  if (t.has(key.name)) t.add_error(key.name, without);
   return 0.0;
 }
 
@@ -116,15 +134,23 @@ template <bool kFriction, bool kRolling>
 AnyLaw read_cohesive(const SceneTable& t, double friction) {
   CohesiveDisk<kFriction, kRolling> law;
   law.friction = friction;
-  law.normal = t.number("normal_stiffness", Unit::stiffness, Range::positive());
+  law.normal = read_normal_stiffness(t);
   law.tangential =
-      read_when(t, "tangential_stiffness", Unit::stiffness, kFriction, "has no effect without friction (mu = 0)");
-  law.damping = t.number("zeta", Unit::none, Range::not_negative());
-  law.adhesion = t.number("adhesion", Unit::force, Range::not_negative());
-  law.range = read_when(t, "range", Unit::length, law.adhesion > 0.0, "has no effect without adhesion");
-  law.rolling = read_when(t, "rolling_stiffness", Unit::none, kRolling, "");
-  law.rolling_limit = read_when(t, "rolling_limit", Unit::length, kRolling,
-                                "is the limit of a resistance to rolling: give rolling_stiffness too");
+      read_when(t, kTangentialStiffnessKey, Unit::stiffness, kFriction, "has no effect without friction (mu = 0)");
+  law.damping = t.number({"zeta", "`cohesive`: damping in contact, as a fraction of critical damping"}, Unit::none,
+                         Range::not_negative());
+  law.adhesion = t.number({"adhesion", "`cohesive`: adhesion force F0"}, Unit::force, Range::not_negative());
+  law.range = read_when(t,
+                        {"range",
+                         "`cohesive`: range D0 of the attraction, with adhesion only; law table: `\"reject\"` "
+                         "(default) or `\"clamp\"` for solid fractions that were not measured"},
+                        Unit::length, law.adhesion > 0.0, "has no effect without adhesion");
+  law.rolling =
+      read_when(t, {"rolling_stiffness", "`cohesive`: K_r [N m] of a rolling resistance, which needs friction"},
+                Unit::none, kRolling, "");
+  law.rolling_limit =
+      read_when(t, {"rolling_limit", "`cohesive`: limit mu_r of the rolling resistance; goes with `rolling_stiffness`"},
+                Unit::length, kRolling, "is the limit of a resistance to rolling: give rolling_stiffness too");
   return law;
 }
 
@@ -153,7 +179,10 @@ void read_contact(const SceneTable& t, const std::vector<Material>& materials, i
     t.throw_error("pair", "has a law already: " + out.description[static_cast<std::size_t>(before)]);
   if (out.laws.size() + 2 > static_cast<std::int32_t>(LawSet::kMostLaws))
     t.throw_error("pair", "more than 64 laws in one scene");
-  const std::string law = t.choice("law", {"hertz-tsuji", "linear-spring", "cohesive", "law-card"});
+  const std::string law = t.choice(
+      {"law",
+       "law of the contact; `\"law-card\"`: law card or law table; for disks `\"linear-spring\"` or `\"cohesive\"`"},
+      {"hertz-tsuji", "linear-spring", "cohesive", "law-card"});
   require_dimension(t, law, dimension);
   const Material& a = materials[static_cast<std::size_t>(pair.first)];
   const Material& b = materials[static_cast<std::size_t>(pair.second)];
@@ -196,7 +225,9 @@ SceneLaws read_contacts(const Scene& scene, const std::vector<Material>& materia
   out.laws = LawSet(static_cast<std::int32_t>(materials.size()));
   SoftLawReader soft(scene, materials, out);
   const SceneTable root = scene.root();
-  for (const SceneTable& t : root.tables("contact"))
+  for (const SceneTable& t : root.tables(
+           {"contact",
+            "contact law of a pair of materials; one per pair that can touch, there are no default mixing rules"}))
     t.section([&] { read_contact(t, materials, dimension, soft, out); });
   if (!root.has_errors()) soft.require_whole();
   if (!root.has_errors()) remark_on_idle_elasticity(root, out);

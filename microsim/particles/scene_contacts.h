@@ -16,7 +16,7 @@ namespace softgrain {
 std::vector<Material> read_materials(const SceneTable& root, int dimension);
 
 /// Index of the material that `key` of `table` names; throws InputError with the nearest name.
-std::int32_t material_index(const std::vector<Material>& materials, const SceneTable& table, const std::string& key);
+std::int32_t material_index(const std::vector<Material>& materials, const SceneTable& table, const Key& key);
 
 /// What a law may meet: what it says of the other body holds for grains or walls alone.
 enum class LawScope { any, grains, walls };

@@ -36,8 +36,14 @@ template <int D>
 Region<D> read_region(const SceneTable& root, const SceneTable& t) {
   Region<D> region;
   if (t.has("low") || t.has("high") || !root.has("cell") || root.table("cell").is_text("size")) {
-    region.low = read_vector<D>(t, "low", Unit::length);
-    region.high = read_vector<D>(t, "high", Unit::length);
+    region.low = read_vector<D>(t,
+                                {"low",
+                                 "lower corner of the box for random places instead of the cell; periodic axes of the "
+                                 "cell then count as closed",
+                                 "the cell"},
+                                Unit::length);
+    region.high = read_vector<D>(
+        t, {"high", "upper corner of the box for random places instead of the cell", "the cell"}, Unit::length);
   } else {
     const SceneTable cell = root.table("cell");
     region.high = read_vector<D>(cell, "size", Unit::length);
@@ -185,7 +191,12 @@ void place(const SceneTable& t, const Region<D>& region, const std::vector<Scene
 std::uint64_t read_seed(const SceneTable& root, const SceneTable& t) {
   constexpr std::int64_t kMost = 1'000'000'000'000;
   if (root.has("seed") && t.has("seed")) t.add_error("seed", "is given at the top level too: leave one of them out");
-  return static_cast<std::uint64_t>(root.count("seed", 0, kMost, t.count("seed", 0, kMost, 1)));
+  return static_cast<std::uint64_t>(root.count(kSeedKey, 0, kMost,
+                                               t.count({"seed",
+                                                        "seed of the random places, better given at the top level as "
+                                                        "in other scenes; `--seed` has priority; refused where "
+                                                        "nothing is random"},
+                                                       0, kMost, 1)));
 }
 
 }  // namespace
@@ -194,10 +205,12 @@ template <int D>
 DrawnParticles<D> read_drawn(const SceneTable& root, const SceneTable& t, const std::vector<SceneWall<D>>& walls,
                              const std::vector<NewBody<D>>& others, const std::optional<std::uint64_t>& seed) {
   DrawnParticles<D> out;
-  const std::int64_t count = t.count("count", 1, 10000000);
+  const std::int64_t count = t.count(
+      {"count", "instead of a file: this many particles of `sizes`, placed at random without overlap, largest first"},
+      1, 10000000);
   out.seed = seed.value_or(read_seed(root, t));
   if (!t.has("sizes")) (void)t.table("sizes");  // says that it is missing
-  out.sizes = read_sizes(t, "sizes", {}, D);
+  out.sizes = read_sizes(t, {"sizes", "size distribution of the particles of `count`"}, {}, D);
   const Region<D> region = read_region<D>(root, t);
   if (!out.sizes || t.has_errors() || root.has_errors()) return out;
   if (const std::string problem = memory_problem(count, available_memory()); !problem.empty())

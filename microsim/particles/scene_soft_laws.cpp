@@ -1,6 +1,7 @@
 #include "microsim/particles/scene_soft_laws.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <sstream>
 
@@ -12,6 +13,7 @@
 #include "common/data/law_card.h"
 #include "common/data/law_remarks.h"
 #include "common/data/multi_contact_law.h"
+#include "common/io/key_record.h"
 #include "common/io/text_file.h"
 #include "microsim/particles/scene_contacts.h"
 
@@ -19,20 +21,47 @@ namespace softgrain {
 
 namespace {
 
+const Key kPairKindKey{"kind", "`law-card`: what meets; `\"soft-wall\"` with a law table only"};
+
 /// Young's modulus that the law is scaled with.
-double read_modulus(const SceneTable& t) { return t.number("E", Unit::pressure, Range::positive()); }
+double read_modulus(const SceneTable& t) {
+  return t.number({"E", "`law-card`: Young's modulus that scales the law"}, Unit::pressure, Range::positive());
+}
+
+/// What a scene says of a contact that a law card gives the law for.
+struct CardChoices {
+  double modulus = 0.0;
+  double friction = 0.0;
+  double damping = 0.0;
+  bool secant = false;
+  std::optional<Extrapolation> beyond{};
+};
+
+CardChoices read_card_choices(const SceneTable& t) {
+  CardChoices c;
+  c.modulus = read_modulus(t);
+  c.friction = t.number("mu", Unit::none, Range::not_negative());
+  c.damping = t.number({"damping", "law card: damping as a fraction of critical"}, Unit::none, Range::closed(0.0, 1.0));
+  c.secant = t.choice<TangentialSlope>({"kt", "law card: slope that gives the tangential stiffness"}) ==
+             TangentialSlope::secant;
+  c.beyond = read_beyond(t);
+  return c;
+}
 
 SoftContact card_law(const SceneTable& t, const LawCard& card, PairKind kind) {
-  const double modulus = read_modulus(t);
-  const double friction = t.number("mu", Unit::none, Range::not_negative());
-  const double damping = t.number("damping", Unit::none, Range::closed(0.0, 1.0));
-  const bool secant = t.choice<TangentialSlope>("kt") == TangentialSlope::secant;
-  const std::optional<Extrapolation> beyond = read_beyond(t);
+  const CardChoices c = read_card_choices(t);
   try {
-    return make_soft_contact(card, kind, modulus, friction, damping, secant, beyond);
+    return make_soft_contact(card, kind, c.modulus, c.friction, c.damping, c.secant, c.beyond);
   } catch (const Error& e) {
     t.throw_error("file", e.what());
   }
+}
+
+double read_solid_fraction(const SceneTable& t) {
+  return t.number(
+      {"solid_fraction", "law table: solid fraction of the grains inside a soft particle; it selects the law",
+       "that of a table with one entry"},
+      Unit::none, Range{0.0, 1.0, true, false});
 }
 
 LawTableEntry read_entry(const SceneTable& t, const LawTable& table, std::string& remark) {
@@ -45,7 +74,7 @@ LawTableEntry read_entry(const SceneTable& t, const LawTable& table, std::string
          << ": say which by solid_fraction, that of the grains inside a soft particle";
     t.throw_error("file", text.str());
   }
-  const double fraction = t.number("solid_fraction", Unit::none, Range{0.0, 1.0, true, false});
+  const double fraction = read_solid_fraction(t);
   try {
     return entry_at(table, fraction, range, remark, kReachOfNumbers);
   } catch (const Error& e) {
@@ -53,14 +82,18 @@ LawTableEntry read_entry(const SceneTable& t, const LawTable& table, std::string
   }
 }
 
-MultiContactChoices read_choices(const SceneTable& t, const LawTableEntry& entry) {
+/// `best`: the form that the table names so.
+MultiContactChoices read_choices(const SceneTable& t, LawForm best) {
   MultiContactChoices choices;
-  choices.form =
-      parse_enum<LawForm>(t.choice("form", {"pair", "isotropic", "directional", "best"}, "best")).value_or(entry.best);
+  choices.form = parse_enum<LawForm>(t.choice({"form",
+                                               "law table: how the contacts of a particle influence each other; "
+                                               "`\"best\"`: form that the table names as best"},
+                                              {"pair", "isotropic", "directional", "best"}, "best"))
+                     .value_or(best);
   choices.modulus = read_modulus(t);
   if (t.has("mu")) choices.friction = t.number("mu", Unit::none, Range::not_negative());
-  choices.unloading = t.flag("unloading", false);
-  choices.rolling = t.flag("rolling", true);
+  choices.unloading = t.flag({"unloading", "law table: use the measured unloading branch"}, false);
+  choices.rolling = t.flag({"rolling", "law table: use the rolling resistance, if measured"}, true);
   choices.beyond = read_beyond(t);
   return choices;
 }
@@ -78,7 +111,8 @@ std::string choice_text(const std::string& path, const LawTableEntry& entry, con
 }  // namespace
 
 void SoftLawReader::read(const SceneTable& t, const PairOfMaterials& pair) {
-  const std::string path = scene_.resolve(t.text("file"));
+  const std::string path = scene_.resolve(t.text({"file", "`law-card`: law card or law table"}));
+  if (KeyRecord::current() != nullptr && !std::filesystem::exists(path)) ask_for_all(t, pair);
   out_.files += read_text(path);
   if (Scene::load(path).root().has("entry"))
     read_table(t, pair, path);
@@ -86,9 +120,19 @@ void SoftLawReader::read(const SceneTable& t, const PairOfMaterials& pair) {
     read_card(t, pair, path);
 }
 
+void SoftLawReader::ask_for_all(const SceneTable& t, const PairOfMaterials& pair) const {
+  const std::string kind = t.choice(kPairKindKey, {"soft-solid", "soft-soft", "soft-wall"});
+  (void)read_card_choices(t);
+  (void)t.choice<RangePolicy>("range", RangePolicy::reject);
+  if (t.has("solid_fraction")) (void)read_solid_fraction(t);
+  (void)read_choices(t, LawForm::pair);
+  if (kind != "soft-soft") (void)soft_of(t, pair);
+}
+
 std::int32_t SoftLawReader::soft_of(const SceneTable& t, const PairOfMaterials& pair) const {
   if (pair.first == pair.second) t.throw_error("pair", "a soft-solid contact needs two different materials");
-  const std::int32_t soft = material_index(materials_, t, "which_soft");
+  const std::int32_t soft = material_index(
+      materials_, t, {"which_soft", "`law-card` of kind `soft-solid` or `soft-wall`: the soft material of the pair"});
   if (soft != pair.first && soft != pair.second) t.throw_error("which_soft", "must be one of the pair");
   return soft;
 }
@@ -97,7 +141,7 @@ void SoftLawReader::read_card(const SceneTable& t, const PairOfMaterials& pair, 
   for (const char* key : {"form", "solid_fraction", "range", "unloading", "rolling"})
     if (t.has(key))
       t.throw_error(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
-  const auto kind = t.choice<PairKind>("kind");
+  const auto kind = t.choice<PairKind>(kPairKindKey);
   const LawCard card = load_card(path);
   if (const std::string of_kt = kt_remark(card); !of_kt.empty())
     if (const std::string remark = path + ": " + of_kt;
@@ -123,7 +167,7 @@ void SoftLawReader::read_table(const SceneTable& t, const PairOfMaterials& pair,
   const LawTable table = load_law_table(path);
   std::string remark;
   const LawTableEntry entry = read_entry(t, table, remark);
-  const MultiContactChoices choices = read_choices(t, entry);
+  const MultiContactChoices choices = read_choices(t, entry.best);
   if (!remark.empty()) out_.remarks.push_back(t.where("solid_fraction") + ": " + remark);
   MultiContactLaws laws;
   try {
@@ -132,7 +176,7 @@ void SoftLawReader::read_table(const SceneTable& t, const PairOfMaterials& pair,
     t.throw_error("file", e.what());
   }
   const std::string choice = choice_text(path, entry, choices);
-  const std::string kind = t.choice("kind", {"soft-solid", "soft-soft", "soft-wall"});
+  const std::string kind = t.choice(kPairKindKey, {"soft-solid", "soft-soft", "soft-wall"});
   if (kind == "soft-soft") {
     agree(t, pair.first, choice);
     agree(t, pair.second, choice);

@@ -40,6 +40,8 @@ class SoftLawReader {
 
   void read_card(const SceneTable& t, const PairOfMaterials& pair, const std::string& path);
   void read_table(const SceneTable& t, const PairOfMaterials& pair, const std::string& path);
+  /// Where keys are taken down (KeyRecord) and the file is not there: asks for what goes with a card and with a table.
+  void ask_for_all(const SceneTable& t, const PairOfMaterials& pair) const;
   [[nodiscard]] std::int32_t soft_of(const SceneTable& t, const PairOfMaterials& pair) const;
   void agree(const SceneTable& t, std::int32_t soft, const std::string& choice);
 

@@ -18,6 +18,8 @@ constexpr double kStepsPerReach = 10.0;
 constexpr double kMostSteps = 1e12;
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
+const Key kStepKey{"step", "time step, or `\"auto\"`", "\"auto\""};
+
 std::string shown(double value) {
   std::ostringstream out;
   out.precision(6);
@@ -116,7 +118,7 @@ void choose_step(const SceneTable& t, const System<D>& s, double fraction, Scene
 
 template <int D>
 void take_step(const SceneTable& t, const System<D>& s, double largest, SceneTime& out) {
-  out.step = t.number("step", Unit::time, Range::positive());
+  out.step = t.number(kStepKey, Unit::time, Range::positive());
   const double limit = largest * out.natural_time;
   if (out.step > limit)
     t.throw_error(
@@ -138,11 +140,11 @@ constexpr double largest_fraction() {
 /// Either `end` or `steps`; what is not given is left at infinity and 0.
 void read_extent(const SceneTable& t, SceneTime& out) {
   if (!t.has("steps")) {
-    out.end = t.number("end", Unit::time, Range::positive());
+    out.end = t.number({"end", "simulated time; either this or `steps`", "-"}, Unit::time, Range::positive());
     return;
   }
   if (t.has("end")) t.add_error("steps", "give either end or steps, not both");
-  out.steps = t.count("steps", 1, static_cast<std::int64_t>(kMostSteps));
+  out.steps = t.count({"steps", "number of steps, in place of `end`"}, 1, static_cast<std::int64_t>(kMostSteps));
   out.end = kForever;
 }
 
@@ -170,14 +172,17 @@ SceneTime read_time(const SceneTable& t, const System<D>& system, const std::vec
                     bool valid) {
   SceneTime out;
   read_extent(t, out);
-  const double fraction =
-      t.number("step_fraction", Unit::none, Range{0.0, largest_fraction<D>(), true, false}, kDefaultFraction);
-  const bool automatic = !t.has("step") || (t.is_text("step") && t.text("step") == "auto");
+  const double fraction = t.number(
+      {"step_fraction",
+       "with `step = \"auto\"`: step over sqrt(m/k) of the stiffest contact; an impact always has at least 200 steps"},
+      Unit::none, Range{0.0, largest_fraction<D>(), true, false}, kDefaultFraction);
+  const Key warm_up{"warm_up_steps", "first steps, left out of the measured cost"};
+  const bool automatic = !t.has("step") || (t.is_text("step") && t.text(kStepKey) == "auto");
   if (!automatic && t.has("step_fraction"))
     t.add_error("step_fraction", "goes with step = \"auto\", which follows from it; here the step is given");
   if (!valid || t.has_errors()) {
-    if (!automatic) (void)t.number("step", Unit::time, Range::positive());
-    (void)t.count("warm_up_steps", 0, static_cast<std::int64_t>(kMostSteps), 0);
+    if (!automatic) (void)t.number(kStepKey, Unit::time, Range::positive());
+    (void)t.count(warm_up, 0, static_cast<std::int64_t>(kMostSteps), 0);
     return out;
   }
   const StepLimit limit = step_limit(system);
@@ -191,7 +196,7 @@ SceneTime read_time(const SceneTable& t, const System<D>& system, const std::vec
   else
     take_step(t, system, largest_fraction<D>(), out);
   if (!std::isfinite(out.end)) out.end = static_cast<double>(out.steps) * out.step;
-  out.warm_up_steps = t.count("warm_up_steps", 0, out.steps - 1, 0);
+  out.warm_up_steps = t.count(warm_up, 0, out.steps - 1, 0);
   return out;
 }
 

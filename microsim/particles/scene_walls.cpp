@@ -25,7 +25,12 @@ namespace {
 
 template <int D>
 Vec<D> read_normal(const SceneTable& t) {
-  const Vec<D> n = read_vector<D>(t, "normal", Unit::none);
+  const Vec<D> n = read_vector<D>(
+      t,
+      {"normal",
+       "normal of the plane, towards the particles; a particle that starts behind a plane is refused, unless "
+       "`guards.escape` does not stop"},
+      Unit::none);
   const double length = norm(n);
   if (!(length > 0.0) || !std::isfinite(1.0 / length)) {
     t.add_error("normal", "must not be the zero vector");
@@ -36,26 +41,33 @@ Vec<D> read_normal(const SceneTable& t) {
 
 template <int D>
 void read_shape(const SceneTable& t, SceneWall<D>& wall) {
-  wall.plane = t.choice<WallShape>("shape") == WallShape::plane;
+  wall.plane = t.choice<WallShape>({"shape", "shape of the wall; for disks a line or the inside of a circle"}) ==
+               WallShape::plane;
   if (wall.plane) {
-    wall.body.x = read_vector<D>(t, "point", Unit::length);
+    wall.body.x = read_vector<D>(t, {"point", "point of the plane"}, Unit::length);
     wall.normal = read_normal<D>(t);
   } else {
-    wall.body.x = read_vector<D>(t, "center", Unit::length);
-    wall.body.r = t.number("radius", Unit::length, Range::positive());
+    wall.body.x = read_vector<D>(t, {"center", "centre of the sphere"}, Unit::length);
+    wall.body.r = t.number({"radius", "radius of the sphere"}, Unit::length, Range::positive());
   }
 }
 
 template <int D>
 void read_motion(const SceneTable& t, SceneWall<D>& wall) {
-  const auto motion = t.choice<WallMotion>("motion", WallMotion::fixed);
-  if (motion == WallMotion::velocity) wall.body.velocity = read_vector<D>(t, "velocity", Unit::velocity);
+  const auto motion = t.choice<WallMotion>(
+      {"motion", "what moves the wall; `\"force\"`: planes only, along the normal"}, WallMotion::fixed);
+  if (motion == WallMotion::velocity)
+    wall.body.velocity =
+        read_vector<D>(t, {"velocity", "velocity of a wall with motion `\"velocity\"`"}, Unit::velocity);
   if (motion != WallMotion::force) return;
   if (!wall.plane)
     t.add_error("motion", "\"force\" is for planes: the inside of a sphere is fixed or moves with a velocity");
-  wall.load = t.number("force", Unit::force);
+  wall.load = t.number({"force", "load on a wall with motion `\"force\"`"}, Unit::force);
   wall.needs_mass = !t.has("mass");
-  if (!wall.needs_mass) wall.body.mass = t.number("mass", Unit::mass, Range::positive());
+  if (!wall.needs_mass)
+    wall.body.mass = t.number({"mass", "mass of a wall with motion `\"force\"`, at least that of the heaviest particle",
+                               "mass of all particles"},
+                              Unit::mass, Range::positive());
 }
 
 template <int D>
@@ -69,14 +81,15 @@ void require_new_name(const SceneTable& t, const std::vector<SceneWall<D>>& wall
 template <int D>
 std::vector<SceneWall<D>> read_walls(const SceneTable& root, const std::vector<Material>& materials) {
   std::vector<SceneWall<D>> walls;
-  for (const SceneTable& t : root.tables("wall")) {
+  for (const SceneTable& t : root.tables({"wall", "one wall"})) {
     SceneWall<D> wall;
     read_shape(t, wall);
     read_motion(t, wall);
-    wall.name = t.text("name", "wall-" + std::to_string(walls.size() + 1));
+    wall.name = t.text({"name", "name of the wall", "\"wall-1\", \"wall-2\" and so on"},
+                       "wall-" + std::to_string(walls.size() + 1));
     require_new_name(t, walls, wall.name);
     wall.where = t.where("shape");
-    t.check([&] { wall.body.material = material_index(materials, t, "material"); });
+    t.check([&] { wall.body.material = material_index(materials, t, {"material", "material of the wall"}); });
     walls.push_back(wall);
   }
   return walls;
@@ -104,11 +117,12 @@ Vec<D> size_in_file(const SceneTable& t, const SceneBodies<D>& bodies, bool know
 
 template <int D>
 Vec<D> read_size(const SceneTable& t, const SceneBodies<D>& bodies, bool known) {
+  const Key key{"size", "edge lengths, or `\"file\"`: those of the particle file"};
   if (t.is_text("size")) {
-    (void)t.choice("size", {"file"});
+    (void)t.choice(key, {"file"});
     return size_in_file(t, bodies, known);
   }
-  const Vec<D> size = read_vector<D>(t, "size", Unit::length);
+  const Vec<D> size = read_vector<D>(t, key, Unit::length);
   for (int k = 0; k < D; ++k)
     if (!(size[k] > 0.0)) t.throw_error("size", "every component must be above 0");
   return size;
@@ -123,13 +137,14 @@ Cell<D> read_cell(const SceneTable& root, const SceneBodies<D>& bodies) {
   Vec<D> size;
   for (int k = 0; k < D; ++k) size[k] = 1.0;
   t.check([&] { size = read_size(t, bodies, !root.table_or_empty("particles").has_errors()); });
-  const std::vector<bool> periodic = t.flags("periodic");
+  const std::vector<bool> periodic = t.flags({"periodic", "which axes are periodic, one flag per axis"});
   if (periodic.size() != static_cast<std::size_t>(D))
     t.throw_error("periodic", D == 3 ? "must have three flags" : "must have two flags, as the scene has dimension = 2");
   std::array<bool, D> along{};
   std::copy(periodic.begin(), periodic.end(), along.begin());
   Cell<D> cell = box_cell<D>(size, along);
-  const double rate = t.number("shear_rate", Unit::frequency, Range::any(), 0.0);
+  const double rate = t.number({"shear_rate", "shear rate of a cell that is periodic along x and y"}, Unit::frequency,
+                               Range::any(), 0.0);
   if (rate != 0.0 && !(periodic[0] && periodic[1]))
     t.add_error("shear_rate", "needs a cell that is periodic along x and y");
   cell.velocity_gradient[0][1] = rate;

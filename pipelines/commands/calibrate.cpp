@@ -25,7 +25,8 @@ using nlohmann::json;
 /// Settings of the command, all through --set; no scene file is needed.
 FitOptions read_options(const SceneTable& t) {
   FitOptions o = read_fit_settings(t);
-  o.relaxation = t.text("relaxation", o.relaxation);
+  o.relaxation = t.text({"relaxation", "relaxation that is fitted; needed if the files have several", "the only one"},
+                        o.relaxation);
   t.finish();
   return o;
 }

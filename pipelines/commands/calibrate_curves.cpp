@@ -45,9 +45,18 @@ std::optional<double> quantity(const char* option, const std::string& text, Unit
 CurveSettings read_settings(const SceneTable& t, const CommonOptions& options) {
   CurveSettings s;
   s.fit = read_fit_settings(t);
-  s.curves.unloading = t.choice<Unloading>("unloading", Unloading::refuse);
-  s.mirror = t.flag("mirror", false);
-  s.fit.subtract_offset = t.choice("offset", {"subtract", "keep"}, "subtract") == "subtract";
+  s.curves.unloading = t.choice<Unloading>(
+      {"unloading", "points whose overlap does not rise: `refuse` them or `drop` them"}, Unloading::refuse);
+  s.mirror = t.flag(
+      {"mirror",
+       "true: derive the kind of contact that was not measured by symmetry (two equal particles each take half of the "
+       "overlap), since macro scenes need both; real grains interlock, so the law is marked as not measured"},
+      false);
+  s.fit.subtract_offset =
+      t.choice({"offset",
+                "a force read without contact (before touch or below the threshold, at least three readings): "
+                "`subtract` it from all forces of its sample, with a remark, or `keep` it"},
+               {"subtract", "keep"}, "subtract") == "subtract";
   s.curves.initial_angle_deg = s.fit.initial_angle_deg;
   s.curves.secant_angle_deg = s.fit.secant_angle_deg.value_or(s.curves.secant_angle_deg);
   t.finish();

@@ -20,6 +20,7 @@
 #include "pipelines/commands/complaints.h"
 #include "pipelines/commands/law_options.h"
 #include "pipelines/commands/observables.h"
+#include "pipelines/commands/schema.h"
 #include "pipelines/run/run_context.h"
 
 namespace softgrain {
@@ -202,6 +203,7 @@ void require_command(int argc, char** argv) {
   std::vector<std::string> names;
   for (const Command& c : kCommands) names.emplace_back(c.name);
   names.emplace_back("law");
+  names.emplace_back("schema");
   const std::string word = argv[1];
   if (std::ranges::find(names, word) != names.end()) return;
   const std::string near = nearest_word(word, names);
@@ -234,6 +236,8 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   }
   LawOptions law;
   add_law_command(app, law);
+  SchemaOptions schema;
+  add_schema_command(app, schema);
   require_command(argc, argv);
   app.parse(argc, argv);
   // A file that may not grow beyond a limit is trouble with a file, to be told as such, not a reason to be killed.
@@ -241,6 +245,7 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   end_at_once_on_signals();
   law.command_line = options.command_line;
   if (law.action) return command_law(law);
+  if (schema.chosen) return command_schema(schema);
   if (chosen == nullptr) {
     std::fputs(app.help().c_str(), stderr);
     return ExitStatus::bad_input;

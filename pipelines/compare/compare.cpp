@@ -15,7 +15,7 @@
 namespace softgrain {
 namespace {
 
-using Key = std::pair<MacroTest, std::int64_t>;
+using PointKey = std::pair<MacroTest, std::int64_t>;
 
 void require_curve(const std::vector<double>& x, const std::vector<double>& y, const char* side) {
   if (x.size() != y.size())
@@ -136,10 +136,10 @@ SampleComparison compare_sample(const MacroCurve& candidate, const MacroCurve& r
   return s;
 }
 
-std::map<Key, const MacroCurve*> by_key(const std::vector<MacroCurve>& curves, const char* side) {
-  std::map<Key, const MacroCurve*> result;
+std::map<PointKey, const MacroCurve*> by_key(const std::vector<MacroCurve>& curves, const char* side) {
+  std::map<PointKey, const MacroCurve*> result;
   for (const MacroCurve& c : curves) {
-    if (result.emplace(Key{c.test, c.sample}, &c).second) continue;
+    if (result.emplace(PointKey{c.test, c.sample}, &c).second) continue;
     throw InputError(fmt::format("compare: the {} holds test \"{}\", sample {} twice; choose one engine", side,
                                  to_string(c.test), c.sample));
   }

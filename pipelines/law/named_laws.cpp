@@ -178,17 +178,26 @@ constexpr std::array kTableKeys{"solid_fraction", "range", "mu", "unloading", "r
 
 void read_table_choices(const SceneTable& t, LawSources& out) {
   if (t.has("solid_fraction"))
-    out.solid_fraction = t.number("solid_fraction", Unit::none, Range{0.0, 1.0, true, false});
+    out.solid_fraction = t.number({"solid_fraction",
+                                   "law table: solid fraction inside the soft particles; between two entries of the "
+                                   "table the parameters are interpolated",
+                                   "mean of the packings in the twin; without a twin that of the main entry"},
+                                  Unit::none, Range{0.0, 1.0, true, false});
   out.beyond = read_beyond(t);
-  out.range = t.choice<RangePolicy>("range", RangePolicy::reject);
-  if (t.has("mu")) out.friction = t.number("mu", Unit::none, Range::not_negative());
-  out.unloading = t.flag("unloading", false);
-  out.rolling = t.flag("rolling", true);
+  out.range = t.choice<RangePolicy>({"range", "law table: what becomes of solid fractions outside the measured range"},
+                                    RangePolicy::reject);
+  if (t.has("mu"))
+    out.friction =
+        t.number({"mu", "law table: friction of soft particles", "as measured"}, Unit::none, Range::not_negative());
+  out.unloading =
+      t.flag({"unloading", "law table: true: use the unloading branch, which must have been measured"}, false);
+  out.rolling = t.flag({"rolling", "law table: true: use the rolling resistance, if measured"}, true);
 }
 
 std::vector<WantedForm> read_forms(const SceneTable& law, bool has_table) {
   std::vector<WantedForm> forms;
-  for (const std::string& word : law.texts("forms")) {
+  for (const std::string& word :
+       law.texts({"forms", "forms to compare: `pair`, `isotropic`, `directional`", "all available"})) {
     const auto form = parse_enum<LawForm>(word);
     if (!form) law.throw_error("forms", "\"" + word + "\" is none of pair, isotropic, directional");
     if (form != LawForm::pair && !has_table)
@@ -294,21 +303,19 @@ NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::str
 
 LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
   LawSources out;
-  if (law.has("card")) {
-    out.card = load_card(scene.resolve(law.text("card")));
-    out.files.push_back(scene.resolve(law.text("card")));
-    out.text += read_text(out.files.back());
-  }
-  if (law.has("table")) {
-    out.table_file = scene.resolve(law.text("table"));
-    out.table = load_law_table(out.table_file);
-    out.files.push_back(out.table_file);
-    out.text += read_text(out.files.back());
-  }
-  if (!out.card && !out.table) law.throw_error("table", "give a law table, a law card, or both");
-  if (law.has("forms")) out.forms = read_forms(law, out.table.has_value());
-  if (!out.table) out.forms = {LawForm::pair};
+  const bool with_card = law.has("card");
+  const bool with_table = law.has("table");
+  if (with_card) out.files.push_back(scene.resolve(law.text({"card", "law card (pair law, as published)"})));
+  if (with_table)
+    out.table_file = scene.resolve(law.text({"table", "law table; `table`, `card` or both must be given"}));
+  if (with_table) out.files.push_back(out.table_file);
+  if (!with_card && !with_table) law.throw_error("table", "give a law table, a law card, or both");
+  if (law.has("forms")) out.forms = read_forms(law, with_table);
+  if (!with_table) out.forms = {LawForm::pair};
   read_table_choices(law, out);
+  if (with_card) out.card = load_card(out.files.front());
+  if (with_table) out.table = load_law_table(out.table_file);
+  for (const std::string& file : out.files) out.text += read_text(file);
   if (!out.table && law.has("form")) law.add_error("form", "goes with a law table; a card holds the pair law alone");
   for (const char* key : kTableKeys)
     if (!out.table && law.has(key)) law.add_error(key, "goes with a law table (key table)");
@@ -317,7 +324,10 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
 }
 
 void read_law_choices(const SceneTable& root, LawSources& out) {
-  out.forms = {parse_enum<LawForm>(root.choice("form", {"pair", "isotropic", "directional", "cell", "best"}, "best"))};
+  out.forms = {parse_enum<LawForm>(root.choice({"form",
+                                                "law table: form of the law, `best`: the one that predicts left-out "
+                                                "loadings best; `cell`: with a card of the cell law"},
+                                               {"pair", "isotropic", "directional", "cell", "best"}, "best"))};
   read_table_choices(root, out);
 }
 

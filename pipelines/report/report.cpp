@@ -16,16 +16,16 @@ namespace {
 
 using namespace report;
 
-/// Text of all sections, in the order of their places: those that belong to no kind of scene, and those of every kind.
+/// Text of all sections, in the order of their parts: those that belong to no kind of scene, and those of every kind.
 std::string sections_of(const RunData& run) {
   std::vector<ReportSection> sections{
-      {Place::runs, runs_section},       {Place::own_data, own_data_section}, {Place::laws, laws_section},
-      {Place::packing, packing_section}, {Place::radii, radii_section},       {Place::radii, sizes_section},
-      {Place::radii, grading_section},   {Place::cost, cost_section},         {Place::provenance, provenance_section}};
+      {Part::runs, runs_section},        {Part::source, own_data_section}, {Part::laws, laws_section},
+      {Part::packings, packing_section}, {Part::packings, radii_section},  {Part::packings, sizes_section},
+      {Part::packings, grading_section}, {Part::cost, cost_section},       {Part::provenance, provenance_section}};
   for (const KindResults& kind : results_of_kinds())
     sections.insert(sections.end(), kind.sections.begin(), kind.sections.end());
   std::stable_sort(sections.begin(), sections.end(),
-                   [](const ReportSection& a, const ReportSection& b) { return a.place < b.place; });
+                   [](const ReportSection& a, const ReportSection& b) { return a.part < b.part; });
   std::string body;
   for (const ReportSection& section : sections) body += section.html(run);
   return body;

@@ -37,34 +37,27 @@ struct ResultFile {
   void (*visit)(const std::string& path, SnapshotChoice choice, const VisitSnapshot& visit) = nullptr;
 };
 
-/// Places of the sections in a report: what came out before what it was made from.
-enum class Place {
-  runs,
-  own_data,
-  search,
-  macro,
-  macro_scenes,
-  multi_contact,
-  levels,
-  normal,
-  tangential,
-  stiffness,
-  laws,
-  relaxations,
-  material,
-  packing,
-  radii,
-  particles,
-  grain_boxes,
-  powder_variants,
-  powder,
+/// Parts of a report in their order: what came out before what it was made from. Sections of one part keep the order of
+/// the kinds, and of the list of each kind.
+enum class Part {
+  runs,          ///< one run of several
+  source,        ///< data that the run was given
+  answer,        ///< what a search found
+  macro,         ///< scenes that use a law
+  several,       ///< several scenes or contacts, beside each other
+  measurements,  ///< what laws are fitted to
+  laws,          ///< fitted laws
+  methods,       ///< methods of measuring, compared
+  tests,         ///< tests of resolved materials
+  packings,      ///< packings and their sizes
+  states,        ///< states of resolved scenes
   cost,
   provenance
 };
 
 /// A part of the report; an empty string where a run holds nothing of it.
 struct ReportSection {
-  Place place;
+  Part part;
   std::string (*html)(const report::RunData& run);
 };
 

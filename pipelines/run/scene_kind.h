@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cctype>
 #include <string>
+#include <vector>
 
+#include "common/io/explored_keys.h"
 #include "common/io/scene.h"
 #include "pipelines/results/kind_results.h"
 #include "pipelines/run/findings.h"
@@ -27,13 +29,30 @@ struct SceneKind {
   KindResults results{};
   bool takes_law = false;     ///< whether --law goes with it
   bool takes_engine = false;  ///< whether --engine and what belongs to it do
+  /// What scenes must have, as TOML, before keys that go by it are asked for: one each (softgrain schema).
+  std::vector<std::string> explored_from{""};
 };
+
+/// All keys of the kind, by what its reader asks for.
+inline std::vector<ExploredKey> keys_of(const SceneKind& kind) {
+  std::vector<std::string> starts;
+  for (const std::string& start : kind.explored_from)
+    starts.push_back(std::string("kind = \"") + kind.name + "\"\n" + start);
+  return explore_keys(starts, [&](const Scene& s) { kind.read(s); });
+}
+
+/// For SceneKind::explored_from: stages of a test, of all or in one of several tables ("loading").
+inline std::string explored_stages(const std::string& table = "") {
+  const std::string one = table.empty() ? "" : "[[" + table + "]]\nname = \"NAME\"\n";
+  return one + "[[" + (table.empty() ? "" : table + ".") + "stage]]\nkind = \"triaxial\"\nstrain = 0.1\n";
+}
 
 // Names of [[variant]] tables.
 
 /// The key "name", fit to be that of a file: letters, digits, '-', '_' and '.', which does not lead. Throws InputError.
 inline std::string read_variant_name(const SceneTable& variant) {
-  std::string name = variant.text("name");
+  std::string name = variant.text(
+      {"name", "its name, which results and files carry: letters, digits, `-`, `_` and `.`, no `.` first"});
   const bool plain = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
   });

@@ -17,11 +17,11 @@
 namespace softgrain {
 namespace {
 
-using Key = std::tuple<int, int>;  // neighbour (or -1 - plane), image
+using FaceKey = std::tuple<int, int>;  // neighbour (or -1 - plane), image
 
 /// A convex polyhedron as a list of polygons, each with the key of the half-space that made it.
 struct Polyhedron {
-  std::vector<std::pair<Key, std::vector<Vec3>>> faces;
+  std::vector<std::pair<FaceKey, std::vector<Vec3>>> faces;
 
   static Polyhedron box(const Vec3& a, const Vec3& b) {
     Polyhedron out;
@@ -41,7 +41,7 @@ struct Polyhedron {
   }
 
   /// Keeps x . n <= limit. Corners in the plane (closer than rounding) are corners of the new face too.
-  void clip(const Vec3& n, double limit, Key key) {
+  void clip(const Vec3& n, double limit, FaceKey key) {
     const double slack = 1e-11 * norm(n);
     const auto height = [&](const Vec3& x) {
       const double h = dot(x, n) - limit;
@@ -109,7 +109,7 @@ struct Polyhedron {
 
 struct Oracle {
   double volume = 0.0;
-  std::map<Key, std::pair<double, Vec3>> faces;  ///< area, centroid
+  std::map<FaceKey, std::pair<double, Vec3>> faces;  ///< area, centroid
 };
 
 Oracle slow_cell(const std::vector<Sphere<3>>& sites, std::size_t i, const Cell<3>* cell, const PlaneBox& box) {
@@ -134,7 +134,7 @@ Oracle slow_cell(const std::vector<Sphere<3>>& sites, std::size_t i, const Cell<
 /// Every face as the oracle sees it from both sides. Spacing of order 1.
 void expect_as_clipped(const std::vector<Sphere<3>>& sites, const RadicalCells& found, const Cell<3>* cell,
                        const PlaneBox& box) {
-  std::vector<std::map<Key, std::pair<double, Vec3>>> seen(sites.size());
+  std::vector<std::map<FaceKey, std::pair<double, Vec3>>> seen(sites.size());
   const auto shift = [&](int image) { return cell != nullptr ? cell->image_shift(image) : Vec3{}; };
   for (const CellFace& f : found.faces) {
     if (f.area < 1e-7) continue;

@@ -61,15 +61,14 @@ NextSteps next_of(const report::RunData& run) {
 }  // namespace
 
 KindResults powder_results() {
-  return {
-      .files = {{.names = "powder\\.h5",
-                 .is = [](const h5::Group& root) { return root.has("sample_0") && root.has("spec"); },
-                 .check = check_powder_file,
-                 .visit = visit_powder}},
-      .sections = {{Place::powder_variants, report::powder_variants_section}, {Place::powder, report::powder_section}},
-      .lines = lines_of,
-      .values = values_of,
-      .next = next_of};
+  return {.files = {{.names = "powder\\.h5",
+                     .is = [](const h5::Group& root) { return root.has("sample_0") && root.has("spec"); },
+                     .check = check_powder_file,
+                     .visit = visit_powder}},
+          .sections = {{Part::states, report::powder_variants_section}, {Part::states, report::powder_section}},
+          .lines = lines_of,
+          .values = values_of,
+          .next = next_of};
 }
 
 }  // namespace softgrain

@@ -16,23 +16,36 @@ namespace softgrain {
 namespace {
 
 void read_disks(const SceneTable& t, PowderSpec& spec) {
-  spec.disks = t.count("count", 2, 1000000, spec.disks);
-  spec.diameter_min = t.number("diameter_min", Unit::none, Range{0.0, 1.0, true, false}, spec.diameter_min);
-  spec.sizes = read_sizes(t, "sizes", {"diameter_min"}, 2);
+  spec.disks = t.count({"count", "disks per packing"}, 2, 1000000, spec.disks);
+  spec.diameter_min =
+      t.number({"diameter_min", "smallest diameter over a, the largest; diameters are uniform between both"},
+               Unit::none, Range{0.0, 1.0, true, false}, spec.diameter_min);
+  spec.sizes = read_sizes(
+      t, {"sizes", "another distribution, by area, instead of `diameter_min`; its largest size is a", "none"},
+      {"diameter_min"}, 2);
   if (spec.sizes) spec.diameter_min = spec.sizes->smallest() / spec.sizes->largest();
-  spec.solid_fraction = t.number("solid_fraction", Unit::none, Range{0.0, 0.9, true, true}, spec.solid_fraction);
+  spec.solid_fraction = t.number({"solid_fraction", "Phi_I, solid fraction at the start"}, Unit::none,
+                                 Range{0.0, 0.9, true, true}, spec.solid_fraction);
 }
 
 void read_contact(const SceneTable& t, PowderSpec& spec) {
-  spec.cohesive = t.flag("cohesive", spec.cohesive);
-  spec.stiffness = t.number("kappa", Unit::none, Range::closed(1.0, 1e12), spec.stiffness);
-  spec.stiffness_ratio = t.number("kt_ratio", Unit::none, Range::positive(), spec.stiffness_ratio);
-  spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
-  spec.damping = t.number("zeta", Unit::none, Range::not_negative(), spec.damping);
-  spec.range = t.number("range", Unit::none, Range{0.0, 0.5, true, false}, spec.range);
-  spec.rolling = t.flag("rolling", spec.rolling);
-  spec.rolling_stiffness = t.number("rolling_stiffness", Unit::none, Range::positive(), spec.rolling_stiffness);
-  spec.rolling_friction = t.number("rolling_friction", Unit::none, Range::not_negative(), spec.rolling_friction);
+  spec.cohesive = t.flag({"cohesive", "adhesion F0 or none"}, spec.cohesive);
+  spec.stiffness = t.number({"kappa", "stiffness a K_N/F0; without cohesion K_N/P"}, Unit::none,
+                            Range::closed(1.0, 1e12), spec.stiffness);
+  spec.stiffness_ratio = t.number({"kt_ratio", "K_T/K_N"}, Unit::none, Range::positive(), spec.stiffness_ratio);
+  spec.friction = t.number({"mu", "friction; 0 omits tangential springs and spins"}, Unit::none, Range::not_negative(),
+                           spec.friction);
+  spec.damping =
+      t.number({"zeta", "damping, as a fraction of critical damping"}, Unit::none, Range::not_negative(), spec.damping);
+  spec.range =
+      t.number({"range", "range D0 of the attraction, over a"}, Unit::none, Range{0.0, 0.5, true, false}, spec.range);
+  spec.rolling = t.flag({"rolling", "rolling resistance"}, spec.rolling);
+  spec.rolling_stiffness = t.number({"rolling_stiffness", "with `rolling = true`: stiffness K_r [N m] over a^2 K_N"},
+                                    Unit::none, Range::positive(), spec.rolling_stiffness);
+  spec.rolling_friction =
+      t.number({"rolling_friction",
+                "with `rolling = true`: mu_r [m] over mu a; the rolling moment is at most mu_r K_N h at the overlap h"},
+               Unit::none, Range::not_negative(), spec.rolling_friction);
   for (const char* key : {"rolling_stiffness", "rolling_friction"})
     if (!spec.rolling && t.has(key)) t.add_error(key, "goes with rolling = true: nothing resists rolling here");
 }
@@ -46,40 +59,52 @@ double start_edge(const PowderSpec& spec) {
 
 /// Keys of before, whose numbers meant something else. `valid`: the other tables have no errors.
 void refuse_old_keys(const SceneTable& t, const PowderSpec& spec, bool valid) {
-  const double length = valid && !t.has_errors() ? start_edge(spec) : 0.0;
-  const auto refuse = [&](const char* key, const char* meant, const char* now, const char* means, bool grows) {
-    if (!t.has(key)) return;
+  const bool all_valid = valid && !t.has_errors();
+  const auto refuse = [&](const Key& key, const char* meant, const char* now, const char* means, bool grows) {
+    if (!t.has(key.name)) return;
+    const double length = all_valid ? start_edge(spec) : 0.0;
     const double old = t.number(key, Unit::none, Range::not_negative(), 0.0);
     std::string text = fmt::format("this key was {}; now it is {}, {}", meant, now, means);
     if (length > 0.0)
       text +=
           fmt::format(": {} would be {} = {} (L/a = {} at the start)", report::format_number(old, 4), now,
                       report::format_number(grows ? old * length : old / length, 3), report::format_number(length, 3));
-    t.add_error(key, text);
+    t.add_error(key.name, text);
   };
-  refuse("cell_mass", "the inertia of the cell over (sum of m)/(L/a)", "cell_inertia", "over the sum of m", false);
-  refuse("strain_rate_cap", "a largest strain rate, over 1/T0", "edge_speed_cap", "the largest |dL/dt| in a/T0", true);
+  refuse(Key::of_before("cell_mass"), "the inertia of the cell over (sum of m)/(L/a)", "cell_inertia",
+         "over the sum of m", false);
+  refuse(Key::of_before("strain_rate_cap"), "a largest strain rate, over 1/T0", "edge_speed_cap",
+         "the largest |dL/dt| in a/T0", true);
 }
 
 void read_protocol(const SceneTable& t, PowderSetup& setup) {
   PowderProtocol& p = setup.protocol;
   const bool aggregates = p.method == 2;
-  p.edge_speed_cap = t.number("edge_speed_cap", Unit::none, Range::not_negative(), aggregates ? 0.05 : 0.0);
+  p.edge_speed_cap = t.number({"edge_speed_cap", "largest |dL/dt| of a cell edge of length L, in a/T0; 0: none",
+                               "0 for method 1, 0.05 for method 2"},
+                              Unit::none, Range::not_negative(), aggregates ? 0.05 : 0.0);
   for (const char* key : {"aggregation_kappa", "stiffening_time"})
     if (!aggregates && t.has(key)) t.add_error(key, "only method 2 has disks that aggregate first");
   if (!aggregates) return;
-  p.aggregation_kappa = t.number("aggregation_kappa", Unit::none, Range::not_negative(), 0.0);
+  p.aggregation_kappa = t.number({"aggregation_kappa", "method 2: stiffness during aggregation; 0: `kappa`"},
+                                 Unit::none, Range::not_negative(), 0.0);
   if (p.aggregation_kappa == 0.0 && t.has("stiffening_time"))
     t.add_error("stiffening_time", "nothing stiffens without an aggregation_kappa");
   if (p.aggregation_kappa > 0.0)
-    p.stiffening_time = t.number("stiffening_time", Unit::none, Range::positive(), p.stiffening_time);
+    p.stiffening_time = t.number(
+        {"stiffening_time", "method 2 with `aggregation_kappa`: time in T0 in which the stiffness grows to `kappa`"},
+        Unit::none, Range::positive(), p.stiffening_time);
 }
 
 /// Reads `pressures`: they rise to a largest one and, where that is not the last, fall from there.
 void read_pressures(const SceneTable& t, PowderSetup& setup) {
   if (!t.has("pressures")) return;
   if (t.has("pressure")) t.add_error("pressure", "\"pressures\" says them all: leave one of the two out");
-  const std::vector<double> p = t.numbers("pressures", Unit::none, Range::positive());
+  const std::vector<double> p = t.numbers({"pressures",
+                                           "instead of `pressure`: a list of P*, each held until equilibrium; they "
+                                           "increase to a largest one and may then decrease",
+                                           "none"},
+                                          Unit::none, Range::positive());
   if (p.empty()) {
     t.add_error("pressures", "needs at least one pressure");
     return;
@@ -121,37 +146,63 @@ void check_cap(const SceneTable& t, const PowderSetup& setup, bool valid) {
 
 /// `valid`: [contact] has no errors.
 void read_assembly(const SceneTable& t, PowderSetup& setup, bool valid) {
-  setup.protocol.method = static_cast<int>(t.count("method", 1, 2, 1));
+  setup.protocol.method = static_cast<int>(
+      t.count({"method",
+               "1: disks start at rest and the pressure acts at once; 2: disks first aggregate in a fixed cell, then "
+               "the cell is released (contacts stiffen there if `aggregation_kappa` is given), then the pressure acts"},
+              1, 2, 1));
   for (const char* key : {"pressure", "pressures"})
     if (valid && !setup.spec.cohesive && t.has(key))
       t.add_error(key, "without cohesion P a is the unit of force: the stiffness kappa = K_N/P says how hard it is");
   if (valid && !setup.spec.cohesive && setup.protocol.method == 2)
     t.add_error("method", "disks without cohesion do not aggregate");
-  setup.spec.pressure = t.number("pressure", Unit::none, Range::not_negative(), setup.spec.pressure);
+  setup.spec.pressure = t.number({"pressure", "pressure P* = P a/F0; refused without cohesion"}, Unit::none,
+                                 Range::not_negative(), setup.spec.pressure);
   read_pressures(t, setup);
   if (valid && setup.protocol.method == 1 && setup.spec.cohesive && setup.spec.pressure == 0.0)
     t.add_error("pressure", "method 1 starts at rest: without pressure nothing moves");
-  setup.spec.start_speed =
-      setup.protocol.method == 2 ? t.number("start_speed", Unit::none, Range::positive(), 9.48) : 0.0;
+  setup.spec.start_speed = setup.protocol.method == 2
+                               ? t.number({"start_speed",
+                                           "method 2: root mean square V0 of each velocity component, over sqrt(F0 "
+                                           "D0/m); that of the speed is sqrt 2 V0"},
+                                          Unit::none, Range::positive(), 9.48)
+                               : 0.0;
   if (t.has_errors()) (void)t.has("start_speed");
   refuse_old_keys(t, setup.spec, valid);
   read_protocol(t, setup);
-  setup.options.cell_inertia = t.number("cell_inertia", Unit::none, Range::positive(), setup.options.cell_inertia);
-  setup.options.step = t.number("step", Unit::none, Range::closed(1e-6, 0.5), setup.options.step);
-  setup.options.settle_drag = t.number("settle_drag", Unit::none, Range::closed(0.0, 10.0), setup.options.settle_drag);
-  setup.options.settle_kinetic =
-      t.number("settle_kinetic", Unit::none, Range::not_negative(), setup.options.settle_kinetic);
-  setup.options.settle_after = t.number("settle_after", Unit::none, Range::not_negative(), setup.options.settle_after);
-  setup.options.time_max = t.number("time_max", Unit::none, Range::positive(), setup.options.time_max);
-  setup.options.record_every = t.number("record_every", Unit::none, Range::positive(), setup.options.record_every);
+  setup.options.cell_inertia = t.number({"cell_inertia",
+                                         "inertia Mc of the cell over the mass of all disks: Mc d^2eps/dt^2 = P - "
+                                         "stress; eps is the strain since the start of the phase"},
+                                        Unit::none, Range::positive(), setup.options.cell_inertia);
+  setup.options.step = t.number({"step", "time step over sqrt(m_min/K_N), m_min the smallest mass"}, Unit::none,
+                                Range::closed(1e-6, 0.5), setup.options.step);
+  setup.options.settle_drag =
+      t.number({"settle_drag",
+                "drag on the last vibrations, in 1/T0; 0: none, as published, which takes three to ten times as long"},
+               Unit::none, Range::closed(0.0, 10.0), setup.options.settle_drag);
+  setup.options.settle_kinetic = t.number(
+      {"settle_kinetic", "the drag starts only when the kinetic energy per disk is also below this, in F1^2/K_N"},
+      Unit::none, Range::not_negative(), setup.options.settle_kinetic);
+  setup.options.settle_after =
+      t.number({"settle_after", "the drag starts when cell or contacts have not changed for this time, in T0"},
+               Unit::none, Range::not_negative(), setup.options.settle_after);
+  setup.options.time_max =
+      t.number({"time_max", "longest phase, in T0"}, Unit::none, Range::positive(), setup.options.time_max);
+  setup.options.record_every = t.number({"record_every", "time between recorded points, in T0"}, Unit::none,
+                                        Range::positive(), setup.options.record_every);
   check_cap(t, setup, valid);
 }
 
 void read_structure(const SceneTable& t, PowderStructureOptions& o) {
-  o.scattering = t.flag("scattering", o.scattering);
-  o.holes = t.flag("holes", o.holes);
-  o.mesh = t.number("mesh", Unit::none, Range{5.0, 1000.0, false, false}, o.mesh);
-  o.fit_k_max = t.number("fit_k_max", Unit::none, Range{0.0, 100.0, true, false}, o.fit_k_max);
+  o.scattering =
+      t.flag({"scattering",
+              "analysis of the intensity I(k) of the density field, with fractal dimension and correlation length"},
+             o.scattering);
+  o.holes = t.flag({"holes", "analysis of the holes: their radii"}, o.holes);
+  o.mesh = t.number({"mesh", "of `scattering` and `holes`: cells of the density field per a"}, Unit::none,
+                    Range{5.0, 1000.0, false, false}, o.mesh);
+  o.fit_k_max = t.number({"fit_k_max", "of `scattering`: largest wave number k of the fit, times a", "pi"}, Unit::none,
+                         Range{0.0, 100.0, true, false}, o.fit_k_max);
   if (!o.scattering && t.has("fit_k_max"))
     t.add_error("fit_k_max", "goes with scattering = true: nothing is fitted here");
   if (!o.scattering && !o.holes && t.has("mesh"))
@@ -183,18 +234,31 @@ std::vector<DrawnSizes> drawn_sizes(const PowderSetup& setup, std::uint64_t seed
 
 PowderSetup read_powder(const Scene& scene) {
   return scene.read([&](const SceneTable& root) {
-    (void)root.choice("kind", {"cohesive-powder"});
+    (void)root.choice(kKindKey, {"cohesive-powder"});
     PowderSetup setup;
-    setup.title = root.text("title", "");
-    setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
-    setup.samples = root.count("samples", 1, 10000, 1);
-    read_disks(root.table_or_empty("disks"), setup.spec);
-    const SceneTable contact = root.table_or_empty("contact");
+    setup.title = root.text(kTitleKey, "");
+    setup.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
+    setup.samples = root.count({"samples", "number of packings"}, 1, 10000, 1);
+    read_disks(root.table_or_empty({"disks", "disks of a packing; a is the largest diameter"}), setup.spec);
+    const SceneTable contact = root.table_or_empty({"contact",
+                                                    "contact law of the disks: adhesion force F0 (P a without "
+                                                    "cohesion), normal and tangential stiffness K_N, K_T"});
     read_contact(contact, setup.spec);
-    read_assembly(root.table_or_empty("assembly"), setup, !contact.has_errors());
-    const SceneTable analysis = root.table_or_empty("analysis");
-    setup.rigidity = analysis.flag("rigidity", setup.rigidity);
-    setup.states = analysis.has("states") ? scene.resolve(analysis.text("states")) : "";
+    read_assembly(root.table_or_empty({"assembly",
+                                       "protocol of the packing; T0 = sqrt(m a/F0), m is the mass of a disk of "
+                                       "diameter a, F1 the larger of F0 and P a"}),
+                  setup, !contact.has_errors());
+    const SceneTable analysis = root.table_or_empty({"analysis", "what is found out about the packings"});
+    setup.rigidity = analysis.flag(
+        {"rigidity",
+         "analysis of self-stresses `h` and floppy modes `k`, and whether the springs make the packing rigid"},
+        setup.rigidity);
+    setup.states =
+        analysis.has("states")
+            ? scene.resolve(analysis.text(
+                  {"states", "`powder.h5` of an earlier run; its states are analysed and no new packings are made",
+                   "none"}))
+            : "";
     read_structure(analysis, setup.structure);
     // What is not there shows before any work.
     if (!analysis.has_errors() && !setup.states.empty()) (void)h5::open_file(setup.states);

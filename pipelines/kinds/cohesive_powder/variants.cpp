@@ -22,13 +22,17 @@ constexpr std::array kReplacing{"title", "samples", "disks", "contact", "assembl
 std::vector<PublishedValue> read_published(const SceneTable& t) {
   std::vector<PublishedValue> out;
   for (const std::string quantity : powder_comparable()) {
-    const std::string error = quantity + "_error";
-    if (!t.has(quantity)) {
-      if (t.has(error)) t.add_error(error, "without the value " + quantity);
-      continue;
-    }
-    out.push_back({quantity, t.number(quantity, Unit::none, Range::any()), std::nullopt});
-    if (t.has(error)) out.back().error = t.number(error, Unit::none, Range::positive());
+    const Key error{quantity + "_error", "error of the published value"};
+    const bool there = t.has(quantity);
+    if (there)
+      out.push_back(
+          {quantity, t.number({quantity, "published value, for comparison"}, Unit::none, Range::any()), std::nullopt});
+    if (!t.has(error.name)) continue;
+    const double value = t.number(error, Unit::none, Range::positive());
+    if (there)
+      out.back().error = value;
+    else
+      t.add_error(error.name, "without the value " + quantity);
   }
   return out;
 }
@@ -38,7 +42,10 @@ void read_own(const SceneTable& t, PowderVariant& variant) {
   variant.name = read_variant_name(t);
   if (std::find(kTakenNames.begin(), kTakenNames.end(), variant.name) != kTakenNames.end())
     t.add_error("name", "is that of a file or folder beside the variants");
-  variant.published = read_published(t.table_or_empty("published"));
+  variant.published = read_published(t.table_or_empty(
+      {"published",
+       "published values for comparison: `Phi`, `Phi_error` or any other quantity of `table.csv`, with its error; "
+       "`z_plus`, `z_minus`, `z_zero`: compressive, tensile and unstressed interactions per disk"}));
   for (const char* key : kReplacing) (void)t.has(key);
 }
 
@@ -54,9 +61,10 @@ void read_as_scene(PowderVariant& variant) {
 
 /// Names after `only`, one alone also without brackets.
 std::vector<std::string> read_only(const SceneTable& root) {
-  if (root.is_text("only")) return {root.text("only")};
-  std::vector<std::string> names = root.texts("only");
-  if (names.empty()) root.add_error("only", "at least one name is needed");
+  const Key only{"only", "names of the variants to run", "all"};
+  if (root.is_text(only.name)) return {root.text(only)};
+  std::vector<std::string> names = root.texts(only);
+  if (names.empty()) root.add_error(only.name, "at least one name is needed");
   return names;
 }
 
@@ -86,7 +94,8 @@ bool has_powder_variants(const Scene& scene) { return scene.root().has("variant"
 
 std::vector<PowderVariant> read_powder_variants(const Scene& scene) {
   return scene.read([&](const SceneTable& root) {
-    const std::vector<SceneTable> tables = root.tables("variant");
+    const std::vector<SceneTable> tables = root.tables(
+        {"variant", "one of several powders of the scene; its tables replace those of the scene key by key"});
     if (tables.empty()) root.throw_error("variant", "at least one is needed");
     std::vector<PowderVariant> variants;
     std::set<std::string> names;

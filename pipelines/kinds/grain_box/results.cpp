@@ -87,7 +87,7 @@ KindResults grain_box_results() {
                      .is = [](const h5::Group& root) { return root.has("packs"); },
                      .check = check_grain_box_file,
                      .visit = visit_grain_boxes}},
-          .sections = {{Place::grain_boxes, grain_box_section}},
+          .sections = {{Part::states, grain_box_section}},
           .lines = lines_of,
           .values = values_of,
           .curves = curves_of_run,

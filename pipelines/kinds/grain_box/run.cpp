@@ -84,7 +84,8 @@ SceneKind grain_box_kind() {
           .check = [](const Scene& scene, const std::string&,
                       Findings& out) { check_grain_box(read_grain_box(scene), out); },
           .read = [](const Scene& scene) { (void)read_grain_box(scene); },
-          .results = grain_box_results()};
+          .results = grain_box_results(),
+          .explored_from = {"", "[loading]\ntest = \"polyaxial\"\ncontrol = [\"stress\", \"strain\", \"strain\"]\n"}};
 }
 
 }  // namespace softgrain

@@ -239,10 +239,11 @@ SceneKind hierarchy_kind() {
           .run = run_hierarchy,
           .check = [](const Scene& scene, const std::string&, Findings& out) { check_hierarchy(scene, out); },
           .read = [](const Scene& scene) { (void)read_hierarchy_setup(scene); },
-          .results = {.sections = {{Place::levels, report::hierarchy_section}},
+          .results = {.sections = {{Part::several, report::hierarchy_section}},
                       .lines = lines_of,
                       .values = values_of,
-                      .next = next_of}};
+                      .next = next_of},
+          .explored_from = {"", "[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"}};
 }
 
 }  // namespace softgrain

@@ -18,39 +18,60 @@ double inner_radius_of(const SoftParticleSpec& spec) {
 
 void read_levels(const SceneTable& t, HierarchySetup& out) {
   const SoftParticleSpec& spec = out.multi_contact.spec;
-  out.levels = t.count("levels", 2, 100, out.levels);
-  out.inner_radius = t.number("inner_radius", Unit::none, Range{0.01, 0.5, false, false},
-                              std::clamp(inner_radius_of(spec), 0.01, 0.5));
-  out.fill = t.choice<LevelFill>("fill", out.fill);
+  out.levels = t.count({"levels", "number of decades"}, 2, 100, out.levels);
+  out.inner_radius =
+      t.number({"inner_radius", "radius of the inner soft particles over Rs; `\"voids\"`: of the largest one",
+                "smallest over largest grain radius; inner grains then end where the grains beside them begin"},
+               Unit::none, Range{0.01, 0.5, false, false}, std::clamp(inner_radius_of(spec), 0.01, 0.5));
+  out.fill = t.choice<LevelFill>(
+      {"fill",
+       "placement of the inner soft particles; `\"voids\"`: in the voids of the packing of grains, largest hole first; "
+       "`\"masses\"`: drawn together with the grains, in the share that `next_volume` gives"},
+      out.fill);
   if (out.fill == LevelFill::voids)
-    out.inner_radius_min = t.number("inner_radius_min", Unit::none, Range{0.0, out.inner_radius, true, false},
-                                    kSmallestHole * out.inner_radius);
+    out.inner_radius_min = t.number(
+        {"inner_radius_min", "`\"voids\"`: holes with a smaller radius over Rs stay empty", "0.45 of `inner_radius`"},
+        Unit::none, Range{0.0, out.inner_radius, true, false}, kSmallestHole * out.inner_radius);
   else if (t.has("inner_radius_min"))
     t.add_error("inner_radius_min", "goes with fill = \"voids\"");
   const Range volumes{0.0, 100.0, true, false};
-  out.next_volume = spec.sizes
-                        ? t.number("next_volume", Unit::none, volumes)
-                        : t.number("next_volume", Unit::none, volumes, next_volume(spec.exponent, spec.polydispersity));
-  out.replicates = t.count("replicates", 0, 1000, out.replicates);
-  out.form = t.choice<LawForm>("form", out.form);
-  out.unloading = t.flag("unloading", out.unloading);
-  out.rolling = t.flag("rolling", out.rolling);
+  const Key volume{"next_volume", "volume of the grains of the next finer level, over that of a level's own grains",
+                   "Pi^(b-4), Pi: `polydispersity`, b: `exponent`; must be given with `[packing.sizes]`"};
+  out.next_volume = spec.sizes ? t.number(volume, Unit::none, volumes)
+                               : t.number(volume, Unit::none, volumes, next_volume(spec.exponent, spec.polydispersity));
+  out.replicates =
+      t.count({"replicates", "refits to packings drawn with replacement; 0: no error bars"}, 0, 1000, out.replicates);
+  out.form = t.choice<LawForm>({"form", "law of the inner soft particles"}, out.form);
+  out.unloading =
+      t.flag({"unloading", "true: the law of the inner soft particles uses its unloading branch"}, out.unloading);
+  out.rolling = t.flag(
+      {"rolling", "true: the law of the inner soft particles uses its rolling resistance, if measured"}, out.rolling);
 }
 
 void read_fixed_point(const SceneTable& t, HierarchySetup& out) {
-  out.iterations = t.count("iterations", out.levels, 1000, std::max(out.levels, std::int64_t{8}));
-  out.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, true}, out.tolerance);
+  out.iterations = t.count({"iterations", "largest number of levels", "8, or `levels` if larger"}, out.levels, 1000,
+                           std::max(out.levels, std::int64_t{8}));
+  out.tolerance = t.number({"tolerance",
+                            "the law counts as constant if two levels differ by less than this, or by less than the "
+                            "scatter of packings explains"},
+                           Unit::none, Range{0.0, 1.0, true, true}, out.tolerance);
 }
 
 void read_check(const SceneTable& t, HierarchySetup& out) {
   const std::int64_t most = out.multi_contact.packings_min;
-  out.check_packings = t.count("packings", 0, most, most);
-  out.check_overlaps = t.numbers("overlaps", Unit::none, Range{0.0, 1.0, true, true}, {0.15, 0.2, 0.25});
+  out.check_packings =
+      t.count({"packings", "number of packings in the check, at most `packings_min`; 0, or no `[check]`: no check",
+               "`packings_min`"},
+              0, most, most);
+  out.check_overlaps = t.numbers({"overlaps", "overlaps h/Rs of the check, ascending"}, Unit::none,
+                                 Range{0.0, 1.0, true, true}, {0.15, 0.2, 0.25});
   if (out.check_overlaps.empty() || std::adjacent_find(out.check_overlaps.begin(), out.check_overlaps.end(),
                                                        std::greater_equal<>()) != out.check_overlaps.end())
     t.add_error("overlaps", "must ascend");
   if (out.fill == LevelFill::voids)
-    out.check_inner = t.count("inner_count", 0, 1000000, 0);
+    out.check_inner =
+        t.count({"inner_count", "`\"voids\"`: number of the largest inner soft particles that are resolved; 0: all"}, 0,
+                1000000, 0);
   else if (t.has("inner_count"))
     t.add_error("inner_count",
                 "goes with fill = \"voids\": without some of its soft particles a level would have holes");
@@ -68,14 +89,25 @@ bool has_one(const MultiContactSetup& setup, PartnerKind kind) {
 HierarchySetup read_hierarchy_setup(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     HierarchySetup out;
-    (void)root.choice("kind", {"hierarchy"});
-    out.title = root.text("title", "");
+    (void)root.choice(kKindKey, {"hierarchy"});
+    out.title = root.text(kTitleKey, "");
     out.multi_contact = read_multi_contact_setup(root);
-    read_levels(root.table("hierarchy"), out);
+    read_levels(
+        root.table({"hierarchy",
+                    "levels of soft particles inside soft particles: their number, what they hold, and by which law"}),
+        out);
     out.iterations = out.levels;
     out.seeks_fixed_point = root.has("fixed_point");
-    if (out.seeks_fixed_point) read_fixed_point(root.table("fixed_point"), out);
-    if (root.has("check")) read_check(root.table("check"), out);
+    if (out.seeks_fixed_point)
+      read_fixed_point(root.table({"fixed_point",
+                                   "with this table, levels are added until the law no longer changes. If it still "
+                                   "changes at the last level, the exit status is 3"}),
+                       out);
+    if (root.has("check"))
+      read_check(
+          root.table(
+              {"check", "compares the law with soft particles under one plane, with two decades of grains resolved"}),
+          out);
     for (const PartnerKind kind : {PartnerKind::plane, PartnerKind::solid, PartnerKind::soft})
       if (!has_one(out.multi_contact, kind))
         root.add_error("configuration", "a hierarchy needs a configuration \"one\" with a " + to_string(kind) +

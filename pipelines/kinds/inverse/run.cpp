@@ -187,7 +187,7 @@ SceneKind inverse_kind() {
           .check = [](const Scene& scene, const std::string&, Findings& out) { check_inverse(scene, out); },
           .read = [](const Scene& scene) { (void)read_inverse(scene); },
           .results = {.files = {{.names = "evaluations\\.csv"}},
-                      .sections = {{Place::search, report::inverse_section}},
+                      .sections = {{Part::answer, report::inverse_section}},
                       .values = values_of,
                       .next = next_of}};
 }

@@ -17,9 +17,10 @@ namespace softgrain {
 
 namespace {
 
-/// What may be searched: key in [search], allowed values, how it is spread, and where it goes.
+/// What may be searched: key in [search], its meaning, allowed values, how it is spread, and where it goes.
 struct KnownParameter {
   const char* name;
+  const char* asked;
   Range range;
   bool logarithmic;
   double SoftParticleSpec::*member;  ///< null: trials
@@ -29,15 +30,16 @@ const std::array<KnownParameter, 7>& known_parameters() {
   using S = SoftParticleSpec;
   const auto drawn = [](double S::*value, bool logarithmic) {
     const SoftParticleNumber& number = soft_particle_number(value);
-    return KnownParameter{number.scene_key, number.drawn, logarithmic, value};
+    return KnownParameter{number.scene_key, number.asked, number.drawn, logarithmic, value};
   };
-  static const std::array<KnownParameter, 7> known{{drawn(&S::beta, true),
-                                                    {"trials", Range::closed(1.0, 1e9), true, nullptr},
-                                                    drawn(&S::friction, false),
-                                                    drawn(&S::poisson_ratio, false),
-                                                    drawn(&S::rmax_over_shell, false),
-                                                    drawn(&S::exponent, false),
-                                                    drawn(&S::polydispersity, true)}};
+  static const std::array<KnownParameter, 7> known{
+      {drawn(&S::beta, true),
+       {"trials", "random positions tried per grain", Range::closed(1.0, 1e9), true, nullptr},
+       drawn(&S::friction, false),
+       drawn(&S::poisson_ratio, false),
+       drawn(&S::rmax_over_shell, false),
+       drawn(&S::exponent, false),
+       drawn(&S::polydispersity, true)}};
   return known;
 }
 
@@ -45,7 +47,8 @@ std::vector<SearchParameter> read_search(const SceneTable& t) {
   std::vector<SearchParameter> out;
   for (const KnownParameter& k : known_parameters()) {
     if (!t.has(k.name)) continue;
-    const std::vector<double> ends = t.numbers(k.name, Unit::none, k.range);
+    const std::vector<double> ends =
+        t.numbers({k.name, std::string("searched range [low, high]: ") + k.asked}, Unit::none, k.range);
     if (ends.size() != 2 || !(ends[0] < ends[1]))
       t.add_error(k.name, "must be a range of two rising values [low, high]");
     else
@@ -85,24 +88,29 @@ void require_box(const SceneTable& t, const InverseSetup& setup) {
 
 void read_budget(const SceneTable& t, InverseSetup& s) {
   const auto surface = static_cast<std::int64_t>(ResponseSurface::coefficients(s.search.size()));
-  s.budget = t.count("budget", surface + 2, 100000, std::max<std::int64_t>(40, 2 * surface + 10));
-  s.design = t.count("design", surface, s.budget, std::max(surface + 2, s.budget / 2));
-  s.batch = t.count("batch", 1, 1000, 6);
-  s.confirm = t.count("confirm", 2, 100000, s.packings);
-  s.replicates = static_cast<int>(t.count("replicates", 20, 100000, s.replicates));
+  s.budget = t.count({"budget", "number of evaluations", "40 or more"}, surface + 2, 100000,
+                     std::max<std::int64_t>(40, 2 * surface + 10));
+  s.design = t.count({"design", "evaluations that are first spread over all ranges", "half of `budget`"}, surface,
+                     s.budget, std::max(surface + 2, s.budget / 2));
+  s.batch = t.count({"batch", "evaluations between two fits of the surface"}, 1, 1000, 6);
+  s.confirm = t.count(
+      {"confirm", "packings of the last evaluation at the answer; the search has not seen them", "as `packing.count`"},
+      2, 100000, s.packings);
+  s.replicates = static_cast<int>(t.count({"replicates", "draws for the intervals"}, 20, 100000, s.replicates));
 }
 
 /// Points given in the scene itself.
 void read_points(const SceneTable& t, InverseSetup& s) {
-  s.target.delta = t.numbers("delta", Unit::none, Range{0.0, 0.9, true, false});
-  s.target.force = t.numbers("force", Unit::force);
+  s.target.delta = t.numbers({"delta", "overlaps Delta of the target, ascending, instead of `file`"}, Unit::none,
+                             Range{0.0, 0.9, true, false});
+  s.target.force = t.numbers({"force", "forces at `delta`, instead of `file`"}, Unit::force);
   const std::size_t n = s.target.delta.size();
   if (s.target.force.size() != n) t.throw_error("force", fmt::format("must have as many values as delta ({})", n));
   for (std::size_t k = 1; k < n; ++k)
     if (s.target.delta[k] <= s.target.delta[k - 1]) t.add_error("delta", "values must ascend");
   s.target.error.assign(n, 0.0);
   if (!t.has("error")) return;
-  s.target.error = t.numbers("error", Unit::force, Range::not_negative());
+  s.target.error = t.numbers({"error", "standard errors of `force`", "0"}, Unit::force, Range::not_negative());
   if (s.target.error.size() != n) t.throw_error("error", fmt::format("must have as many values as delta ({})", n));
 }
 
@@ -122,7 +130,10 @@ void require_same_grains(const SceneTable& t, const SoftParticleSpec& file, cons
 
 /// Mean curve of a file, at evenly spread overlaps within its range.
 void read_file(const Scene& scene, const SceneTable& t, InverseSetup& s) {
-  const std::string path = scene.resolve(t.text("file"));
+  const std::string path = scene.resolve(
+      t.text({"file",
+              "table of a force-displacement curve; offsets of the force are subtracted. `Rs`, `E`, `nu`, `mu` and "
+              "`density` in its comments must agree with the scene, unless they are searched"}));
   ForceCurveOptions options;
   if (t.has("contact") || !said_by_comments(CsvFile::read(path)).kind) options.kind = s.kind;
   options.shell_radius = s.measure.spec.shell_radius;
@@ -130,17 +141,22 @@ void read_file(const Scene& scene, const SceneTable& t, InverseSetup& s) {
   options.kind_from = "contact of [target],";
   options.radius_from = "shell_radius of [packing],";
   options.modulus_from = "E of [material],";
-  options.unloading = t.choice<Unloading>("unloading", Unloading::refuse);
+  options.unloading = t.choice<Unloading>(
+      {"unloading", "points whose overlap does not rise: `refuse` them or `drop` them"}, Unloading::refuse);
   ForceCurves curves = read_force_curves(path, options);
   (void)subtract_offsets(curves);  // its remarks say it
   s.kind = curves.kind;
   s.remarks = curves.remarks;
   require_same_grains(t, curves.spec, s);
   const CurveMeans means = mean_curve(curves);
-  const auto points = static_cast<std::size_t>(t.count("points", 3, 1000, 8));
+  const auto points =
+      static_cast<std::size_t>(t.count({"points", "number of points of the file that are used"}, 3, 1000, 8));
   const double low =
-      t.number("delta_low", Unit::none, Range{0.0, 0.9, true, false}, std::max(means.delta.front(), 1e-3));
-  const double high = t.number("delta_high", Unit::none, Range{0.0, 0.9, true, false}, means.delta.back());
+      t.number({"delta_low", "lower end of the range of Delta that points of the file are taken from", "all"},
+               Unit::none, Range{0.0, 0.9, true, false}, std::max(means.delta.front(), 1e-3));
+  const double high =
+      t.number({"delta_high", "upper end of the range of Delta that points of the file are taken from", "all"},
+               Unit::none, Range{0.0, 0.9, true, false}, means.delta.back());
   if (!(high > low) || low > means.delta.back() || high < means.delta.front())
     t.throw_error("delta_high",
                   fmt::format("the file has Delta from {:.4g} to {:.4g}", means.delta.front(), means.delta.back()));
@@ -160,8 +176,11 @@ void read_file(const Scene& scene, const SceneTable& t, InverseSetup& s) {
 }
 
 void read_target(const Scene& scene, const SceneTable& t, InverseSetup& s) {
-  s.kind = t.choice<PairKind>("contact", PairKind::soft_solid);
-  s.target.discrepancy = t.number("discrepancy", Unit::none, Range::closed(0.0, 1.0), s.target.discrepancy);
+  s.kind = t.choice<PairKind>({"contact", "kind of contact of the target curve", "as in the file, else soft-solid"},
+                              PairKind::soft_solid);
+  s.target.discrepancy =
+      t.number({"discrepancy", "error of a simulation with the right parameters, as a share of the force"}, Unit::none,
+               Range::closed(0.0, 1.0), s.target.discrepancy);
   if (t.has("file") && t.has("delta")) t.throw_error("delta", "give the target as a file or as points, not both");
   if (t.has("file"))
     read_file(scene, t, s);
@@ -205,12 +224,13 @@ SoftParticleSpec spec_at(const InverseSetup& setup, const std::vector<double>& u
 
 InverseSetup read_inverse(const Scene& scene) {
   return scene.read([&](const SceneTable& root) {
-    (void)root.choice("kind", {"inverse"});
+    (void)root.choice(kKindKey, {"inverse"});
     InverseSetup s;
-    s.title = root.text("title", "");
+    s.title = root.text(kTitleKey, "");
     s.measure = read_measure_protocols(root, s.relaxation, s.plan);
-    s.packings = root.table_or_empty("packing").count("count", 2, 100000, 8);
-    const SceneTable search = root.table("search");
+    s.packings = root.table_or_empty("packing").count({"count", "number of packings of each evaluation"}, 2, 100000, 8);
+    const SceneTable search = root.table(
+        {"search", "quantities that are searched, at least one; they are left out of `material` and `packing`"});
     s.search = read_search(search);
     for (const char* key : {"exponent", "polydispersity", "rmax_over_shell"})
       if (s.measure.spec.sizes && search.has(key))
@@ -222,7 +242,7 @@ InverseSetup read_inverse(const Scene& scene) {
     const SceneTable measure = root.table_or_empty("measure");
     if (!measure.has_errors()) refuse_idle_protocols(measure, {s.relaxation}, false);
     read_budget(search, s);
-    const SceneTable target = root.table("target");
+    const SceneTable target = root.table({"target", "curve that the soft particle must give"});
     target.section([&] { read_target(scene, target, s); });
     s.plan.deltas = s.target.delta;
     return s;

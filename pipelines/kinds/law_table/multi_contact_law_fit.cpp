@@ -87,11 +87,22 @@ std::string cross_text(const MultiContactLaw& law) {
 
 MultiContactFitOptions read_multi_contact_fit(const SceneTable& t) {
   MultiContactFitOptions o;
-  o.discrepancy = t.number("discrepancy", Unit::none, Range{0.0, 1.0, true, false}, o.discrepancy);
-  o.replicates = static_cast<int>(t.count("replicates", 0, 100000, o.replicates));
-  o.min_packings = static_cast<int>(t.count("min_packings", 2, 100000, o.min_packings));
-  if (t.has("best")) o.best = t.choice<LawForm>("best");
-  o.largest_error = t.number("largest_error", Unit::none, Range::positive(), o.largest_error);
+  o.discrepancy =
+      t.number({"discrepancy", "error of the law that the fit allows in addition to the noise, over the force"},
+               Unit::none, Range{0.0, 1.0, true, false}, o.discrepancy);
+  o.replicates = static_cast<int>(t.count(
+      {"replicates",
+       "bootstrap refits (fits to data drawn with replacement) that must converge; at most twice as many are tried"},
+      0, 100000, o.replicates));
+  o.min_packings =
+      static_cast<int>(t.count({"min_packings", "with fewer packings there is no fit"}, 2, 100000, o.min_packings));
+  if (t.has("best"))
+    o.best = t.choice<LawForm>({"best", "form of the law that is used where none is named",
+                                "the form with the smallest leave-one-out error on fitted loadings"});
+  o.largest_error = t.number({"largest_error",
+                              "a law with a larger held-out or leave-one-out error is marked `inaccurate`. If it is "
+                              "the best one, the exit status is 3"},
+                             Unit::none, Range::positive(), o.largest_error);
   return o;
 }
 

@@ -18,35 +18,66 @@ namespace {
 
 const Range kShare{0.0, 1.0, true, true};
 
+const Key kShallow{
+    "shallow",
+    "`\"beside-five\"`: overlap of the first neighbour, over that of the five others; `\"scattered\"`: least overlap, "
+    "over `overlap`. One neighbour reaches `overlap`; the others are drawn evenly between both values",
+    "`\"beside-five\"`: 0.5; `\"scattered\"`: 0.3"};
+
 /// Least work is for one neighbour alone.
 void read_relaxation(const SceneTable& t, MultiContactOptions& o) {
   if (t.has("relaxation"))
     o.relaxation =
-        t.choice<Relaxation>("relaxation", {Relaxation::slow_dynamics, Relaxation::damped, Relaxation::published});
+        t.choice<Relaxation>({"relaxation", "method that brings the grains to equilibrium", "\"slow-dynamics\""},
+                             {Relaxation::slow_dynamics, Relaxation::damped, Relaxation::published});
   const auto only_dynamics = [&](const char* key) {
     if (t.has(key) && o.relaxation == Relaxation::damped)
       t.add_error(key, "relaxation = \"damped\" knows no motion; leave it out");
   };
   for (const char* key : {"approach_speed", "step_factor", "settle_time"}) only_dynamics(key);
   if (t.has("approach_speed"))
-    o.approach_speed = t.number("approach_speed", Unit::velocity, Range::positive(), o.approach_speed);
-  o.step_factor = t.number("step_factor", Unit::none, Range::closed(0.01, 10.0), o.step_factor);
-  o.settle_time = t.number("settle_time", Unit::none, Range::not_negative(), o.settle_time);
+    o.approach_speed = t.number({"approach_speed", "speed of the neighbour that moves farthest; not for `\"damped\"`",
+                                 "0.002 m/s at the published parameters, scaled with sqrt(E/rho)"},
+                                Unit::velocity, Range::positive(), o.approach_speed);
+  o.step_factor = t.number({"step_factor", "`\"slow-dynamics\"`: time step, over that of `\"published\"`"}, Unit::none,
+                           Range::closed(0.01, 10.0), o.step_factor);
+  o.settle_time =
+      t.number({"settle_time", "`\"slow-dynamics\"`: waiting time before a state is recorded, over Rs sqrt(rho/E)"},
+               Unit::none, Range::not_negative(), o.settle_time);
 }
 
 void read_multi_contact(const SceneTable& t, MultiContactSetup& setup) {
   MultiContactOptions& o = setup.options;
-  o.increment = t.number("increment", Unit::none, Range::closed(1e-7, 0.1), o.increment);
-  o.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
-  o.tolerance_between = t.number("tolerance_between", Unit::none, Range{0.0, 10.0, true, false}, o.tolerance_between);
-  o.max_passes = t.count("max_passes", 10, 100000000, o.max_passes);
+  o.increment = t.number({"increment",
+                          "`\"damped\"`: largest change of an overlap between two relaxations, over Rs. In the other "
+                          "methods a run can be stopped and resumed after each such change"},
+                         Unit::none, Range::closed(1e-7, 0.1), o.increment);
+  o.tolerance = t.number({"tolerance", "recorded states: largest net force on a grain, over the mean contact force"},
+                         Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
+  o.tolerance_between = t.number({"tolerance_between", "`\"damped\"`: `tolerance` of states that are not recorded"},
+                                 Unit::none, Range{0.0, 10.0, true, false}, o.tolerance_between);
+  o.max_passes =
+      t.count({"max_passes", "largest number of passes per relaxation; one pass evaluates all contacts once"}, 10,
+              100000000, o.max_passes);
   read_relaxation(t, o);
-  setup.packings_min = t.count("packings_min", 2, 100000, setup.packings_min);
-  setup.packings_max = t.count("packings_max", 2, 100000, std::max(setup.packings_max, setup.packings_min));
+  setup.packings_min =
+      t.count({"packings_min", "least number of packings per configuration"}, 2, 100000, setup.packings_min);
+  setup.packings_max =
+      t.count({"packings_max", "largest number of packings per configuration", "24, or `packings_min` if larger"}, 2,
+              100000, std::max(setup.packings_max, setup.packings_min));
   if (setup.packings_max < setup.packings_min) t.add_error("packings_max", "must be at least packings_min");
-  setup.target = t.number("target", Unit::none, kShare, setup.target);
-  setup.points = t.count("points", 2, 1000, setup.points);
-  setup.orientations = t.count("orientations", 1, 1000, setup.orientations);
+  setup.target = t.number(
+      {"target",
+       "packings are added until the mean force at the largest overlap has a relative standard error below this value"},
+      Unit::none, kShare, setup.target);
+  setup.points =
+      t.count({"points", "recorded states per stage. They are dense around the onset, which a pilot run finds"}, 2,
+              1000, setup.points);
+  setup.orientations =
+      t.count({"orientations",
+               "orientations in which each packing is measured; all grains are rotated together. Their mean counts as "
+               "one packing. The summary says how many packings the orientations are worth"},
+              1, 1000, setup.orientations);
 }
 
 /// How the neighbours come and go.
@@ -120,19 +151,25 @@ bool goes_straight(MultiContactPath path) {
 /// How far the first neighbour slides or rolls, and at which angle it comes.
 void read_path_keys(const SceneTable& t, ConfigurationKeys& w) {
   if (slides(w.path))
-    w.slide = t.number("slide", Unit::none, Range{0.0, 1.0, true, false}, 0.1);
+    w.slide = t.number({"slide", "paths with a slide: sliding distance over Rs"}, Unit::none,
+                       Range{0.0, 1.0, true, false}, 0.1);
   else if (t.has("slide"))
     t.add_error("slide", "only paths that slide have it: \"slide\", \"back-and-forth\", \"slide-press\"");
   if (w.path == MultiContactPath::roll)
-    w.slide = t.number("roll", Unit::none, Range{0.0, 1.0, true, false}, 0.1);
+    w.slide =
+        t.number({"roll", "path `\"roll\"`: rolling distance over Rs"}, Unit::none, Range{0.0, 1.0, true, false}, 0.1);
   else if (t.has("roll"))
     t.add_error("roll", "only a path that rolls has it: path = \"roll\"");
   if (w.path == MultiContactPath::shear)
-    w.shear = t.number("shear", Unit::none, Range{0.0, 1.0, true, false}, 0.3);
+    w.shear = t.number({"shear",
+                        "path `\"shear\"`: s. Overlaps h first reach h/(1 + s), then h (1 + s (3 c^2 - 1)/2)/(1 + s); "
+                        "c: cosine of the angle to the first neighbour"},
+                       Unit::none, Range{0.0, 1.0, true, false}, 0.3);
   else if (t.has("shear"))
     t.add_error("shear", "only a path of that name has it: path = \"shear\"");
   if (w.path == MultiContactPath::oblique)
-    w.angle = t.number("angle", Unit::none, Range::closed(0.0, 85.0), 45.0);
+    w.angle = t.number({"angle", "path `\"oblique\"`: angle between the motion and the normal [degree]"}, Unit::none,
+                       Range::closed(0.0, 85.0), 45.0);
   else if (t.has("angle"))
     t.add_error("angle", "only an oblique path has it: path = \"oblique\"");
 }
@@ -144,14 +181,17 @@ void read_ratios(const SceneTable& t, ConfigurationKeys& w) {
     for (const char* key : {"ratio", "ratios"})
       if (t.has(key)) t.add_error(key, "a plane has no radius; leave it out");
   } else if (scattered && t.has("ratios")) {
-    w.scatter.ratios = t.numbers("ratios", Unit::none, Range::positive());
+    w.scatter.ratios = t.numbers(
+        {"ratios", "`\"scattered\"`, instead of `ratio`: radii over Rs. Each neighbour draws its radius from the list"},
+        Unit::none, Range::positive());
     if (w.scatter.ratios.empty()) {
       t.add_error("ratios", "at least one");
       w.scatter.ratios = {1.0};
     }
     if (t.has("ratio")) t.add_error("ratio", "the ratios are given already; leave one of the two out");
   } else {
-    w.ratio = t.number("ratio", Unit::none, Range::positive(), 1.0);
+    w.ratio =
+        t.number({"ratio", "radius of the neighbours over Rs; not for planes"}, Unit::none, Range::positive(), 1.0);
     w.scatter.ratios = {w.ratio};
     if (t.has("ratios")) t.add_error("ratios", "only the arrangement scattered draws radii; give one ratio");
   }
@@ -165,25 +205,30 @@ void read_scatter(const SceneTable& t, ConfigurationKeys& w) {
   ScatterChoice& s = w.scatter;
   s.kind = w.partner;
   s.smooth = w.smooth;
-  s.count = t.count("neighbours", 4, 20, s.count);
-  s.draw = static_cast<std::uint64_t>(t.count("draw", 0, 1000000, static_cast<std::int64_t>(s.draw)));
-  s.shallow = t.number("shallow", Unit::none, kShare, s.shallow);
+  s.count = t.count({"neighbours", "`\"scattered\"`: number of neighbours"}, 4, 20, s.count);
+  s.draw = static_cast<std::uint64_t>(
+      t.count({"draw", "`\"scattered\"`: number of the random set of neighbours. Equal numbers give equal neighbours"},
+              0, 1000000, static_cast<std::int64_t>(s.draw)));
+  s.shallow = t.number(kShallow, Unit::none, kShare, s.shallow);
 }
 
 ConfigurationKeys read_configuration_keys(const SceneTable& t) {
   ConfigurationKeys w;
-  w.arrangement = t.choice<Arrangement>("arrangement");
+  w.arrangement =
+      t.choice<Arrangement>({"arrangement", "directions of the neighbours; `\"scattered\"`: random, as in a packing"});
   const bool scattered = w.arrangement == Arrangement::scattered;
-  const Partners partner = t.choice<Partners>("partner");
+  const Partners partner = t.choice<Partners>({"partner",
+                                               "kind of the neighbours; `\"mixed\"`, only if `\"scattered\"`: of five "
+                                               "neighbours three solid, one a plane, one soft"});
   if (partner == Partners::mixed && !scattered)
     t.add_error("partner", "only the arrangement scattered mixes them: one of plane, solid, soft");
   if (partner != Partners::mixed) w.partner = static_cast<PartnerKind>(partner);
-  w.overlap = t.number("overlap", Unit::none, kShare);
+  w.overlap = t.number({"overlap", "largest h/Rs"}, Unit::none, kShare);
   read_ratios(t, w);
-  w.smooth = t.flag("smooth", false);
+  w.smooth = t.flag({"smooth", "true: planes have no friction; false: they have mu of the grains"}, false);
   if (w.smooth && w.partner.value_or(PartnerKind::plane) != PartnerKind::plane)
     t.add_error("smooth", "only planes are without friction");
-  w.path = t.choice<MultiContactPath>("path", MultiContactPath::together);
+  w.path = t.choice<MultiContactPath>({"path", "motion of the neighbours"}, MultiContactPath::together);
   read_path_keys(t, w);
   if (scattered)
     read_scatter(t, w);
@@ -191,7 +236,7 @@ ConfigurationKeys read_configuration_keys(const SceneTable& t) {
     for (const char* key : {"neighbours", "draw"})
       if (t.has(key)) t.add_error(key, "only the arrangement scattered is drawn");
   if (w.arrangement == Arrangement::beside_five)
-    w.shallow = t.number("shallow", Unit::none, Range{0.0, 1.0, true, false}, 0.5);
+    w.shallow = t.number(kShallow, Unit::none, Range{0.0, 1.0, true, false}, 0.5);
   else if (!scattered && t.has("shallow"))
     t.add_error("shallow", "only the arrangements beside-five and scattered have shallow neighbours");
   return w;
@@ -283,7 +328,8 @@ void press_soft_neighbours(MultiContactConfiguration& c, double depth) {
 
 void read_press(const SceneTable& t, MultiContactPath path, MultiContactConfiguration& c) {
   if (!t.has("pressed")) return;
-  const double depth = t.number("pressed", Unit::none, kShare);
+  const double depth = t.number(
+      {"pressed", "overlap of five additional planes with each soft neighbour, over its radius"}, Unit::none, kShare);
   if (std::ranges::none_of(c.partners, [](const auto& p) { return p.kind == PartnerKind::soft; }))
     t.add_error("pressed", "no neighbour is soft: there is nothing that the planes could press");
   if (!c.centre_free) t.add_error("pressed", "only around a free shell: centre = \"free\"");
@@ -305,13 +351,19 @@ MultiContactConfiguration read_configuration(const SceneTable& t) {
     }
   for (double& h : deepest) h *= w.overlap;
   c.stages = stages_of(w, c.partners, deepest);
-  c.centre_free = t.choice<Centre>("centre", Centre::fixed) == Centre::free;
-  c.held_out = t.flag("held_out", false);
-  c.turning = t.flag("turning", false);
+  c.centre_free = t.choice<Centre>({"centre",
+                                    "shell of the measured particle; `\"free\"`: it moves and turns under the forces "
+                                    "of its grains, as in a macro scene"},
+                                   Centre::fixed) == Centre::free;
+  c.held_out = t.flag({"held_out", "true: the law is not fitted to this configuration but predicts it"}, false);
+  c.turning = t.flag(
+      {"turning", "true: solid neighbours rotate under the forces on them, as in a macro scene; false: they do not"},
+      false);
   if (c.turning && !goes_straight(w.path))
     t.add_error("turning", "neighbours that slide or roll are led: leave it out");
   read_press(t, w.path, c);
-  c.name = t.text("name", default_name(w, c.centre_free) + (t.has("pressed") ? "-pressed" : ""));
+  c.name = t.text({"name", "name in tables and files", "arrangement, partner, path"},
+                  default_name(w, c.centre_free) + (t.has("pressed") ? "-pressed" : ""));
   if (c.name.empty()) t.add_error("name", "must not be empty");
   return c;
 }
@@ -330,15 +382,24 @@ void require_packings(const SceneTable& t, const MultiContactConfiguration& c, s
 
 MultiContactSetup read_multi_contact_setup(const SceneTable& root) {
   MultiContactSetup setup;
-  setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+  setup.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
   setup.spec = read_soft_particle(root);
-  read_multi_contact(root.table_or_empty("multi_contact"), setup);
-  for (const SceneTable& t : root.tables("configuration")) {
+  read_multi_contact(
+      root.table_or_empty({"multi_contact",
+                           "how forces with several neighbours are measured: method, accuracy and number of packings"}),
+      setup);
+  for (const SceneTable& t :
+       root.tables({"configuration", "set of neighbours around one soft particle, and a path along which they move"})) {
     setup.configurations.push_back(read_configuration(t));
     const MultiContactConfiguration& c = setup.configurations.back();
     if (setup.options.relaxation == Relaxation::damped && c.stages.back().roll != 0.0)
       t.add_error("path", "\"roll\" needs motion: relaxation = \"slow-dynamics\"");
-    if (t.has("packings")) setup.packings[c.name] = t.count("packings", 2, 100000, 0);
+    if (t.has("packings"))
+      setup.packings[c.name] = t.count(
+          {"packings",
+           "fixed number of packings, whatever their scatter. `softgrain law plan` says where more of them help most",
+           "by `[multi_contact]`"},
+          2, 100000, 0);
     if (!root.table_or_empty("multi_contact").has_errors()) require_packings(t, c, setup.packings_max);
     for (std::size_t k = 0; k + 1 < setup.configurations.size(); ++k)
       if (setup.configurations[k].name == c.name)
@@ -361,9 +422,12 @@ MultiContactConfiguration cut_short(const MultiContactConfiguration& configurati
 }
 
 void read_plan(const SceneTable& root, MultiContactSetup& setup) {
-  for (const SceneTable& t : root.tables("plan")) {
-    PlannedPackings p{t.text("configuration"), t.number("depth", Unit::none, kShare, 1.0),
-                      t.count("packings", 2, 100000)};
+  for (const SceneTable& t : root.tables({"plan", "adds packings; `softgrain law plan` writes these tables"})) {
+    PlannedPackings p{
+        t.text({"configuration", "name of a configuration"}),
+        t.number({"depth", "the planned packings stop at this share of the overlaps of the configuration"}, Unit::none,
+                 kShare, 1.0),
+        t.count({"packings", "total number of packings of that configuration"}, 2, 100000)};
     const auto named = std::ranges::find_if(
         setup.configurations, [&](const MultiContactConfiguration& c) { return c.name == p.configuration; });
     if (named == setup.configurations.end())

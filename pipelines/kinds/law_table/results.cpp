@@ -78,7 +78,7 @@ KindResults law_table_results() {
                      .check = check_multi_contact_file},
                     {.names = "law(_table)?\\.toml", .check = check_laws},
                     {.names = "law_table\\.h5|law_table_level_[0-9]+\\.(toml|h5)"}},
-          .sections = {{Place::multi_contact, law_table_section}},
+          .sections = {{Part::several, law_table_section}},
           .lines = lines_of,
           .values = values_of,
           .next = next_of};

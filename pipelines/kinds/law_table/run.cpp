@@ -85,7 +85,8 @@ SceneKind law_table_kind() {
           .run = run_law_table,
           .check = [](const Scene& scene, const std::string&, Findings& out) { check_law_table(scene, out); },
           .read = [](const Scene& scene) { (void)read_law_table(scene); },
-          .results = law_table_results()};
+          .results = law_table_results(),
+          .explored_from = {"", "[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"}};
 }
 
 }  // namespace softgrain

@@ -11,10 +11,20 @@ namespace {
 /// `valid`: the base has no errors.
 LawTableVariant read_variant(const SceneTable& t, const MultiContactSetup& base, bool valid) {
   LawTableVariant v{base.spec, {}};
-  v.spec.beta = t.number("beta", Unit::none, Range::positive(), v.spec.beta);
-  v.spec.trials = t.count("trials", 1, 1000000000000, v.spec.trials);
+  v.spec.beta = t.number({"beta",
+                          "volume of the grains that are drawn, over the volume of the shell; this key or `trials` "
+                          "must differ from `[packing]`",
+                          "as `[packing]`"},
+                         Unit::none, Range::positive(), v.spec.beta);
+  v.spec.trials =
+      t.count({"trials", "random positions tried per grain", "as `[packing]`"}, 1, 1000000000000, v.spec.trials);
   if (valid) require_drawable(t, v.spec);
-  if (t.has("packings")) v.packings = t.count("packings", 2, base.packings_max);
+  if (t.has("packings"))
+    v.packings = t.count({"packings",
+                          "packings per configuration; only configurations that the fit uses are measured. Without "
+                          "this key all are measured, with held-out ones and `[[plan]]`",
+                          "as `[multi_contact]`"},
+                         2, base.packings_max);
   if (valid && v.spec.beta == base.spec.beta && v.spec.trials == base.spec.trials)
     t.add_error("beta", "a variant needs another beta or another number of trials than [packing]");
   return v;
@@ -39,13 +49,14 @@ MultiContactSetup setup_of(const LawTableVariant& variant, const MultiContactSet
 
 LawTableSetup read_law_table(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
-    (void)root.choice("kind", {"law-table"});
-    const SceneTable calibrate = root.table_or_empty("calibrate");
-    LawTableSetup out{root.text("title", ""), read_multi_contact_setup(root), {}, read_multi_contact_fit(calibrate)};
+    (void)root.choice(kKindKey, {"law-table"});
+    const SceneTable calibrate = root.table_or_empty({"calibrate", "fit of the laws to the measurements"});
+    LawTableSetup out{root.text(kTitleKey, ""), read_multi_contact_setup(root), {}, read_multi_contact_fit(calibrate)};
     read_plan(root, out.multi_contact);
     const SceneTable multi_contact = root.table_or_empty("multi_contact");
     const bool valid = !multi_contact.has_errors() && !root.table_or_empty("packing").has_errors();
-    for (const SceneTable& t : root.tables("variant")) {
+    for (const SceneTable& t : root.tables(
+             {"variant", "repeats the measurement on looser or denser packings, for a second solid fraction"})) {
       out.variants.push_back(read_variant(t, out.multi_contact, valid));
       if (!calibrate.has_errors() &&
           out.variants.back().packings.value_or(out.multi_contact.packings_max) < out.fit.min_packings)

@@ -142,7 +142,7 @@ KindResults macro_results() {
                      .is = [](const h5::Group& root) { return root.has("curves"); },
                      .check = check_macro_file},
                     {.names = "states_macro\\.h5|lammps-[0-9]+"}},
-          .sections = {{Place::macro, macro_section}},
+          .sections = {{Part::macro, macro_section}},
           .lines = lines_of,
           .values = values_beside,
           .curves = curves_beside,

@@ -226,7 +226,8 @@ SceneKind macro_kind() {
           .refuse = [](const Scene& scene, const CommonOptions& options) { (void)ready_macro(scene, options); },
           .results = macro_results(),
           .takes_law = true,
-          .takes_engine = true};
+          .takes_engine = true,
+          .explored_from = {"", explored_stages()}};
 }
 
 }  // namespace softgrain

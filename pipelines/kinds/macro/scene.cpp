@@ -31,11 +31,16 @@ namespace {
 void read_power_laws(const SceneTable& t, MacroSpec& spec) {
   if (t.has("solid_radius_max") || t.has("solid_polydispersity")) spec.solid_sizes.reset();
   if (t.has("soft_radius_max") || t.has("soft_polydispersity")) spec.soft_sizes.reset();
-  spec.solid_radius_max = t.number("solid_radius_max", Unit::length, Range::positive(), spec.solid_radius_max);
-  spec.solid_polydispersity =
-      t.number("solid_polydispersity", Unit::none, Range::above(1.0), spec.solid_polydispersity);
-  spec.soft_radius_max = t.number("soft_radius_max", Unit::length, Range::positive(), spec.soft_radius_max);
-  spec.soft_polydispersity = t.number("soft_polydispersity", Unit::none, Range::above(1.0), spec.soft_polydispersity);
+  spec.solid_radius_max = t.number({"solid_radius_max", "largest radius of the solid grains", "shell radius Rs"},
+                                   Unit::length, Range::positive(), spec.solid_radius_max);
+  spec.solid_polydispersity = t.number({"solid_polydispersity", "largest over smallest radius of the solid grains"},
+                                       Unit::none, Range::above(1.0), spec.solid_polydispersity);
+  spec.soft_radius_max = t.number({"soft_radius_max", "largest radius of the soft particles", "shell radius Rs"},
+                                  Unit::length, Range::positive(), spec.soft_radius_max);
+  spec.soft_polydispersity = t.number(
+      {"soft_polydispersity",
+       "largest over smallest radius of the soft particles; `construction = \"voids\"`: smaller voids stay empty"},
+      Unit::none, Range::above(1.0), spec.soft_polydispersity);
 }
 
 /// What else depends on the largest and the smallest body.
@@ -62,29 +67,49 @@ void refuse_protocol_keys(const SceneTable& t) {
 /// A name stands for all that defines a preparation; keys beside it replace single parts, whichever table gave them.
 void read_preparation(const SceneTable& t, MacroSetup& setup) {
   MacroSpec& spec = setup.spec;
-  spec.preparation = t.choice<Preparation>("preparation", spec.preparation);
+  spec.preparation = t.choice<Preparation>(
+      {"preparation",
+       "how particles are compacted; sets those of the keys from `start_fraction` to `preparation_passes` that are not "
+       "given. `\"softgrain\"`: as `\"frictionless\"`; `\"lammps\"` goes with `--engine lammps`"},
+      spec.preparation);
   const bool renewed = t.has("preparation") || t.has("mu");
   const PreparationProtocol named = protocol_of(spec.preparation, spec.friction);
-  spec.start_pressure = t.number("start_pressure", Unit::none, Range{0.0, 1e-2, true, false}, spec.start_pressure);
+  spec.start_pressure = t.number({"start_pressure", "pressure at the end of the preparation, over E"}, Unit::none,
+                                 Range{0.0, 1e-2, true, false}, spec.start_pressure);
   PreparationProtocol& p = spec.protocol;
-  const auto follows = [&](const char* key) {  // from the name and mu, as nobody said it
+  const auto follows = [&](const std::string& key) {  // from the name and mu, as nobody said it
     if (t.has(key)) setup.said.insert(key);
     return renewed && !setup.said.contains(key);
   };
   using Protocol = PreparationProtocol;
-  const auto read = [&](const SceneTable& from, const char* key, double Protocol::*part, const Range& range) {
-    if (follows(key)) p.*part = named.*part;
+  const auto read = [&](const SceneTable& from, const Key& key, double Protocol::*part, const Range& range) {
+    if (follows(key.name)) p.*part = named.*part;
     p.*part = from.number(key, Unit::none, range, p.*part);
   };
-  read(t, "start_fraction", &Protocol::start_fraction, Range::closed(0.05, 0.4));
-  read(t, "inertial_number", &Protocol::inertial_number, Range::closed(0.0, 1.0));
-  read(t, "compaction_mu", &Protocol::friction, Range::not_negative());
-  read(t, "compaction_restitution", &Protocol::restitution, Range::closed(0.05, 1.0));
-  read(t, "coarse_share", &Protocol::coarse_share, Range{0.0, 1.0, true, false});
-  read(t, "first_pressure", &Protocol::first_pressure, Range::closed(1.0, 1e6));
-  read(t, "preparation_tolerance", &Protocol::tolerance, Range{0.0, 0.1, true, false});
+  read(t, {"start_fraction", "solid fraction at placement (`construction = \"mixed\"` only)"},
+       &Protocol::start_fraction, Range::closed(0.05, 0.4));
+  read(t,
+       {"inertial_number",
+        "strain rate of the box times d sqrt(density/pressure), with the mean diameter d; 0: no motion",
+        "0; `\"fast\"`: 0.1, `\"slow\"`: 1e-3"},
+       &Protocol::inertial_number, Range::closed(0.0, 1.0));
+  read(t, {"compaction_mu", "friction during the preparation", "0; `\"fast\"`, `\"slow\"`: `mu`"}, &Protocol::friction,
+       Range::not_negative());
+  read(t, {"compaction_restitution", "coefficient of restitution during motion"}, &Protocol::restitution,
+       Range::closed(0.05, 1.0));
+  read(t, {"coarse_share", "volume share of the largest particles, which jam first", "1; `\"dense\"`: 0.75"},
+       &Protocol::coarse_share, Range{0.0, 1.0, true, false});
+  read(t, {"first_pressure", "first pressure over `start_pressure`", "128; `\"fast\"`, `\"slow\"`: 1"},
+       &Protocol::first_pressure, Range::closed(1.0, 1e6));
+  read(t,
+       {"preparation_tolerance",
+        "largest net force over mean contact force at the end; with more than 2000 particles one in 2000 may exceed "
+        "it. The pressure is met to a third of this value",
+        "0.03; scenes of materials: 3e-3"},
+       &Protocol::tolerance, Range{0.0, 0.1, true, false});
   if (follows("preparation_passes")) p.max_passes = named.max_passes;
-  p.max_passes = t.count("preparation_passes", 10, 100000000, p.max_passes);
+  p.max_passes =
+      t.count({"preparation_passes", "largest number of loop passes of a relaxation"}, 10, 100000000, p.max_passes);
   if (spec.preparation == Preparation::lammps) refuse_protocol_keys(t);
   if (!(p.inertial_number > 0.0))
     add_error_beside(t, {"compaction_restitution"},
@@ -103,15 +128,36 @@ namespace {
 
 void read_bodies(const SceneTable& t, MacroSetup& setup) {
   MacroSpec& spec = setup.spec;
-  spec.boundary = t.choice<Boundary>("boundary", spec.boundary);
-  spec.construction = t.choice<Construction>("construction", spec.construction);
-  spec.bodies = t.count("bodies", 1, 10000000, spec.bodies);
-  spec.soft_share = t.number("soft_share", Unit::none, Range::closed(0.0, 1.0), spec.soft_share);
-  spec.exponent = t.number("exponent", Unit::none, Range::above(1.0), spec.exponent);
+  spec.boundary =
+      t.choice<Boundary>({"boundary",
+                          "`\"walls\"`: box of six planes; `\"periodic\"`: periodic along all axes; the edges must "
+                          "exceed two diameters of the largest particle, and the stress is that of the contacts"},
+                         spec.boundary);
+  spec.construction =
+      t.choice<Construction>({"construction",
+                              "`\"mixed\"`: all particles are placed and compacted together; `\"voids\"`: solid grains "
+                              "come first, then soft particles fill their voids up to `soft_share`, largest first"},
+                             spec.construction);
+  spec.bodies = t.count(
+      {"bodies",
+       "number of solid grains and soft particles together; with `construction = \"voids\"` of solid grains only"},
+      1, 10000000, spec.bodies);
+  spec.soft_share =
+      t.number({"soft_share", "volume share of the soft particles", "0.45; with a card of the cell law 0"}, Unit::none,
+               Range::closed(0.0, 1.0), spec.soft_share);
+  spec.exponent =
+      t.number({"exponent", "b of the power laws P(r) ~ r^-b of the radii of solid grains and soft particles",
+                "that of the grains in the soft particles; 3.5 if these have `sizes`"},
+               Unit::none, Range::above(1.0), spec.exponent);
   read_power_laws(t, spec);
   if (t.has("solid_sizes"))
-    spec.solid_sizes = read_sizes(t, "solid_sizes", {"solid_radius_max", "solid_polydispersity"});
-  if (t.has("soft_sizes")) spec.soft_sizes = read_sizes(t, "soft_sizes", {"soft_radius_max", "soft_polydispersity"});
+    spec.solid_sizes =
+        read_sizes(t, {"solid_sizes", "another distribution of radii of the solid grains instead of the power law"},
+                   {"solid_radius_max", "solid_polydispersity"});
+  if (t.has("soft_sizes"))
+    spec.soft_sizes = read_sizes(
+        t, {"soft_sizes", "another distribution of radii of the soft particles; not with `construction = \"voids\"`"},
+        {"soft_radius_max", "soft_polydispersity"});
   if (spec.solid_sizes && spec.soft_sizes && t.has("exponent"))
     t.add_error("exponent", "goes without solid_sizes and soft_sizes, which say all sizes");
   set_size_limits(spec.solid_sizes, spec.solid_radius_max, spec.solid_polydispersity);
@@ -120,13 +166,19 @@ void read_bodies(const SceneTable& t, MacroSetup& setup) {
     t.add_error("soft_sizes",
                 "construction \"voids\" makes soft particles as large as the holes between solid grains: "
                 "give soft_radius_max and soft_polydispersity, or construction \"mixed\"");
-  spec.solid_fill = t.number("solid_fill", Unit::none, Range{0.0, 0.74, false, true}, spec.solid_fill);
+  spec.solid_fill = t.number({"solid_fill",
+                              "`construction = \"voids\"`: share of the box that solid grains fill when soft particles "
+                              "are inserted; then all are brought into contact",
+                              "0.44 (1 - `soft_share`)"},
+                             Unit::none, Range{0.0, 0.74, false, true}, spec.solid_fill);
   if (spec.construction == Construction::mixed)
     add_error_beside(t, {"solid_fill"}, "goes with construction = \"voids\", which fills solid grains first");
   if (spec.construction == Construction::voids && spec.soft_share >= 1.0)
     t.add_error("soft_share", "construction \"voids\" needs solid grains: must be below 1");
-  spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
-  spec.wall_friction = t.number("wall_mu", Unit::none, Range::not_negative(), spec.wall_friction);
+  spec.friction = t.number({"mu", "friction of particles", "as `[material]`, or as the law"}, Unit::none,
+                           Range::not_negative(), spec.friction);
+  spec.wall_friction =
+      t.number({"wall_mu", "friction of walls"}, Unit::none, Range::not_negative(), spec.wall_friction);
   if (spec.boundary == Boundary::periodic) add_error_beside(t, {"wall_mu"}, "a periodic cell has no walls");
   read_preparation(t, setup);
 }
@@ -135,15 +187,31 @@ void read_bodies(const SceneTable& t, MacroSetup& setup) {
 
 void read_test(const SceneTable& t, MacroSpec& spec) {
   if (t.has("test"))
-    spec.test = t.choice<MacroTest>("test", {MacroTest::oedometric, MacroTest::isotropic, MacroTest::shear});
-  spec.strain_end = t.number("strain", Unit::none, Range{0.0, 0.5, true, false}, spec.strain_end);
-  spec.preload = t.number("preload", Unit::none, Range{0.0, 0.5, false, false}, spec.preload);
-  spec.preload_steps = t.count("preload_steps", 1, 100000, spec.preload_steps);
-  spec.steps = t.count("steps", 1, 100000, spec.steps);
-  spec.increments_per_step = t.count("increments_per_step", 1, 10000, spec.increments_per_step);
-  spec.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, spec.tolerance);
-  spec.force_floor = t.number("force_floor", Unit::none, Range{0.0, 1e-2, true, false}, spec.force_floor);
-  spec.max_passes = t.count("max_passes", 10, 100000000, spec.max_passes);
+    spec.test = t.choice<MacroTest>(
+        {"test",
+         "`\"oedometric\"` or `\"isotropic\"` compression, or `\"shear\"` at constant volume: z shortens and x "
+         "lengthens by the same logarithmic strain. `[[stage]]` tables replace it by a sequence of loadings",
+         "\"oedometric\""},
+        {MacroTest::oedometric, MacroTest::isotropic, MacroTest::shear});
+  spec.strain_end =
+      t.number({"strain", "strain at the end"}, Unit::none, Range{0.0, 0.5, true, false}, spec.strain_end);
+  spec.preload =
+      t.number({"preload", "`\"shear\"`: isotropic strain before the shear, recorded as strains -`preload` to 0"},
+               Unit::none, Range{0.0, 0.5, false, false}, spec.preload);
+  spec.preload_steps =
+      t.count({"preload_steps", "`\"shear\"`: recorded points of the preload"}, 1, 100000, spec.preload_steps);
+  spec.steps = t.count({"steps", "recorded points"}, 1, 100000, spec.steps);
+  spec.increments_per_step = t.count({"increments_per_step", "relaxed strain increments per recorded point"}, 1, 10000,
+                                     spec.increments_per_step);
+  spec.tolerance = t.number({"tolerance", "equilibrium: largest net force over the mean contact force"}, Unit::none,
+                            Range{0.0, 1.0, true, false}, spec.tolerance);
+  spec.force_floor =
+      t.number({"force_floor",
+                "least value of the mean contact force in `tolerance`, over E R^2; R is the largest radius. A tenth of "
+                "the default changed the end stress of a small twin by 1 % at 2.3 times the cost"},
+               Unit::none, Range{0.0, 1e-2, true, false}, spec.force_floor);
+  spec.max_passes =
+      t.count({"max_passes", "largest number of loop passes per increment"}, 10, 100000000, spec.max_passes);
   read_modulus_stress(t, spec.modulus_stress);
 }
 
@@ -186,7 +254,9 @@ void read_given(const SceneTable& t, MacroSetup& setup) {
   if (setup.samples > 1) t.add_error("samples", "a packing is one sample: must be 1");
   if (!own) return;
   t.section([&] {
-    const std::string file = t.resolve(t.text("packing"));
+    const std::string file = t.resolve(t.text({"packing",
+                                               "file with positions, radii and kinds of all particles, which then are "
+                                               "not drawn; path relative to the scene"}));
     setup.given = read_packing_file(file, setup.spec.boundary);
     const MacroPacking& p = *setup.given;
     MacroSpec& spec = setup.spec;
@@ -216,29 +286,45 @@ void read_given(const SceneTable& t, MacroSetup& setup) {
 
 /// `resolved`: true for the shelled twin, or a list of twins.
 std::vector<Twin> read_twins(const SceneTable& t, const std::vector<Twin>& fallback) {
-  if (!t.has("resolved")) return fallback;
-  if (!t.is_list("resolved")) return t.flag("resolved", true) ? std::vector<Twin>{Twin::shelled} : std::vector<Twin>{};
+  const Key key{"resolved",
+                "resolved twins that run: a list of `\"shelled\"` (grains in moving shells) and `\"free\"` (these "
+                "grains without shells); true: the shelled twin; false: none",
+                "true; kind `macro-comparison`: both twins"};
+  if (!t.has(key.name)) return fallback;
+  if (!t.is_list(key.name)) return t.flag(key, true) ? std::vector<Twin>{Twin::shelled} : std::vector<Twin>{};
   std::vector<Twin> twins;
-  for (const std::string& word : t.texts("resolved")) {
+  for (const std::string& word : t.texts(key)) {
     const auto twin = parse_enum<Twin>(word);
     if (!twin) {
-      t.add_error("resolved", "unknown twin '" + word + "'; known are \"shelled\" and \"free\"");
+      t.add_error(key.name, "unknown twin '" + word + "'; known are \"shelled\" and \"free\"");
       continue;
     }
-    if (std::count(twins.begin(), twins.end(), *twin) > 0) t.add_error("resolved", "'" + word + "' twice");
+    if (std::count(twins.begin(), twins.end(), *twin) > 0) t.add_error(key.name, "'" + word + "' twice");
     twins.push_back(*twin);
   }
   return twins;
 }
 
 void read_twin_motion(const SceneTable& t, TwinMotion& m) {
-  m.relaxation = t.choice<TwinRelaxation>("twin_relaxation", m.relaxation);
+  m.relaxation = t.choice<TwinRelaxation>(
+      {"twin_relaxation",
+       "`\"slow-dynamics\"`: twins are strained in motion and then settle, as in the measurement of soft particles; "
+       "`\"damped\"`: they are strained at once and relaxed without inertia, five to seven times cheaper, 5 to 30 % "
+       "too stiff at low stress. In both, stress-controlled axes relax without inertia"},
+      m.relaxation);
   if (m.relaxation == TwinRelaxation::damped)
     add_error_beside(t, {"twin_speed", "twin_step_factor", "twin_settle_time"},
                      "goes without motion: twin_relaxation = \"damped\"");
-  m.speed = t.number("twin_speed", Unit::none, Range{0.0, 0.1, true, false}, m.speed);
-  m.step_factor = t.number("twin_step_factor", Unit::none, Range::closed(0.01, 10.0), m.step_factor);
-  m.settle_time = t.number("twin_settle_time", Unit::none, Range::not_negative(), m.settle_time);
+  m.speed = t.number({"twin_speed",
+                      "speed at which neighbours of the largest radius approach each other, over sqrt(E/rho); the "
+                      "default is as published"},
+                     Unit::none, Range{0.0, 0.1, true, false}, m.speed);
+  m.step_factor = t.number({"twin_step_factor", "time step over that of the published protocol"}, Unit::none,
+                           Range::closed(0.01, 10.0), m.step_factor);
+  m.settle_time = t.number(
+      {"twin_settle_time",
+       "time of motion after each increment, over R sqrt(rho/E); R is `soft_radius_max`, even if no radius reaches it"},
+      Unit::none, Range::not_negative(), m.settle_time);
 }
 
 }  // namespace
@@ -295,18 +381,34 @@ MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
   read_bodies(macro, setup);
   read_test(macro, setup.spec);
   MacroSpec& spec = setup.spec;
-  spec.kt_secant =
-      macro.choice<TangentialSlope>("kt", spec.kt_secant ? TangentialSlope::secant : TangentialSlope::initial) ==
-      TangentialSlope::secant;
-  setup.samples = macro.count("samples", 1, 10000, setup.samples);
+  spec.kt_secant = macro.choice<TangentialSlope>({"kt",
+                                                  "law card: tangential stiffness; `\"secant\"`: as published; "
+                                                  "`\"initial\"`: initial slope, 2 to 3 times as stiff"},
+                                                 spec.kt_secant ? TangentialSlope::secant : TangentialSlope::initial) ==
+                   TangentialSlope::secant;
+  setup.samples = macro.count({"samples", "independent random boxes"}, 1, 10000, setup.samples);
   read_given(macro, setup);
-  setup.bands = macro.count("bands", 0, 100000, setup.bands);
+  setup.bands = macro.count(
+      {"bands",
+       "number of draws (laws with parameters drawn from their scatter) for the error bars, 8 or more; 0: no bars"},
+      0, 100000, setup.bands);
   if (setup.bands > 0 && setup.bands < kFewestDraws)
     macro.add_error("bands", fmt::format("{} draws say nothing of a 95 % band: 0 (none), or at least {}", setup.bands,
                                          kFewestDraws));
-  setup.band_estimator = macro.choice<BandEstimator>("band_estimator", setup.band_estimator);
-  setup.law_increments = macro.count("law_increments", 1, 1000, setup.law_increments);
-  setup.noise_samples = macro.count("noise_samples", 0, 10000, setup.noise_samples);
+  setup.band_estimator = macro.choice<BandEstimator>(
+      {"band_estimator",
+       "`\"draws\"`: one run per draw; `\"components\"`: at most twelve runs per sample, with the combinations of "
+       "parameters that change the law, from which the curves of all draws are computed"},
+      setup.band_estimator);
+  setup.law_increments = macro.count({"law_increments",
+                                      "number of increments of a law run for each increment of a twin; coarse "
+                                      "increments change the loading path of law runs, which relax quickly"},
+                                     1, 1000, setup.law_increments);
+  setup.noise_samples =
+      macro.count({"noise_samples",
+                   "number of samples that run twice, the second time with strains changed in the twelfth digit; the "
+                   "difference is the noise of one run (`noise` in results). No law can be more accurate"},
+                  0, 10000, setup.noise_samples);
   setup.twins = read_twins(macro, setup.twins);
   read_twin_motion(macro, spec.twin);
   return setup;
@@ -327,12 +429,16 @@ SoftParticleSpec grains_of(const CellCard& card) {
 /// [material] of a scene with cells: the numbers of a cell law are over E, so that it serves any; nu and mu it does
 /// not.
 void read_cell_material(const SceneTable& root, SoftParticleSpec& spec) {
-  const SceneTable material = root.table_or_empty("material");
+  const SceneTable material = root.table_or_empty(
+      {"material", "material of the grains, with a card of the cell law only; nu and mu are those of the card"});
   for (const char* key : {"nu", "mu"})
     if (material.has(key))
       material.add_error(key, "goes without: the cell law was measured with a nu and mu and serves no others");
-  spec.youngs_modulus = material.number("E", Unit::pressure, Range::positive(), spec.youngs_modulus);
-  spec.density = material.number("density", Unit::density, Range::positive(), spec.density);
+  spec.youngs_modulus = material.number({"E", "Young's modulus of the grains; scales all stresses", "as the card"},
+                                        Unit::pressure, Range::positive(), spec.youngs_modulus);
+  spec.density =
+      material.number({"density", "density of the grains, for the column `bulk_density` of `macro.h5`", "as the card"},
+                      Unit::density, Range::positive(), spec.density);
 }
 
 /// A stress in Pa says nothing where nobody says the E that stresses of the law are over.
@@ -357,6 +463,24 @@ void refuse_idle_keys(const SceneTable& macro, bool twins, bool bands) {
 
 namespace {
 
+/// What a scene says of fines; the card of their law is not read here.
+CellMatter read_fines(const SceneTable& root) {
+  const SceneTable fines = root.table(
+      {"fines",
+       "fines that fill all the space between the particles; needed with a card of the cell law, and only with one"});
+  CellMatter matter;
+  matter.share = fines.number({"share", "share of fines in the solid volume; they are not in the list of grains"},
+                              Unit::none, Range{0.0, 1.0, true, true});
+  matter.solid_fraction = fines.number({"solid_fraction", "solid fraction of the mixture at the start",
+                                        "that of the card for this mixture at `start_pressure`"},
+                                       Unit::none, Range{0.0, 1.0, true, true}, 0.0);
+  matter.at_density = fines.choice<CellStartFrom>({"start",
+                                                   "quantity that sets the initial state of the cells: `\"pressure\"` "
+                                                   "(`start_pressure`) or `\"density\"` (`solid_fraction`)"},
+                                                  CellStartFrom::pressure) == CellStartFrom::density;
+  return matter;
+}
+
 /// [fines], and what goes with cells in [macro].
 void read_cells(const SceneTable& root, const SceneTable& macro, const CellCard& card, MacroSetup& setup) {
   MacroSpec& spec = setup.spec;
@@ -375,14 +499,10 @@ void read_cells(const SceneTable& root, const SceneTable& macro, const CellCard&
   add_error_beside(macro, {"kt"}, "the tangential stiffness of cells is that of the card");
   add_error_beside(macro, {"law_increments", "noise_samples"},
                    "goes with laws of soft particles; increments_per_step serves cells");
-  const SceneTable fines = root.table("fines");
-  CellMatter matter;
+  CellMatter matter = read_fines(root);
   matter.card = card;
-  matter.share = fines.number("share", Unit::none, Range{0.0, 1.0, true, true});
-  matter.solid_fraction = fines.number("solid_fraction", Unit::none, Range{0.0, 1.0, true, true}, 0.0);
-  matter.at_density = fines.choice<CellStartFrom>("start", CellStartFrom::pressure) == CellStartFrom::density;
   if (setup.given && matter.solid_fraction > 0.0)
-    fines.add_error("solid_fraction", "goes without packing, whose box says it");
+    root.table_or_empty("fines").add_error("solid_fraction", "goes without packing, whose box says it");
   spec.cells = matter;
 }
 
@@ -393,11 +513,14 @@ std::int64_t states_to_see(const MacroSpec& spec) {
   return spec.bodies <= kSmall ? kOfSmall : kKeptStates;
 }
 
+const Key kLawKey{"law", "law card, law table or card of the cell law; path relative to the scene",
+                  "-, unless `--law` names one"};
+
 MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
-  (void)root.choice("kind", {"macro"});
+  (void)root.choice(kKindKey, {"macro"});
   MacroScene out;
-  out.title = root.text("title", "");
-  out.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+  out.title = root.text(kTitleKey, "");
+  out.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
   out.law_file = law_file;
   if (law_file.empty()) {
     read_law_choices(root, out.law);
@@ -411,7 +534,7 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   else if (root.has("material"))
     root.add_error("material",
                    "goes without: the materials of all bodies are those of the law, which was measured with them");
-  const SceneTable macro = root.table("macro");
+  const SceneTable macro = root.table({"macro", "solid grains and soft particles, their preparation and their test"});
   out.setup = read_macro_setup(macro, out.spec);
   read_stages(root, macro, out.setup.spec);
   refuse_idle_test_keys(macro, root, {&out.setup.spec});
@@ -432,7 +555,9 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   if (out.setup.twins.empty())
     add_error_beside(root, {"contents"}, "is of the soft particles of a resolved twin: goes with resolved = true");
   out.setup.kept_states = read_kept_states(root, states_to_see(out.setup.spec));
-  out.contents = root.count("contents", 1, 100000, out.contents);
+  out.contents =
+      root.count({"contents", "number of different packings in the soft particles of the twin; refused without a twin"},
+                 1, 100000, out.contents);
   return out;
 }
 
@@ -440,14 +565,15 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
 
 MacroScene read_macro_scene(const Scene& scene, const std::string& law) {
   return scene.read([&](const SceneTable& root) {
-    const std::string written = root.text("law", "");
+    const std::string written = root.text(kLawKey, "");
     return read_with_law(root, !law.empty() || written.empty() ? law : scene.resolve(written));
   });
 }
 
 MacroScene read_macro_scene_alone(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
-    (void)root.text("law", "");
+    (void)root.text(kLawKey, "");
+    if (root.has("fines")) (void)read_fines(root);
     return read_with_law(root, "");
   });
 }

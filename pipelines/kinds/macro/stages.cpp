@@ -17,6 +17,10 @@ namespace {
 constexpr const char* kCycles = "cycles";
 constexpr double kLargestStrain = 0.5;
 
+const Key kNameKey{"name", "name of the stage in the results", "the kind, numbered; `\"cycles\"`: \"cycle\""};
+const Key kStressKey{"stress",
+                     "stress at the end of the stage; in `\"consolidation\"` one number or three, `[x, y, z]`"};
+
 bool goes_a_way(StageKind kind) {
   return kind != StageKind::unload && kind != StageKind::reload && kind != StageKind::hold;
 }
@@ -31,7 +35,8 @@ class StageReader {
   void read(const SceneTable& t) {
     std::vector<const char*> kinds = all_enum_names<StageKind>();
     kinds.push_back(kCycles);
-    const std::string word = t.choice("kind", kinds);
+    const std::string word =
+        t.choice({"kind", "kind of the stage: which axes go by strain, or to a stress, and how"}, kinds);
     if (word == kCycles) return read_cycles(t);
     const StageKind kind = *parse_enum<StageKind>(word);
     refuse_foreign_keys(t, word);
@@ -55,10 +60,17 @@ class StageReader {
     MacroStage stage;
     stage.record.kind = kind;
     stage.record.way = goes_a_way(kind) ? kind : way_before(t, kind);
-    stage.steps = t.count("steps", 1, 100000, hold ? 1 : spec_.steps);
-    stage.increments_per_step = t.count("increments_per_step", 1, 10000, hold ? 1 : spec_.increments_per_step);
+    stage.steps = t.count({"steps", "recorded points of the stage", "that of the whole test; `\"hold\"`: 1"}, 1, 100000,
+                          hold ? 1 : spec_.steps);
+    stage.increments_per_step =
+        t.count({"increments_per_step", "increments per recorded point", "that of the whole test; `\"hold\"`: 1"}, 1,
+                10000, hold ? 1 : spec_.increments_per_step);
     stage.tolerance =
-        t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, hold ? 0.1 * spec_.tolerance : spec_.tolerance);
+        t.number({"tolerance",
+                  "equilibrium: largest net force over the mean contact force; controlled stresses are met to a third "
+                  "of `tolerance` times the largest target stress",
+                  "that of the whole test; `\"hold\"`: a tenth of it"},
+                 Unit::none, Range{0.0, 1.0, true, false}, hold ? 0.1 * spec_.tolerance : spec_.tolerance);
     if (hold) refuse(t, {"modulus_stress"}, "nothing is driven while all is held: there is no modulus");
     if (!hold) stage.record.modulus_stress = spec_.modulus_stress;
     read_modulus_stress(t, stage.record.modulus_stress);
@@ -77,7 +89,7 @@ class StageReader {
   }
 
   std::string name_of(const SceneTable& t, const std::string& word) const {
-    std::string name = t.text("name", "");
+    std::string name = t.text(kNameKey, "");
     if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < ' '; }))
       t.add_error("name", "must be one line of text");
     if (!name.empty()) return name;
@@ -110,7 +122,11 @@ class StageReader {
 
   static double read_strain(const SceneTable& t, bool back) {
     const Range range = back ? Range{0.0, kLargestStrain, true, false} : Range::closed(-kLargestStrain, kLargestStrain);
-    const double strain = t.number("strain", Unit::none, range);
+    const double strain =
+        t.number({"strain",
+                  "nominal strain from the start of the stage (`\"shear\"`: logarithmic); negative values lengthen the "
+                  "box. In `\"unload\"`, `\"reload\"` and `\"cycles\"`: amount of strain, above 0"},
+                 Unit::none, range);
     if (strain == 0.0) t.add_error("strain", "must not be 0: kind = \"hold\" keeps the box as it is");
     return strain;
   }
@@ -118,10 +134,10 @@ class StageReader {
   /// Axes in the order x, y, z; a single number is that of all.
   static Vec3 read_stresses(const SceneTable& t) {
     if (!t.is_list("stress")) {
-      const double stress = t.number("stress", Unit::pressure, Range::positive());
+      const double stress = t.number(kStressKey, Unit::pressure, Range::positive());
       return {{stress, stress, stress}};
     }
-    const Vec3 stress = t.vector3("stress", Unit::pressure);
+    const Vec3 stress = t.vector3(kStressKey, Unit::pressure);
     for (int k = 0; k < 3; ++k)
       if (!(stress[k] > 0.0)) t.add_error("stress", "must be above 0 along all axes: grains cannot be pulled");
     return stress;
@@ -147,7 +163,7 @@ class StageReader {
       return;
     }
     if (stress) {
-      const double value = t.number("stress", Unit::pressure, Range::positive());
+      const double value = t.number(kStressKey, Unit::pressure, Range::positive());
       by_stress(stage, way, {{value, value, value}});
     } else {
       by_strain(stage, way, sign * read_strain(t, sign < 0.0 || stage.record.kind != stage.record.way));
@@ -173,18 +189,26 @@ class StageReader {
   /// is given.
   void hold_sides(const SceneTable& t, MacroStage& stage) const {
     const bool given = t.has("lateral_stress");
-    const double stress = given ? t.number("lateral_stress", Unit::pressure, Range::positive()) : 0.0;
+    const double stress = given ? t.number({"lateral_stress", "of `\"triaxial\"`: stress along x and y",
+                                            "the lateral stress when the stage begins"},
+                                           Unit::pressure, Range::positive())
+                                : 0.0;
     for (const std::size_t k : {0U, 1U}) stage.axis[k] = {true, stress, given ? -1 : here()};
   }
 
   static void read_axes(const SceneTable& t, MacroStage& stage) {
     bool any = false;
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::string strain = std::string("strain_") + "xyz"[k];
-      const std::string stress = std::string("stress_") + "xyz"[k];
-      if (t.has(strain) && t.has(stress)) t.add_error(stress, "contradicts " + strain + ": give one of both");
-      any = any || t.has(strain) || t.has(stress);
-      if (t.has(stress))
+      const std::string axis(1, "xyz"[k]);
+      const Key strain{"strain_" + axis,
+                       "of `\"axes\"`: strain along " + axis + ", where this axis is strain-controlled"};
+      const Key stress{"stress_" + axis,
+                       "of `\"axes\"`: final stress along " + axis + ", where this axis is stress-controlled",
+                       "controlled by strain"};
+      if (t.has(strain.name) && t.has(stress.name))
+        t.add_error(stress.name, "contradicts " + strain.name + ": give one of both");
+      any = any || t.has(strain.name) || t.has(stress.name);
+      if (t.has(stress.name))
         stage.axis[k] = {true, t.number(stress, Unit::pressure, Range::positive()), -1};
       else
         stage.axis[k].value = t.number(strain, Unit::none, Range::closed(-kLargestStrain, kLargestStrain), 0.0);
@@ -231,14 +255,16 @@ class StageReader {
   }
 
   void hold(const SceneTable& t) {
-    if (t.choice("by", {"strain", "stress"}, "strain") == "strain") return;
+    if (t.choice({"by", "of `\"hold\"`: `\"strain\"` keeps the box, `\"stress\"` keeps the stresses"},
+                 {"strain", "stress"}, "strain") == "strain")
+      return;
     for (AxisDrive& drive : stages_.back().axis) drive = {true, 0.0, here()};
   }
 
   void read_cycles(const SceneTable& t) {
     refuse_foreign_keys(t, kCycles);
-    const std::int64_t count = t.count("count", 1, 1000);
-    const std::string name = t.text("name", "cycle");
+    const std::int64_t count = t.count({"count", "of `\"cycles\"`: number of cycles"}, 1, 1000);
+    const std::string name = t.text(kNameKey, "cycle");
     for (std::int64_t k = 1; k <= count; ++k) {
       stages_.push_back(begin(t, StageKind::unload));
       stages_.back().record.name = fmt::format("{} {} unload", name, k);
@@ -267,7 +293,12 @@ double strain_under(double stress, const MacroSpec& spec) {
 
 void read_modulus_stress(const SceneTable& t, std::array<double, 2>& interval) {
   if (!t.has("modulus_stress")) return;
-  const std::vector<double> ends = t.numbers("modulus_stress", Unit::pressure, Range::not_negative());
+  const std::vector<double> ends =
+      t.numbers({"modulus_stress",
+                 "two stresses between which moduli are taken, the lower one first: axial stress; mean stress for "
+                 "`\"isotropic\"` and `\"consolidation\"`; (σz - σx)/2 for `\"shear\"`",
+                 "depends on the kind of test; in a stage that of the whole test"},
+                Unit::pressure, Range::not_negative());
   if (ends.size() != 2 || !(ends[0] < ends[1]))
     t.add_error("modulus_stress", "must be two stresses, the lower one first: [\"1 MPa\", \"2 MPa\"]");
   else
@@ -299,7 +330,9 @@ bool each_says(const std::vector<SceneTable>& stages, const std::string& key) {
 }  // namespace
 
 void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& spec) {
-  const std::vector<SceneTable> tables = holder.tables("stage");
+  const std::vector<SceneTable> tables = holder.tables(
+      {"stage",
+       "one loading of a test, in this order; such tables replace `test`, `strain`, `preload` and `preload_steps`"});
   if (tables.empty()) return;
   for (const char* key : {"test", "strain", "preload", "preload_steps"})
     if (macro.has(key)) macro.add_error(key, "goes without [[stage]], which says the whole test");

@@ -61,7 +61,7 @@ NextSteps next_of(const RunData&) {
 
 KindResults macro_comparison_results() {
   return {.files = {{.names = "comparison\\.json"}, {.names = "(macro|states_macro)_.+\\.h5", .says_so = true}},
-          .sections = {{Place::macro_scenes, macro_scenes_section}},
+          .sections = {{Part::several, macro_scenes_section}},
           .lines = lines_of,
           .values = values_of,
           .next = next_of};

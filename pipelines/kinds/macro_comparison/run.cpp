@@ -217,7 +217,8 @@ SceneKind macro_comparison_kind() {
           .run = run_macro_comparison,
           .check = [](const Scene& scene, const std::string&, Findings& out) { check_macro_comparison(scene, out); },
           .read = [](const Scene& scene) { (void)read_macro_comparison(scene); },
-          .results = macro_comparison_results()};
+          .results = macro_comparison_results(),
+          .explored_from = {"", explored_stages(), explored_stages("scene")}};
 }
 
 }  // namespace softgrain

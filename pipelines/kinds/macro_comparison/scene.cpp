@@ -36,7 +36,7 @@ ComparisonScene read_scene(const SceneTable& root, const SceneTable& t, const Ma
   if (valid && !t.has_errors()) require_room_for_images(t, "bodies", scene.setup, seed);
   std::string name = default_name(scene.setup.spec);
   std::replace(name.begin(), name.end(), '.', '-');
-  scene.name = t.text("name", name);
+  scene.name = t.text({"name", "name of the scene in file names", "test and soft share"}, name);
   if (!valid_name(scene.name)) t.add_error("name", "letters, digits and '-' only: it becomes part of file names");
   for (const ComparisonScene& s : before)
     if (s.name == scene.name)
@@ -48,19 +48,22 @@ ComparisonScene read_scene(const SceneTable& root, const SceneTable& t, const Ma
 
 MacroComparisonSetup read_macro_comparison(const Scene& scene) {
   return scene.read([&](const SceneTable& root) {
-    (void)root.choice("kind", {"macro-comparison"});
+    (void)root.choice(kKindKey, {"macro-comparison"});
     MacroComparisonSetup setup;
-    setup.title = root.text("title", "");
-    setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+    setup.title = root.text(kTitleKey, "");
+    setup.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
     setup.spec = read_soft_particle(root);
-    setup.contents = root.table_or_empty("packing").count("count", 1, 100000, setup.contents);
-    const SceneTable macro = root.table("macro");
+    setup.contents = root.table_or_empty("packing").count(
+        {"count", "number of different packings inside the soft particles"}, 1, 100000, setup.contents);
+    const SceneTable macro = root.table({"macro", "particles, preparation, test and twins that all scenes share"});
     MacroSetup base = read_macro_setup(macro, setup.spec);
     read_stages(root, macro, base.spec);
     require_own_preparation(macro, base);
     if (!macro.has("resolved")) base.twins = {Twin::shelled, Twin::free};
     base.kept_states = read_kept_states(root);
-    for (const SceneTable& t : root.tables("scene"))
+    for (const SceneTable& t : root.tables({"scene",
+                                            "one scene to compare on, with the keys of `[macro]` that differ; at least "
+                                            "one table, which may be empty"}))
       setup.scenes.push_back(read_scene(root, t, base, setup.spec, setup.scenes, setup.seed, !root.has_errors()));
     refuse_idle_stages(root, "scene", root.tables("scene"));
     std::vector<const MacroSpec*> tests;
@@ -77,7 +80,9 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
     const std::vector<SceneTable> parts = root.tables("scene");
     for (std::size_t k = 0; k < parts.size(); ++k)
       if (parts[k].has("law"))
-        parts[k].table("law").section([&] { setup.scenes[k].laws = read_law_sources(scene, parts[k].table("law")); });
+        parts[k]
+            .table({"law", "law of this scene, with the keys of `[law]`, instead of the common `[law]`"})
+            .section([&] { setup.scenes[k].laws = read_law_sources(scene, parts[k].table("law")); });
     if (setup.scenes.empty())
       root.add_error("scene", "no [[scene]] to compare on; an empty one takes all from [macro]");
     const bool all_own = !setup.scenes.empty() && std::all_of(setup.scenes.begin(), setup.scenes.end(),
@@ -85,7 +90,8 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
     if (all_own && root.has("law"))
       root.add_error("law", "every [[scene]] has a law of its own");
     else if (!all_own)
-      root.table("law").section([&] { setup.laws = read_law_sources(scene, root.table("law")); });
+      root.table({"law", "laws to compare: `table`, `card` or both; refused if every scene has its own law"})
+          .section([&] { setup.laws = read_law_sources(scene, root.table("law")); });
     return setup;
   });
 }

@@ -79,10 +79,12 @@ std::vector<ExtrapolationSummary> extrapolate(const std::string& family, const s
 
 EquationSettings read_equation(const SceneTable& t) {
   EquationSettings s;
-  s.form = t.choice<StateForm>("form", s.form);
-  s.largest_span = t.number("largest_span", Unit::none, Range::above(1.0), s.largest_span);
-  s.spans = t.numbers("spans", Unit::none, Range::above(1.0), s.spans);
-  s.replicates = t.count("replicates", 40, 100000, s.replicates);
+  s.form = t.choice<StateForm>({"form", "form of the equation of state"}, s.form);
+  s.largest_span = t.number({"largest_span", "largest span of the variants that extrapolations use", "all"}, Unit::none,
+                            Range::above(1.0), s.largest_span);
+  s.spans = t.numbers({"spans", "spans for which the onset of pressure is extrapolated from the variants", "none"},
+                      Unit::none, Range::above(1.0), s.spans);
+  s.replicates = t.count({"replicates", "bootstrap replicates of the fit"}, 40, 100000, s.replicates);
   return s;
 }
 

@@ -85,7 +85,7 @@ KindResults material_results() {
   return {.files = {{.names = "material\\.csv"},
                     {.names = "(material|states_material)(_.+)?\\.h5", .says_so = true},
                     {.names = "lammps-(.+-)?[0-9]+"}},
-          .sections = {{Place::material, material_section}},
+          .sections = {{Part::tests, material_section}},
           .lines = lines_of,
           .values = values_of,
           .curves = curves_of_run,

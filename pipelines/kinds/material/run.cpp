@@ -421,7 +421,8 @@ SceneKind material_kind() {
                       Findings& out) { check_variants(read_material_scene(scene), out); },
           .read = [](const Scene& scene) { (void)read_material_scene(scene); },
           .results = material_results(),
-          .takes_engine = true};
+          .takes_engine = true,
+          .explored_from = {"", explored_stages(), explored_stages("loading"), explored_stages("variant")}};
 }
 
 }  // namespace softgrain

@@ -25,6 +25,8 @@ namespace {
 /// A third: what counts as coarse in most pages about mixtures; a half beside it.
 const std::vector<double> kSplits{1.0 / 3.0, 0.5};
 
+const Key kSamplesKey{"samples", "number of packings that are drawn, prepared and tested"};
+
 }  // namespace
 
 MacroSetup material_defaults() {
@@ -43,25 +45,39 @@ MacroSetup material_defaults() {
 namespace {
 
 void read_matter(const SceneTable& t, MacroSpec& spec) {
-  spec.youngs_modulus = t.number("E", Unit::pressure, Range::positive(), spec.youngs_modulus);
-  spec.poisson_ratio = t.number("nu", Unit::none, kPoissonRange, spec.poisson_ratio);
-  spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
-  spec.density = t.number("density", Unit::density, Range::positive(), spec.density);
+  spec.youngs_modulus =
+      t.number({"E", "Young's modulus of the grains"}, Unit::pressure, Range::positive(), spec.youngs_modulus);
+  spec.poisson_ratio = t.number({"nu", "Poisson's ratio of the grains"}, Unit::none, kPoissonRange, spec.poisson_ratio);
+  spec.friction =
+      t.number({"mu", "friction coefficient of the grains"}, Unit::none, Range::not_negative(), spec.friction);
+  spec.density = t.number({"density", "density of the grains"}, Unit::density, Range::positive(), spec.density);
 }
 
 void read_grains(const SceneTable& t, MacroSpec& spec) {
-  spec.bodies = t.count("count", 8, 100000000, spec.bodies);
+  spec.bodies = t.count({"count",
+                         "grains in each packing; a recipe raises the default where a periodic cell needs more "
+                         "(`check` and the run say so)"},
+                        8, 100000000, spec.bodies);
   if (t.has("exponent") || t.has("radius_max") || t.has("ratio")) spec.solid_sizes.reset();
-  spec.exponent = t.number("exponent", Unit::none, Range::above(1.0), spec.exponent);
-  spec.solid_radius_max = t.number("radius_max", Unit::length, Range::positive(), spec.solid_radius_max);
-  spec.solid_polydispersity = t.number("ratio", Unit::none, Range::above(1.0), spec.solid_polydispersity);
+  spec.exponent = t.number({"exponent", "power law of sizes: b of the number density P(r) ~ r^-b"}, Unit::none,
+                           Range::above(1.0), spec.exponent);
+  spec.solid_radius_max =
+      t.number({"radius_max", "largest radius"}, Unit::length, Range::positive(), spec.solid_radius_max);
+  spec.solid_polydispersity = t.number({"ratio", "span: largest over smallest radius"}, Unit::none, Range::above(1.0),
+                                       spec.solid_polydispersity);
   if (!t.has("sizes")) return;
   spec.solid_sizes.reset();
-  if (const auto sizes = read_sizes(t, "sizes", {"exponent", "radius_max", "ratio"})) take_sizes(spec, *sizes);
+  if (const auto sizes =
+          read_sizes(t, {"sizes", "any other size distribution, instead of `exponent`, `radius_max` and `ratio`"},
+                     {"exponent", "radius_max", "ratio"}))
+    take_sizes(spec, *sizes);
 }
 
 void read_splits(const SceneTable& t, MacroSpec& spec) {
-  spec.splits = t.numbers("splits", Unit::none, Range{0.0, 1.0, true, true}, spec.splits);
+  spec.splits = t.numbers({"splits",
+                           "a grain is coarse above this share of the largest radius; for each split, the stress on "
+                           "coarse and fine grains is recorded"},
+                          Unit::none, Range{0.0, 1.0, true, true}, spec.splits);
   std::set<double> once(spec.splits.begin(), spec.splits.end());
   if (once.size() != spec.splits.size()) t.add_error("splits", "one is there twice");
   if (spec.splits.empty()) t.add_error("splits", "at least one value is needed");
@@ -79,11 +95,11 @@ void read_finer_preparation(const SceneTable& t, MacroSetup& setup) {
 
 void read_material_tables(const SceneTable& root, MacroSetup& setup) {
   MacroSpec& spec = setup.spec;
-  read_matter(root.table_or_empty("material"), spec);
-  read_grains(root.table("grains"), spec);
+  read_matter(root.table_or_empty({"material", "elasticity, friction and density of the grains"}), spec);
+  read_grains(root.table({"grains", "sizes of all grains of the material, and their number in each packing"}), spec);
   spec.protocol = protocol_of(spec.preparation, spec.friction);
-  read_finer_preparation(root.table_or_empty("packing"), setup);
-  read_test(root.table_or_empty("test"), spec);
+  read_finer_preparation(root.table_or_empty({"packing", "preparation of the packings"}), setup);
+  read_test(root.table_or_empty({"test", "test of the prepared packings"}), spec);
 }
 
 Grading sizes_of(const MacroSpec& spec) {
@@ -107,7 +123,10 @@ namespace {
 /// The tables [[loading]]: tests of every variant. Their keys are read over those of each, once all are found valid.
 class Loadings {
  public:
-  Loadings(const SceneTable& root, const MacroSpec& base) : tables_(root.tables("loading")) {
+  Loadings(const SceneTable& root, const MacroSpec& base)
+      : tables_(root.tables({"loading",
+                             "one of several tests of the same packings: the keys of `[test]` that differ, and "
+                             "`[[loading.stage]]` for stages"})) {
     if (tables_.empty()) return;
     if (!root.tables("stage").empty())
       root.add_error("stage", "goes without [[loading]]: give [[loading.stage]], or a loading of its own");
@@ -158,7 +177,8 @@ class Loadings {
     }
     if (!t.has("loadings")) return all();
     std::vector<std::size_t> some;
-    for (const std::string& name : t.texts("loadings")) {
+    for (const std::string& name :
+         t.texts({"loadings", "names of the loadings under which a variant is tested", "all"})) {
       const auto found = std::find(names_.begin(), names_.end(), name);
       const auto number = static_cast<std::size_t>(found - names_.begin());
       const std::string near = nearest_word(name, names_);
@@ -217,7 +237,7 @@ MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const 
   read_finer_preparation(t, v.setup);
   read_test(t, spec);
   read_part_stages(root, t, spec);
-  v.setup.samples = t.count("samples", 1, 10000, v.setup.samples);
+  v.setup.samples = t.count(kSamplesKey, 1, 10000, v.setup.samples);
   if (valid && !t.has_errors()) require_material_memory(t, v.setup);
   return v;
 }
@@ -248,16 +268,17 @@ void require_names_apart(const SceneTable& root, const std::vector<MaterialVaria
 
 MaterialScene read_material(const SceneTable& root) {
   MaterialScene out;
-  out.title = root.text("title", "");
-  out.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+  out.title = root.text(kTitleKey, "");
+  out.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
   MacroSetup base = material_defaults();
   read_material_tables(root, base);
   const SceneTable grains = root.table("grains");
   read_splits(grains, base.spec);
   read_stages(root, root.table_or_empty("test"), base.spec);
-  base.samples = root.count("samples", 1, 10000, base.samples);
+  base.samples = root.count(kSamplesKey, 1, 10000, base.samples);
   base.kept_states = read_kept_states(root);
-  out.equation = read_equation(root.table_or_empty("equation"));
+  out.equation = read_equation(root.table_or_empty(
+      {"equation", "equation of state (pressure over solid fraction), fitted to all variants together"}));
   out.equation.asked = root.has("equation");
   const Loadings loadings(root, base.spec);
   std::set<std::string> names;
@@ -267,7 +288,10 @@ MaterialScene read_material(const SceneTable& root) {
     if (root.has_errors()) return;  // nothing comes of it
     for (MaterialVariant& one : loadings.apply(v, under, plain)) out.variants.push_back(std::move(one));
   };
-  const std::vector<SceneTable> variants = root.tables("variant");
+  const std::vector<SceneTable> variants =
+      root.tables({"variant",
+                   "another material, preparation or test: the keys of the other tables that differ, without their "
+                   "table names, and `[[variant.stage]]` for its stages"});
   std::vector<std::vector<std::size_t>> under;
   for (const SceneTable& t : variants) {
     const MaterialVariant v = read_variant(root, t, base, valid);
@@ -293,7 +317,7 @@ MaterialScene read_material(const SceneTable& root) {
 
 MaterialScene read_material_scene(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
-    (void)root.choice("kind", {"material"});
+    (void)root.choice(kKindKey, {"material"});
     return read_material(root);
   });
 }

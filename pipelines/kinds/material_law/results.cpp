@@ -39,7 +39,7 @@ NextSteps next_of_law(const report::RunData& run) {
 
 KindResults material_law_results() {
   return {.files = {{.names = "cell_law\\.toml", .check = check_laws}},
-          .sections = {{Place::laws, report::cell_law_section}},
+          .sections = {{Part::laws, report::cell_law_section}},
           .lines = lines_of_law,
           .values = values_of_law,
           .next = next_of_law};

@@ -47,11 +47,15 @@ MaterialVariant variant_of(const std::string& name, const MacroSetup& base, cons
 std::string name_of(double share) { return fmt::format("mix-{:.6g}", 100.0 * share); }
 
 void read_law(const SceneTable& law, MaterialLawScene& out) {
-  out.split = law.number("split", Unit::none, Range{0.0, 1.0, true, true}, out.split);
-  out.material.equation.form = law.choice<StateForm>("form", StateForm::porosity);
-  out.mixtures = law.numbers("mixtures", Unit::none, Range{0.0, 1.0, true, true}, {0.2, 0.4, 0.6, 0.8});
-  out.material.equation.replicates = law.count("replicates", 40, 100000, 400);
-  out.cells = law.count("cells", kLeastCells, 100000, out.cells);
+  out.split = law.number({"split", "a grain belongs to the fines below this share of the largest radius"}, Unit::none,
+                         Range{0.0, 1.0, true, true}, out.split);
+  out.material.equation.form = law.choice<StateForm>({"form", "form of the equation of state"}, StateForm::porosity);
+  out.mixtures =
+      law.numbers({"mixtures", "shares of fines in the mixtures, by solid volume; three at least, ascending"},
+                  Unit::none, Range{0.0, 1.0, true, true}, {0.2, 0.4, 0.6, 0.8});
+  out.material.equation.replicates = law.count({"replicates", "bootstrap replicates"}, 40, 100000, 400);
+  out.cells =
+      law.count({"cells", "sites of the packing of cells to which friction is fitted"}, kLeastCells, 100000, out.cells);
   if (out.mixtures.size() < kLeastMixtures)
     law.add_error("mixtures", "at least three shares are needed: w_inf and xi are fitted to them");
   for (std::size_t k = 1; k < out.mixtures.size(); ++k)
@@ -113,20 +117,23 @@ GrainShares shares_of(const MaterialLawScene& scene, const MaterialVariant& vari
 
 MaterialLawScene read_material_law_scene(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
-    (void)root.choice("kind", {"material-law"});
+    (void)root.choice(kKindKey, {"material-law"});
     MaterialLawScene out{{}, Grading::power_law(3.5, 1.0, 2.0), 1.0 / 3.0, {}, 100};
-    out.material.title = root.text("title", "");
-    out.material.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+    out.material.title = root.text(kTitleKey, "");
+    out.material.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
     MacroSetup base = material_law_defaults();
     read_material_tables(root, base);
     const SceneTable test = root.table_or_empty("test");
     if (base.spec.test != MacroTest::oedometric)
       test.add_error("test", "the law is measured in oedometric compression (and the fines in shear)");
-    base.samples = root.count("samples", 1, 10000, base.samples);
+    base.samples = root.count({"samples", "samples of each measured packing that are drawn, prepared and tested"}, 1,
+                              10000, base.samples);
     base.kept_states = read_kept_states(root);
-    const SceneTable law = root.table_or_empty("law");
+    const SceneTable law = root.table_or_empty({"law", "measurement and fit of the cell law"});
     read_law(law, out);
-    const double shear = law.number("shear_strain", Unit::none, Range{0.0, 0.5, true, false}, 0.06);
+    const double shear =
+        law.number({"shear_strain", "logarithmic strain to which the fines are sheared at constant volume"}, Unit::none,
+                   Range{0.0, 0.5, true, false}, 0.06);
     if (root.has_errors()) return out;
     out.sizes = sizes_of(base.spec);
     make_variants(law, base, shear, out);

@@ -148,7 +148,7 @@ NextSteps next_of(const report::RunData&) {
 
 KindResults material_models_results() {
   return {.files = {{.names = "models_.+\\.h5"}, {.names = "models\\.csv"}},
-          .sections = {{Place::material, report::material_models_section}},
+          .sections = {{Part::tests, report::material_models_section}},
           .values = values_of,
           .next = next_of};
 }

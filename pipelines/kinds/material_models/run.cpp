@@ -63,7 +63,8 @@ SceneKind material_models_kind() {
           .run = run_material_models,
           .check = [](const Scene& scene, const std::string&, Findings& out) { check_models(scene, out); },
           .read = [](const Scene& scene) { (void)read_material_models_scene(scene); },
-          .results = material_models_results()};
+          .results = material_models_results(),
+          .explored_from = {"", explored_stages(), explored_stages("variant")}};
 }
 
 }  // namespace softgrain

@@ -30,7 +30,8 @@ void require_own_keys(const SceneTable& t, ModelKind kind) {
 }
 
 CellCard read_card(const Scene& scene, const SceneTable& t, MaterialModelsScene& out) {
-  const std::string path = scene.resolve(t.text("card"));
+  const std::string path =
+      scene.resolve(t.text({"card", "card of the cell law, for cells, mean fields and mapped substitutes", "-"}));
   if (std::find(out.files.begin(), out.files.end(), path) == out.files.end()) {
     out.files.push_back(path);
     out.text += read_text(path);
@@ -40,14 +41,14 @@ CellCard read_card(const Scene& scene, const SceneTable& t, MaterialModelsScene&
 
 LawSources read_shells(const Scene& scene, const SceneTable& t, MaterialModelsScene& out) {
   LawSources law;
-  const std::string path = scene.resolve(t.text("table"));
+  const std::string path = scene.resolve(t.text({"table", "shells: a law table", "-"}));
+  law.forms = {t.choice<LawForm>({"form", "shells: form of the law"}, LawForm::directional)};
   law.table = load_law_table(path);
   law.files = {path};
   if (std::find(out.files.begin(), out.files.end(), path) == out.files.end()) {
     out.files.push_back(path);
     out.text += read_text(path);
   }
-  law.forms = {t.choice<LawForm>("form", LawForm::directional)};
   law.range = RangePolicy::clamp;
   return law;
 }
@@ -55,23 +56,37 @@ LawSources read_shells(const Scene& scene, const SceneTable& t, MaterialModelsSc
 MaterialModel read_model(const Scene& scene, const SceneTable& t, MaterialModelsScene& out) {
   MaterialModel m;
   m.name = read_variant_name(t);
-  m.kind = t.choice<ModelKind>("kind");
-  if (t.has("variants")) m.variants = t.texts("variants");
+  m.kind = t.choice<ModelKind>({"kind", "kind of the model"});
+  if (t.has("variants")) m.variants = t.texts({"variants", "names of the variants that are run with the model", "all"});
   require_own_keys(t, m.kind);
-  m.split = t.number("split", Unit::none, Range{0.0, 1.0, true, true}, m.split);
-  m.places = t.choice<ModelPlaces>("places", m.places);
-  m.start = t.choice<ModelStart>("start", m.start);
-  m.smallest = t.number("smallest", Unit::none, Range{0.0, m.split, true, true}, std::min(m.smallest, 0.6 * m.split));
-  m.soft_share = t.number("soft_share", Unit::none, Range{0.0, 0.6, false, false}, 0.0);
+  m.split = t.number({"split", "grains below this share of the largest radius are fines; not for mean fields"},
+                     Unit::none, Range{0.0, 1.0, true, true}, m.split);
+  m.places = t.choice<ModelPlaces>(
+      {"places", "cells: positions of the coarse grains, `\"truth\"` (of the reference) or `\"own\"`"}, m.places);
+  m.start = t.choice<ModelStart>({"start",
+                                  "cells, mean fields: start from the `\"pressure\"` of the reference, or from its "
+                                  "`\"density\"` (solid fraction and grading alone)"},
+                                 m.start);
+  m.smallest = t.number({"smallest", "substitutes: smallest radius over the largest of the material, below `split`",
+                         "0.2, at most 0.6 `split`"},
+                        Unit::none, Range{0.0, m.split, true, true}, std::min(m.smallest, 0.6 * m.split));
+  m.soft_share = t.number(
+      {"soft_share",
+       "cells with `places = \"own\"`: volume share of soft particles (fines without a grain) among all particles"},
+      Unit::none, Range{0.0, 0.6, false, false}, 0.0);
   if (m.soft_share > 0.0 && m.places == ModelPlaces::truth)
     t.add_error("soft_share", "soft bodies are at places of their own: places = \"own\"");
   if (m.kind == ModelKind::cells && m.soft_share == 0.0 && t.has("radii"))
     t.add_error("radii", "are those of soft bodies: goes with soft_share above 0");
-  m.mapped = t.flag("mapped", false);
+  m.mapped = t.flag({"mapped", "substitutes: map stresses by the equation of state"}, false);
   if (m.kind == ModelKind::substitute && !m.mapped && t.has("card"))
     t.add_error("card", "says the equation of state that stresses are mapped by: goes with mapped = true");
-  m.scale = t.number("scale", Unit::none, Range{0.0, 2.0, true, false}, m.scale);
-  const std::vector<double> radii = t.numbers("radii", Unit::none, Range{0.0, 2.0, true, false}, {0.2, 0.6});
+  m.scale = t.number({"scale", "shells: factor on their radii after they are placed"}, Unit::none,
+                     Range{0.0, 2.0, true, false}, m.scale);
+  const std::vector<double> radii = t.numbers({"radii",
+                                               "shells, and cells with `soft_share`: smallest and largest radius of "
+                                               "the soft particles, over the largest grain"},
+                                              Unit::none, Range{0.0, 2.0, true, false}, {0.2, 0.6});
   if (radii.size() != 2 || !(radii[0] < radii[1]))
     t.add_error("radii", "the smallest and the largest shell, in this order");
   else
@@ -89,10 +104,12 @@ bool is_named(const MaterialVariant& v, const std::string& name) { return name =
 
 MaterialModelsScene read_material_models_scene(const Scene& scene) {
   return scene.read([&](const SceneTable& root) {
-    (void)root.choice("kind", {"material-models"});
+    (void)root.choice(kKindKey, {"material-models"});
     MaterialModelsScene out;
     out.material = read_material(root);
-    if (root.has("blind")) out.blind = root.texts("blind");
+    if (root.has("blind"))
+      out.blind =
+          root.texts({"blind", "names of variants that the laws were not measured on; they have tables of their own"});
     const auto require_variants = [&](const SceneTable& t, const char* key, const std::vector<std::string>& names) {
       for (const std::string& name : names)
         if (std::none_of(out.material.variants.begin(), out.material.variants.end(),
@@ -101,7 +118,9 @@ MaterialModelsScene read_material_models_scene(const Scene& scene) {
     };
     require_variants(root, "blind", out.blind);
     std::set<std::string> names;
-    for (const SceneTable& t : root.tables("model")) {
+    for (const SceneTable& t : root.tables({"model",
+                                            "a model of the material, run on every variant and loading, sample by "
+                                            "sample, from the initial state of the reference"})) {
       if (!names.insert(t.text("name", "")).second) t.add_error("name", "is used twice");
       MaterialModel m = read_model(scene, t, out);
       require_variants(t, "variants", m.variants);

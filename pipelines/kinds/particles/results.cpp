@@ -64,7 +64,7 @@ KindResults particles_results() {
                      .check = check_particles_file,
                      .visit = visit_particles},
                     {.names = "run(_contacts)?\\.xdmf"}},
-          .sections = {{Place::particles, report::particles_section}},
+          .sections = {{Part::states, report::particles_section}},
           .lines = lines_of,
           .values = values_of,
           .next = next_of};

@@ -83,7 +83,13 @@ SceneKind particles_kind() {
       .check = [](const Scene& scene, const std::string&, Findings& out) { check_any_particles(scene, out); },
       .read = [](const Scene& scene) { read_any_particles(scene, {}); },
       .refuse = [](const Scene& scene, const CommonOptions& options) { read_any_particles(scene, seed_of(options)); },
-      .results = particles_results()};
+      .results = particles_results(),
+      .explored_from = {"[material.NAME]\ndensity = 1.0\n[[contact]]\npair = [\"NAME\", \"NAME\"]\n",
+                        "dimension = 2\n[material.NAME]\ndensity = 1.0\n[[contact]]\npair = [\"NAME\", \"NAME\"]\nlaw "
+                        "= \"cohesive\"\n"
+                        "mu = 0.5\nrolling_stiffness = 0.1\n",
+                        "[material.NAME]\ndensity = 1.0\n[[contact]]\npair = [\"NAME\", \"rigid\"]\nlaw = "
+                        "\"law-card\"\nfile = \"NAME\"\n"}};
 }
 
 }  // namespace softgrain

@@ -303,7 +303,10 @@ SceneKind pipeline_kind() {
           .run = run_pipeline,
           .check = check_pipeline,
           .read = [](const Scene& scene) { (void)read_pipeline_setup(scene); },
-          .results = {.next = next_of}};
+          .results = {.next = next_of},
+          .explored_from = {
+              "", "[macro]\n" + explored_stages(),
+              "[macro]\n[multi_contact]\n[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"}};
 }
 
 }  // namespace softgrain

@@ -9,7 +9,7 @@ namespace softgrain {
 namespace {
 
 LawSources read_multi_contact_law(const Scene& scene, const SceneTable& law) {
-  const std::string path = scene.resolve(law.text("table"));
+  const std::string path = scene.resolve(law.text({"table", "existing law table (path relative to the scene)"}));
   LawSources out = read_scene_law(law, path);
   if (!out.table) law.throw_error("table", path + " is no law table (the pair law is the one that this run measures)");
   if (out.forms.front() == LawForm::pair)
@@ -19,7 +19,8 @@ LawSources read_multi_contact_law(const Scene& scene, const SceneTable& law) {
 }
 
 MeasuredTable read_measured_table(const SceneTable& root) {
-  const SceneTable calibrate = root.table_or_empty("calibrate").table_or_empty("multi_contact");
+  const SceneTable calibrate =
+      root.table_or_empty("calibrate").table_or_empty({"multi_contact", "fit of the multi-contact law"});
   MeasuredTable out{read_multi_contact_setup(root), read_multi_contact_fit(calibrate)};
   require_law_of_multi_contact(root, out.multi_contact, calibrate, out.fit);
   if (out.fit.best == LawForm::pair)
@@ -39,7 +40,11 @@ void read_multi_contact_laws(const Scene& scene, const SceneTable& root, Pipelin
     root.throw_error("law", "[[configuration]] measures a multi-contact law already; leave one of the two out");
   if (root.has("multi_contact") && !measures)
     root.throw_error("multi_contact", "goes with [[configuration]], which says what is measured");
-  if (root.has("law")) setup.table = read_multi_contact_law(scene, root.table("law"));
+  if (root.has("law"))
+    setup.table = read_multi_contact_law(
+        scene,
+        root.table(
+            {"law", "existing multi-contact law of the macro scene, instead of `multi_contact` and `configuration`"}));
   if (measures) setup.measured_table = read_measured_table(root);
 }
 
@@ -48,13 +53,13 @@ void read_multi_contact_laws(const Scene& scene, const SceneTable& root, Pipelin
 PipelineSetup read_pipeline_setup(const Scene& scene) {
   return scene.read([&](const SceneTable& root) {
     PipelineSetup setup;
-    (void)root.choice("kind", {"pipeline"});
-    setup.title = root.text("title", "");
+    (void)root.choice(kKindKey, {"pipeline"});
+    setup.title = root.text(kTitleKey, "");
     setup.measure = read_measure_setup(root);
-    setup.fit = read_fit_settings(root.table_or_empty("calibrate"));
+    setup.fit = read_fit_settings(root.table_or_empty({"calibrate", "fit of the law"}));
     read_multi_contact_laws(scene, root, setup);
     if (!root.has("macro")) return setup;
-    const SceneTable macro = root.table("macro");
+    const SceneTable macro = root.table({"macro", "macro scene that uses the law, and its resolved twin"});
     setup.macro = read_macro_setup(macro, setup.measure.spec);
     read_stages(root, macro, setup.macro->spec);
     refuse_idle_test_keys(macro, root, {&setup.macro->spec});

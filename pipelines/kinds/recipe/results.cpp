@@ -59,7 +59,7 @@ NextSteps next_of(const report::RunData& run) {
 
 KindResults recipe_results() {
   return {.files = {{.names = "recipe(\\.csv|_macro\\.h5)"}, {.names = "material_card\\.toml", .check = check_laws}},
-          .sections = {{Place::levels, report::recipe_section}},
+          .sections = {{Part::several, report::recipe_section}},
           .lines = lines_of,
           .values = values_of,
           .curves = curves_of,

@@ -38,11 +38,13 @@ void refuse_own_material(const SceneTable& t) {
 Constituent read_constituent(const SceneTable& t, double density) {
   Constituent c;
   t.section([&] {
-    c.name = t.text("name");
-    c.mass_share = t.number("mass_share", Unit::none, Range{0.0, 1.0, true, false});
-    c.density = t.number("density", Unit::density, Range::positive(), density);
+    c.name = t.text({"name", "name of the constituent"});
+    c.mass_share = t.number({"mass_share", "share in the mass of all constituents; the shares add up to 1"}, Unit::none,
+                            Range{0.0, 1.0, true, false});
+    c.density = t.number({"density", "density of its grains", "that of `[material]`"}, Unit::density, Range::positive(),
+                         density);
     refuse_own_material(t);
-    c.sizes = read_sizes(t, "sizes", {});
+    c.sizes = read_sizes(t, {"sizes", "its size distribution, such as a sieve curve"}, {});
     if (!t.has("sizes")) t.add_error("sizes", "is missing: a sieve curve, or another law of sizes");
   });
   return c;
@@ -51,7 +53,8 @@ Constituent read_constituent(const SceneTable& t, double density) {
 std::vector<Constituent> read_constituents(const SceneTable& root, double density) {
   std::vector<Constituent> out;
   double sum = 0.0;
-  for (const SceneTable& t : root.tables("constituent")) {
+  for (const SceneTable& t :
+       root.tables({"constituent", "one of the constituents, instead of one size distribution in `[grains]`"})) {
     out.push_back(read_constituent(t, density));
     sum += out.back().mass_share;
     if (std::count_if(out.begin(), out.end(), [&](const Constituent& c) { return c.name == out.back().name; }) > 1)
@@ -85,10 +88,12 @@ struct WantedCuts {
 
 WantedCuts read_cuts(const SceneTable& t) {
   WantedCuts out;
-  out.ratio = t.number("ratio", Unit::none, Range::closed(1.5, 10.0), out.ratio);
+  out.ratio = t.number({"ratio", "upper limit of largest over smallest diameter in a level; cuts are at equal ratios"},
+                       Unit::none, Range::closed(1.5, 10.0), out.ratio);
   if (!t.has("cut_diameters")) return out;
   if (t.has("ratio")) t.add_error("ratio", "goes without cut_diameters, which say where the curve is cut");
-  out.given = t.numbers("cut_diameters", Unit::length, Range::positive());
+  out.given = t.numbers({"cut_diameters", "diameters at which the curve is cut, instead of `ratio`"}, Unit::length,
+                        Range::positive());
   for (double& cut : out.given) cut *= 0.5;
   std::sort(out.given.begin(), out.given.end(), std::greater<>());
   if (std::adjacent_find(out.given.begin(), out.given.end()) != out.given.end())
@@ -268,7 +273,10 @@ class RoomForImages {
 };
 
 void read_mixtures(const SceneTable& t, RecipeScene& out) {
-  out.mixtures = t.numbers("mixtures", Unit::none, Range{0.0, 1.0, true, true}, {0.2, 0.4, 0.6, 0.8});
+  out.mixtures =
+      t.numbers({"mixtures",
+                 "shares of the finer level in the mixtures of two levels, by solid volume; three at least, ascending"},
+                Unit::none, Range{0.0, 1.0, true, true}, {0.2, 0.4, 0.6, 0.8});
   if (out.mixtures.size() < 3)
     t.add_error("mixtures", "at least three shares are needed: w_inf and xi are fitted to them");
   if (std::adjacent_find(out.mixtures.begin(), out.mixtures.end(), std::greater_equal<>()) != out.mixtures.end())
@@ -276,28 +284,41 @@ void read_mixtures(const SceneTable& t, RecipeScene& out) {
 }
 
 void read_rest(const SceneTable& root, RecipeScene& out) {
-  const SceneTable check = root.table_or_empty("check");
-  out.check.grains = check.count("grains", 0, 10000000, out.check.grains);
-  out.check.samples = check.count("samples", 1, 1000, out.check.samples);
-  const SceneTable macro = root.table_or_empty("macro");
-  out.macro.grains = macro.count("grains", 40, 100000, out.macro.grains);
-  out.macro.samples = macro.count("samples", 1, 1000, out.macro.samples);
-  out.macro.strain = macro.number("strain", Unit::none, Range{0.0, 0.5, true, false}, out.macro.strain);
+  const SceneTable check =
+      root.table_or_empty({"check", "check of the law with a packing of the coarsest levels with all their grains"});
+  out.check.grains = check.count({"grains",
+                                  "grains of the check; it holds the coarsest levels: as many as possible with at "
+                                  "least 60 grains above a third of the largest radius; 0: no check"},
+                                 0, 10000000, out.check.grains);
+  out.check.samples = check.count({"samples", "samples of the check"}, 1, 1000, out.check.samples);
+  const SceneTable macro = root.table_or_empty({"macro", "level 1, which is loaded with the cell law"});
+  out.macro.grains =
+      macro.count({"grains", "grains of level 1, which is loaded with the cell law"}, 40, 100000, out.macro.grains);
+  out.macro.samples =
+      macro.count({"samples", "samples of level 1, which is loaded with the cell law"}, 1, 1000, out.macro.samples);
+  out.macro.strain = macro.number(
+      {"strain", "axial strain of the loading of level 1", "that of the test, or half of the porosity if that is less"},
+      Unit::none, Range{0.0, 0.5, true, false}, out.macro.strain);
   if (!root.has("shells")) return;
-  const SceneTable shells = root.table("shells");
-  out.shells.levels = shells.count("levels", 2, 20, 4);
-  out.shells.packings = shells.count("packings", 4, 1000, out.shells.packings);
-  out.shells.ratio = shells.number("ratio", Unit::none, Range::closed(2.0, 20.0), out.shells.ratio);
+  const SceneTable shells =
+      root.table({"shells", "comparison with a hierarchy of soft particles; without the table there is no hierarchy"});
+  out.shells.levels = shells.count({"levels", "decades of the hierarchy of soft particles"}, 2, 20, 4);
+  out.shells.packings = shells.count({"packings", "packings of each decade"}, 4, 1000, out.shells.packings);
+  out.shells.ratio = shells.number({"ratio", "largest over smallest radius of each decade"}, Unit::none,
+                                   Range::closed(2.0, 20.0), out.shells.ratio);
   if (shells.has("form"))
-    out.shells.form = shells.choice<LawForm>("form", {LawForm::isotropic, LawForm::directional, LawForm::pair});
+    out.shells.form = shells.choice<LawForm>({"form", "form of the law of the hierarchy", "\"isotropic\""},
+                                             {LawForm::isotropic, LawForm::directional, LawForm::pair});
 }
 
 /// [law]: form of the equation of state, replicates, cells, shear.
 double read_law(const SceneTable& law, RecipeScene& out) {
-  out.material.equation.form = law.choice<StateForm>("form", StateForm::porosity);
-  out.material.equation.replicates = law.count("replicates", 40, 100000, 400);
-  out.cells = law.count("cells", 40, 100000, out.cells);
-  return law.number("shear_strain", Unit::none, Range{0.0, 0.5, true, false}, 0.06);
+  out.material.equation.form = law.choice<StateForm>({"form", "form of the equation of state"}, StateForm::porosity);
+  out.material.equation.replicates = law.count({"replicates", "bootstrap replicates"}, 40, 100000, 400);
+  out.cells = law.count({"cells", "sites of the packing of cells to which friction is fitted"}, 40, 100000, out.cells);
+  return law.number(
+      {"shear_strain", "logarithmic strain to which the grains of level 2 are sheared at constant volume"}, Unit::none,
+      Range{0.0, 0.5, true, false}, 0.06);
 }
 
 MacroSetup recipe_defaults() {
@@ -332,24 +353,26 @@ bool tells_ways(const RecipeScene& scene) {
 
 RecipeScene read_recipe_scene(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
-    (void)root.choice("kind", {"recipe"});
+    (void)root.choice(kKindKey, {"recipe"});
     RecipeScene out{{}, {}, Grading::power_law(3.5, 1.0, 2.0), {}, {}, {}, {}, {}, 0, {}, {}, {}, {}, {}, 100};
-    out.material.title = root.text("title", "");
-    out.material.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+    out.material.title = root.text(kTitleKey, "");
+    out.material.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
     MacroSetup base = recipe_defaults();
     read_material_tables(root, base);
     const SceneTable grains = root.table("grains");
     if (base.spec.test != MacroTest::oedometric)
       root.table("test").add_error("test", "levels are measured in oedometric compression (and one of them in shear)");
-    base.samples = root.count("samples", 1, 10000, base.samples);
+    base.samples = root.count({"samples", "samples of each packing"}, 1, 10000, base.samples);
     base.kept_states = read_kept_states(root, 0);
     out.constituents = read_constituents(root, base.spec.density);
     if (!out.constituents.empty())
       for (const char* key : {"sizes", "exponent", "radius_max", "ratio"})
         if (grains.has(key)) grains.add_error(key, "goes without [[constituent]], which have sizes of their own");
-    const double shear = read_law(root.table_or_empty("law"), out);
+    const double shear =
+        read_law(root.table_or_empty({"law", "fits of the equation of state and of the cell law"}), out);
     read_rest(root, out);
-    const SceneTable levels = root.table_or_empty("levels");
+    const SceneTable levels = root.table_or_empty(
+        {"levels", "cuts of the size distribution into levels, and the mixtures of neighbouring levels"});
     read_mixtures(levels, out);
     const WantedCuts wanted = read_cuts(levels);
     if (root.has_errors()) return out;

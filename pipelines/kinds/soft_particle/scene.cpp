@@ -20,7 +20,7 @@ namespace {
 /// A number of the soft particle that packings can be made with; what the scene does not give stays as it is.
 void read_number(const SceneTable& t, double SoftParticleSpec::*value, SoftParticleSpec& spec) {
   const SoftParticleNumber& number = soft_particle_number(value);
-  spec.*value = t.number(number.scene_key, number.unit, number.drawn, spec.*value);
+  spec.*value = t.number({number.scene_key, number.asked}, number.unit, number.drawn, spec.*value);
 }
 
 void read_material(const SceneTable& t, SoftParticleSpec& spec) {
@@ -32,7 +32,8 @@ void read_material(const SceneTable& t, SoftParticleSpec& spec) {
 
 void read_largest(const SceneTable& t, SoftParticleSpec& spec) {
   if (t.has("rmax")) {
-    const double rmax = t.number("rmax", Unit::length, Range::positive());
+    const double rmax = t.number({"rmax", "radius of the largest grain, instead of `rmax_over_shell`"}, Unit::length,
+                                 Range::positive());
     const std::vector<std::string> keys = t.keys();
     if (std::find(keys.begin(), keys.end(), "rmax_over_shell") != keys.end())
       t.add_error("rmax_over_shell",
@@ -60,7 +61,9 @@ void set_size_limits(const SceneTable& t, SoftParticleSpec& spec) {
 
 void read_packing(const SceneTable& t, SoftParticleSpec& spec) {
   read_number(t, &SoftParticleSpec::shell_radius, spec);
-  spec.sizes = read_sizes(t, "sizes", {"exponent", "polydispersity", "rmax", "rmax_over_shell"});
+  spec.sizes = read_sizes(
+      t, {"sizes", "another distribution of radii, instead of `exponent`, `polydispersity` and the largest radius"},
+      {"exponent", "polydispersity", "rmax", "rmax_over_shell"});
   if (spec.sizes) {
     set_size_limits(t, spec);
   } else {
@@ -69,56 +72,103 @@ void read_packing(const SceneTable& t, SoftParticleSpec& spec) {
     read_largest(t, spec);
   }
   read_number(t, &SoftParticleSpec::beta, spec);
-  spec.trials = t.count("trials", 1, 1000000000, spec.trials);
-  spec.placement =
-      t.choice("placement", {"trials", "voids"}, "trials") == "voids" ? Placement::voids : Placement::trials;
+  spec.trials = t.count({"trials", "random positions tried per grain"}, 1, 1000000000, spec.trials);
+  spec.placement = t.choice({"placement",
+                             "`trials`: random positions anywhere, as published; `voids`: only positions that may have "
+                             "room (17 times faster, statistically equal packings)"},
+                            {"trials", "voids"}, "trials") == "voids"
+                       ? Placement::voids
+                       : Placement::trials;
   if (!t.has_errors()) require_drawable(t, spec);
 }
 
 void read_damped(const SceneTable& t, DampedProtocolOptions& o) {
-  o.increment = t.number("increment", Unit::none, Range::closed(1e-7, 0.1), o.increment);
-  o.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
-  o.tolerance_between = t.number("tolerance_between", Unit::none, Range{0.0, 10.0, true, false}, o.tolerance_between);
-  o.tolerance_rotated = t.number("tolerance_rotated", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance_rotated);
-  o.max_passes = t.count("max_passes", 10, 100000000, o.max_passes);
+  o.increment = t.number({"increment", "largest step in Delta"}, Unit::none, Range::closed(1e-7, 0.1), o.increment);
+  o.tolerance =
+      t.number({"tolerance", "tolerance at recorded points: largest net force on a grain over the mean contact force"},
+               Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
+  o.tolerance_between = t.number({"tolerance_between", "tolerance at increments between recorded points"}, Unit::none,
+                                 Range{0.0, 10.0, true, false}, o.tolerance_between);
+  o.tolerance_rotated = t.number({"tolerance_rotated", "tolerance at recorded points after a rotation"}, Unit::none,
+                                 Range{0.0, 1.0, true, false}, o.tolerance_rotated);
+  o.max_passes = t.count({"max_passes", "largest number of loop passes per relaxation"}, 10, 100000000, o.max_passes);
 }
 
 constexpr std::int64_t kMostPasses = 1000000;  ///< largest number of passes of one increment by least work
 
 void read_least_work(const SceneTable& t, LeastWorkProtocolOptions& o) {
-  o.increment = t.number("increment", Unit::none, Range::closed(1e-7, 0.1), o.increment);
-  o.tolerance_between = t.number("tolerance_between", Unit::none, Range{0.0, 10.0, true, false}, o.tolerance_between);
-  o.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
-  o.increment_passes = t.count("increment_passes", 0, kMostPasses, o.increment_passes);
-  if (t.has("approach_speed")) o.approach_speed = t.number("approach_speed", Unit::velocity, Range::positive());
-  o.step_factor = t.number("step_factor", Unit::none, Range{0.0, 20.0, true, false}, o.step_factor);
-  o.settle_time = t.number("settle_time", Unit::none, Range::not_negative(), o.settle_time);
-  o.path_settle_time = t.number("path_settle_time", Unit::none, Range::not_negative(), o.path_settle_time);
-  o.settle_time_rotated = t.number("settle_time_rotated", Unit::none, Range::not_negative(), o.settle_time_rotated);
+  o.increment = t.number({"increment", "step in Delta between two equilibria"}, Unit::none, Range::closed(1e-7, 0.1),
+                         o.increment);
+  o.tolerance_between = t.number({"tolerance_between", "tolerance at increments between recorded points"}, Unit::none,
+                                 Range{0.0, 10.0, true, false}, o.tolerance_between);
+  o.tolerance =
+      t.number({"tolerance", "tolerance at recorded points: largest net force on a grain over the mean contact force"},
+               Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
+  o.increment_passes = t.count({"increment_passes",
+                                "`least-work`: if an increment is not in equilibrium after this number of loop passes, "
+                                "dynamics takes it over; 0: `slow-dynamics`"},
+                               0, kMostPasses, o.increment_passes);
+  if (t.has("approach_speed"))
+    o.approach_speed = t.number({"approach_speed", "speed of the plane in dynamics",
+                                 "0.002 m/s at the published parameters, scaled with sqrt(E/rho)"},
+                                Unit::velocity, Range::positive());
+  o.step_factor = t.number(
+      {"step_factor",
+       "time step of dynamics over that of the published protocol; the quickest grains are made heavier accordingly"},
+      Unit::none, Range{0.0, 20.0, true, false}, o.step_factor);
+  o.settle_time = t.number({"settle_time", "time of dynamics before a point is recorded, over Rs sqrt(rho/E)"},
+                           Unit::none, Range::not_negative(), o.settle_time);
+  o.path_settle_time = t.number({"path_settle_time",
+                                 "time of dynamics, at most `settle_time`, after which the next increment or rotation "
+                                 "starts, over Rs sqrt(rho/E)"},
+                                Unit::none, Range::not_negative(), o.path_settle_time);
+  o.settle_time_rotated = t.number({"settle_time_rotated", "time of dynamics after a rotation, over Rs sqrt(rho/E)"},
+                                   Unit::none, Range::not_negative(), o.settle_time_rotated);
   o.step_factor_rotated =
-      t.number("step_factor_rotated", Unit::none, Range{0.0, 20.0, true, false}, o.step_factor_rotated);
-  o.max_passes = t.count("max_passes", 10, 100000000, o.max_passes);
+      t.number({"step_factor_rotated", "as `step_factor`, but after a rotation; during a rotation the factor is 4"},
+               Unit::none, Range{0.0, 20.0, true, false}, o.step_factor_rotated);
+  o.max_passes = t.count({"max_passes", "largest number of loop passes of the last relaxation of a recorded point"}, 10,
+                         100000000, o.max_passes);
 }
 
 void read_published(const SceneTable& t, PublishedOptions& o) {
-  if (t.has("approach_speed")) o.approach_speed = t.number("approach_speed", Unit::velocity, Range::positive());
-  if (t.has("stop_interval")) o.stop_interval = t.number("stop_interval", Unit::time, Range::positive());
-  o.stops = static_cast<int>(t.count("stops", 0, 1000, o.stops));
-  o.step_fraction = t.number("step_fraction", Unit::none, Range{0.0, 0.6, true, false}, o.step_fraction);
-  o.crowded_fraction = t.number("crowded_fraction", Unit::none, Range{0.0, 1.0, true, false}, o.crowded_fraction);
-  o.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
+  if (t.has("approach_speed"))
+    o.approach_speed = t.number(
+        {"approach_speed", "speed of the plane", "0.002 m/s at the published parameters, scaled with sqrt(E/rho)"},
+        Unit::velocity, Range::positive());
+  if (t.has("stop_interval"))
+    o.stop_interval = t.number({"stop_interval", "time between two stops of all motion",
+                                "0.3 s at the published parameters, scaled with Rs sqrt(rho/E)"},
+                               Unit::time, Range::positive());
+  o.stops = static_cast<int>(
+      t.count({"stops", "number of stops; one more interval follows the last stop"}, 0, 1000, o.stops));
+  o.step_fraction = t.number(
+      {"step_fraction",
+       "time step over sqrt(m_min/k): m_min is the mass of the smallest grain, k its stiffness at 5 % overlap"},
+      Unit::none, Range{0.0, 0.6, true, false}, o.step_fraction);
+  o.crowded_fraction =
+      t.number({"crowded_fraction",
+                "largest time step over sqrt(m/K): m is the mass of a grain, K the sum of its contact stiffnesses"},
+               Unit::none, Range{0.0, 1.0, true, false}, o.crowded_fraction);
+  o.tolerance = t.number(
+      {"tolerance",
+       "below this tolerance (largest net force on a grain over the mean contact force) a point counts as converged"},
+      Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
 }
 
 /// Neither so slow that no run comes to an end, nor as fast as sound in the grains.
 void read_turn(const SceneTable& measure, const SoftParticleSpec& spec, MeasurementPlan& plan) {
   constexpr double kSlowest = 1e-7;  // over sqrt(E/rho)
   constexpr double kFastest = 1e-2;
-  plan.rotation_step_deg =
-      measure.number("rotation_step_deg", Unit::angle_degree, Range::closed(1e-4, 5.0), plan.rotation_step_deg);
+  plan.rotation_step_deg = measure.number(
+      {"rotation_step_deg", "largest rotation between two updates of the velocity directions; needs `angles_deg`"},
+      Unit::angle_degree, Range::closed(1e-4, 5.0), plan.rotation_step_deg);
   if (!measure.has("turn_speed") || measure.has_errors()) return;
   const double wave_speed = std::sqrt(spec.youngs_modulus / spec.density);
-  plan.turn_speed = measure.number("turn_speed", Unit::velocity,
-                                   Range::closed(kSlowest * wave_speed, kFastest * wave_speed), plan.turn_speed);
+  plan.turn_speed = measure.number(
+      {"turn_speed", "speed of the shell surface in a rotation, 1e-7 to 1e-2 of sqrt(E/rho); needs `angles_deg`",
+       "0.002 m/s at the published parameters, scaled with sqrt(E/rho)"},
+      Unit::velocity, Range::closed(kSlowest * wave_speed, kFastest * wave_speed), plan.turn_speed);
 }
 
 void require_ascending(const SceneTable& t, const std::string& key, const std::vector<double>& values) {
@@ -138,13 +188,16 @@ const Range kDeltaRange{0.0, 0.9, true, false};
 
 MeasurementPlan read_plan(const SceneTable& t, const MeasurementPlan& common) {
   MeasurementPlan plan = common;
-  plan.deltas = t.numbers("deltas", Unit::none, kDeltaRange);
+  plan.deltas = t.numbers({"deltas", "recorded overlaps Delta = hn/Rs, ascending"}, Unit::none, kDeltaRange);
   require_ascending(t, "deltas", plan.deltas);
-  plan.angles_deg = t.numbers("angles_deg", Unit::angle_degree, Range::closed(-90.0, 90.0), {});
+  plan.angles_deg =
+      t.numbers({"angles_deg", "rotation angles of the first particle, of one or both signs, without 0", "none"},
+                Unit::angle_degree, Range::closed(-90.0, 90.0), {});
   for (const double a : plan.angles_deg)
     if (a == 0.0) t.add_error("angles_deg", "0 is recorded anyway; leave it out");
-  plan.tangential_deltas = t.numbers("tangential_deltas", Unit::none, kDeltaRange,
-                                     plan.angles_deg.empty() ? std::vector<double>{} : plan.deltas);
+  plan.tangential_deltas =
+      t.numbers({"tangential_deltas", "those of `deltas` at which the particle is rotated", "all, if there are angles"},
+                Unit::none, kDeltaRange, plan.angles_deg.empty() ? std::vector<double>{} : plan.deltas);
   if (plan.angles_deg.empty() && !plan.tangential_deltas.empty())
     t.add_error("tangential_deltas", "goes with angles_deg: nothing is rotated without angles");
   if (!t.has_errors()) require_subset(t, plan.tangential_deltas, plan.deltas);
@@ -152,8 +205,9 @@ MeasurementPlan read_plan(const SceneTable& t, const MeasurementPlan& common) {
 }
 
 /// Least work that leaves every increment to dynamics is called by what it does.
-Relaxation read_relaxation(const SceneTable& t, Relaxation fallback, const LeastWorkProtocolOptions& least_work) {
-  const auto said = t.choice<Relaxation>("relaxation", fallback);
+Relaxation read_relaxation(const SceneTable& t, const Key& key, Relaxation fallback,
+                           const LeastWorkProtocolOptions& least_work) {
+  const auto said = t.choice<Relaxation>(key, fallback);
   const bool slow = said == Relaxation::least_work && least_work.increment_passes == 0;
   return slow ? Relaxation::slow_dynamics : said;
 }
@@ -174,11 +228,17 @@ MeasureSeries read_series(const SceneTable& t, Relaxation relaxation, std::int64
   series.packings = packings;
   if (t.has("soft_solid")) {
     series.kinds.push_back(PairKind::soft_solid);
-    series.soft_solid = read_plan(t.table("soft_solid"), common);
+    series.soft_solid = read_plan(
+        t.table({"soft_solid",
+                 "recorded states of a soft particle against a plane; this table, `soft_soft` or both are needed"}),
+        common);
   }
   if (t.has("soft_soft")) {
     series.kinds.push_back(PairKind::soft_soft);
-    series.soft_soft = read_plan(t.table("soft_soft"), common);
+    series.soft_soft = read_plan(t.table({"soft_soft",
+                                          "recorded states of a soft particle against another one of the same size "
+                                          "with other grains; as `soft_solid`"}),
+                                 common);
   }
   if (series.kinds.empty())
     t.add_error("soft_solid", "neither soft_solid nor soft_soft is measured; give at least one");
@@ -256,23 +316,32 @@ bool MeasureSetup::turns_on() const {
 
 SoftParticleSpec read_soft_particle(const SceneTable& root) {
   SoftParticleSpec spec;
-  read_material(root.table_or_empty("material"), spec);
-  read_packing(root.table_or_empty("packing"), spec);
+  read_material(root.table_or_empty({"material", "material of the grains"}), spec);
+  read_packing(root.table_or_empty({"packing", "packings of grains in soft particles"}), spec);
   return spec;
 }
 
 MeasureSetup read_measure_protocols(const SceneTable& root, Relaxation& relaxation, MeasurementPlan& plan) {
   MeasureSetup setup;
-  setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+  setup.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
   setup.spec = read_soft_particle(root);
-  const SceneTable measure = root.table_or_empty("measure");
-  read_damped(measure.table_or_empty("damped"), setup.damped);
-  read_published(measure.table_or_empty("published"), setup.published);
-  read_least_work(measure.table_or_empty("least_work"), setup.least_work);
+  const SceneTable measure = root.table_or_empty({"measure", "measurements of soft particles"});
+  read_damped(measure.table_or_empty({"damped", "settings of the relaxation `damped`"}), setup.damped);
+  read_published(measure.table_or_empty({"published", "settings of the relaxation `published`"}), setup.published);
+  read_least_work(
+      measure.table_or_empty({"least_work", "settings of the relaxations `least-work` and `slow-dynamics`"}),
+      setup.least_work);
   read_turn(measure, setup.spec, plan);
-  plan.shell_turns = measure.flag("shell_turns", plan.shell_turns);
-  plan.cumulative = measure.choice("rotation", {"fresh", "cumulative"}, "fresh") == "cumulative";
-  relaxation = read_relaxation(measure, Relaxation::least_work, setup.least_work);
+  plan.shell_turns = measure.flag(
+      {"shell_turns",
+       "true: the shell rotates with its grains; false: it stands still, and the grains do not reach the angle"},
+      plan.shell_turns);
+  plan.cumulative = measure.choice({"rotation",
+                                    "`fresh`: each angle starts from the relaxed state without rotation; `cumulative`: "
+                                    "from the relaxed state of the previous angle"},
+                                   {"fresh", "cumulative"}, "fresh") == "cumulative";
+  relaxation = read_relaxation(measure, {"relaxation", "method that brings grains to equilibrium"},
+                               Relaxation::least_work, setup.least_work);
   return setup;
 }
 
@@ -281,14 +350,20 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
   MeasurementPlan common;
   MeasureSetup setup = read_measure_protocols(root, relaxation, common);
   const SceneTable measure = root.table("measure");
-  const std::int64_t count = root.table_or_empty("packing").count("count", 1, 100000, 7);
+  const std::int64_t count = root.table_or_empty("packing").count({"count", "number of packings"}, 1, 100000, 7);
   setup.series.push_back(read_series(measure, relaxation, count, common));
   if (root.has("reference")) {
-    const SceneTable reference = root.table("reference");
-    const Relaxation other = read_relaxation(reference, Relaxation::published, setup.least_work);
+    const SceneTable reference =
+        root.table({"reference", "second series of measurements, which is compared with the first"});
+    const Relaxation other =
+        read_relaxation(reference, {"relaxation", "method of the second series; another one than that of `measure`"},
+                        Relaxation::published, setup.least_work);
     if (!measure.has_errors() && other == setup.series[0].relaxation)
       reference.add_error("relaxation", "the reference must differ from measure.relaxation");
-    setup.series.push_back(read_series(reference, other, reference.count("count", 1, 100000, count), common));
+    setup.series.push_back(read_series(
+        reference, other,
+        reference.count({"count", "number of packings of the second series", "as `packing.count`"}, 1, 100000, count),
+        common));
   }
   if (!root.has_errors()) {
     std::vector<Relaxation> relaxations;
@@ -306,8 +381,8 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
 
 SoftParticleScene read_soft_particle_scene(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
-    (void)root.choice("kind", {"soft-particle"});
-    return SoftParticleScene{root.text("title", ""), read_measure_setup(root)};
+    (void)root.choice(kKindKey, {"soft-particle"});
+    return SoftParticleScene{root.text(kTitleKey, ""), read_measure_setup(root)};
   });
 }
 

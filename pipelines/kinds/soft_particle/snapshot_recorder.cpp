@@ -15,7 +15,11 @@ constexpr std::int64_t kMostStates = 10'000;
 }  // namespace
 
 std::int64_t read_kept_states(const SceneTable& root, std::int64_t fallback) {
-  return root.table_or_empty("output").count("snapshots", 0, kMostStates, fallback);
+  return root.table_or_empty({"output", "states kept for pictures"})
+      .count({"snapshots",
+              "number of states that are kept for pictures, spread evenly over the recorded points, the last one among "
+              "them; 0: none. Results do not depend on it"},
+             0, kMostStates, fallback);
 }
 
 SnapshotRecorder::SnapshotRecorder(const TaskStore& store, const std::string& task, std::int64_t points,
