@@ -86,6 +86,8 @@ PowderTrial try_assembly(const PowderSetup& setup) {
   if (!(setup.protocol.aggregation_kappa > 0.0)) spec.rolling_stiffness *= setup.spec.stiffness / spec.stiffness;
   PowderProtocol protocol = setup.protocol;
   protocol.aggregation_kappa = 0.0;
+  // The edges of a small cell have a shorter way: they go at the strain rate of the cell that is asked about.
+  protocol.edge_speed_cap *= std::sqrt(static_cast<double>(spec.disks) / static_cast<double>(setup.spec.disks));
   const std::vector<PowderPhase> phases = powder_phases(spec, protocol);
   PowderTrial t{.disks = static_cast<double>(spec.disks)};
   t.time.assign(phases.size(), 0.0);
@@ -103,10 +105,10 @@ PowderTrial try_assembly(const PowderSetup& setup) {
 }
 
 /// Time until disks rest in a phase [T0]: that of the trial, longer in larger samples (1.2 to 1.4 times for four times
-/// as many disks).
-double expected_time(const PowderSetup& setup, const PowderTrial& trial, std::size_t phase) {
+/// as many disks), once contacts have stiffened, which they do not in the trial.
+double expected_time(const PowderSetup& setup, const PowderTrial& trial, const PowderPhase& phase, double of_trial) {
   const double larger = std::pow(static_cast<double>(setup.spec.disks) / trial.disks, 0.2);
-  return std::min(trial.time[phase] * larger, setup.options.time_max);
+  return std::min(phase.stiffening + of_trial * larger, setup.options.time_max);
 }
 
 /// Passes of a phase that begins with contacts of stiffness `before`.
@@ -126,7 +128,7 @@ void spend_on_assembly(const PowderSetup& setup, Findings& out) {
   double passes = 0.0;
   double before = phases.front().stiffness;
   for (std::size_t k = 0; k < phases.size(); ++k) {
-    passes += expected_passes(setup, phases[k], before, expected_time(setup, trial, k));
+    passes += expected_passes(setup, phases[k], before, expected_time(setup, trial, phases[k], trial.time[k]));
     before = phases[k].stiffness;
   }
   out.spend("assembly", trial.pass_seconds * static_cast<double>(setup.spec.disks) / trial.disks * passes *
