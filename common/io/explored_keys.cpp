@@ -29,15 +29,12 @@ bool is_number(const std::string& part) {
   return !part.empty() && part.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// "loading.0.stage.1.kind": table "loading.stage", name "kind", listed.
+/// "loading.0.stage.1.kind": table "loading.stage", name "kind".
 ExploredKey placed(const std::string& path) {
   ExploredKey key;
   std::istringstream parts(path);
-  bool number = false;
   for (std::string part; std::getline(parts, part, '.');) {
-    key.listed = number;
-    number = is_number(part);
-    if (number) continue;
+    if (is_number(part)) continue;
     if (!key.name.empty()) append_part(key.table, key.name, ".");
     key.name = part;
   }

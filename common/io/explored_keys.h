@@ -18,7 +18,6 @@ inline constexpr const char* kFreeName = "NAME";
 struct ExploredKey {
   std::string table;  ///< tables that it stands in, from the root: "macro", "loading.stage"; empty: the root
   std::string name;
-  bool listed = false;           ///< the innermost of these tables is one of an [[array of tables]]
   bool required = false;         ///< nothing holds without it
   AskedKey asked{};              ///< form, unit, range, words, meaning; lists of words of several modes are joined
   std::vector<AskedKey> also{};  ///< other forms that it may have: a number, or a word

@@ -144,7 +144,7 @@ T value_of(Table& table, const std::string& key, Read read, const T& substitute,
       substitute, word);
 }
 
-/// Takes down how a key was asked for, if anybody takes it down; the value.
+/// Returns the value, and tells the KeyRecord, where there is one, how the key was asked for.
 template <class T>
 T noted(const Table& table, const Key& key, AskedKey asked, const T& value) {
   if (KeyRecord::current() != nullptr) table.note_asked(key, std::move(asked));

@@ -40,8 +40,17 @@ std::string written(const ExploredKey& key) {
   return key.name;
 }
 
+/// An end of a range with six digits; what only allows for rounding is left out.
+double shown_end(double end) {
+  constexpr double kRounding = 1e-8;
+  if (!std::isfinite(end)) return end;
+  return std::abs(end) < kRounding ? 0.0 : std::stod(rounded_text(end, {6}));
+}
+
 Range allowed(const AskedKey& k) {
   Range range = k.range;
+  range.low = shown_end(range.low);
+  range.high = shown_end(range.high);
   if (k.form == KeyForm::count && range.high > kUnlimited) range.high = std::numeric_limits<double>::infinity();
   return range;
 }
@@ -197,7 +206,7 @@ json value_schema(const AskedKey& k) {
 json table_schema(const std::vector<ExploredKey>& all, const std::string& table) {
   json out{{"type", "object"}, {"properties", json::object()}};
   for (const ExploredKey& k : in_table(all, table)) {
-    json& at = out["properties"][k.name];
+    json& at = k.name == kFreeName ? out["additionalProperties"] : out["properties"][k.name];
     at = k.is_table() ? table_schema(all, k.path()) : value_schema(k.asked);
     if (!k.also.empty()) {
       at = {{"anyOf", {at}}};
