@@ -71,8 +71,11 @@ void ExportList::remove_listed() const {
   const std::string list = ".export-" + to_string(format_);
   std::istringstream lines(read_text(directory_ + "/" + list));
   const std::regex names = names_of(format_, ".+");
+  std::vector<std::string> listed;
   for (std::string name; std::getline(lines, name);)
-    if (std::regex_match(name, names) && name.find('/') == std::string::npos) remove(name);
+    if (std::regex_match(name, names) && name.find('/') == std::string::npos) listed.push_back(name);
+  // Indices were written last: they go first, so that none ever names states that are gone.
+  for (auto name = listed.rbegin(); name != listed.rend(); ++name) remove(*name);
   remove(list);
 }
 
