@@ -47,7 +47,7 @@ foreach(folder common/contact common/core common/data common/io common/packing)
   list(APPEND python_needs ${found})
 endforeach()
 list(APPEND python_needs ${PROJECT_SOURCE_DIR}/microsim/multi_contact_arrangements.cpp
-  ${PROJECT_SOURCE_DIR}/pipelines/commands/complaints.cpp ${PROJECT_SOURCE_DIR}/pipelines/law/law_file_kind.cpp)
+  ${PROJECT_SOURCE_DIR}/pipelines/commands/complaints.cpp ${PROJECT_SOURCE_DIR}/pipelines/law/fitted_law.cpp)
 add_library(softgrain_python_needs STATIC EXCLUDE_FROM_ALL ${python_needs})
 target_link_libraries(softgrain_python_needs PUBLIC softgrain_flags hdf5::hdf5 fmt::fmt spdlog::spdlog
   nlohmann_json::nlohmann_json GSL::gsl ZLIB::ZLIB)

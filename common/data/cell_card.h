@@ -53,5 +53,6 @@ void write_cell_card(const CellCard& card, const std::string& path, const Proven
 /// Throws InputError with file and line for keys that are missing or unknown, numbers that are none of a law and
 /// intervals whose ends are the wrong way round; IoError.
 CellCard read_cell_card(const std::string& path);
+CellCard read_cell_card(const Scene& file);
 
 }  // namespace softgrain

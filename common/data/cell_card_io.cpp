@@ -130,9 +130,10 @@ void write_cell_card(const CellCard& card, const std::string& path, const Proven
   write_text_atomic(path, text);
 }
 
-CellCard read_cell_card(const std::string& path) {
-  const Scene scene = Scene::load(path);
-  const SceneTable root = scene.root();
+CellCard read_cell_card(const std::string& path) { return read_cell_card(Scene::load(path)); }
+
+CellCard read_cell_card(const Scene& file) {
+  const SceneTable root = file.root();
   CellCard card;
   (void)root.count("schema", kSchemaVersion, kSchemaVersion);
   (void)read_words(root, {});

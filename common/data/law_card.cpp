@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "common/data/law_card_format.h"
+#include "common/io/scene.h"
 #include "common/io/text_file.h"
 
 namespace softgrain {
@@ -53,9 +54,11 @@ void save_card(const LawCard& card, const std::string& toml_path, const Provenan
   write_text_atomic(toml_path, card_text(card, provenance, id));
 }
 
-LawCard load_card(const std::string& toml_path) {
-  LawCard card = read_card_text(toml_path);
-  const std::string table = table_path(toml_path);
+LawCard load_card(const std::string& toml_path) { return load_card(Scene::load(toml_path)); }
+
+LawCard load_card(const Scene& file) {
+  LawCard card = read_card_text(file);
+  const std::string table = table_path(file.path());
   if (std::filesystem::exists(table)) read_table(card, table);
   return card;
 }

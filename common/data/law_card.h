@@ -16,6 +16,8 @@
 
 namespace softgrain {
 
+class Scene;
+
 /// Where 95 % intervals come from, as files and reports say it.
 inline constexpr const char* kFromPackings = "bootstrap over packings";
 inline constexpr const char* kFromSamples = "bootstrap over samples";  ///< source of the intervals of an experiment
@@ -131,5 +133,6 @@ void save_card(const LawCard& card, const std::string& toml_path, const Provenan
 /// Reads a card (and its table when the .h5 is there). Throws InputError with file:line for wrong content, and when the
 /// .h5 is that of another card; IoError for files.
 LawCard load_card(const std::string& toml_path);
+LawCard load_card(const Scene& file);
 
 }  // namespace softgrain

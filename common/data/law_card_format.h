@@ -48,7 +48,7 @@ inline constexpr std::array<LawTableColumn, 7> kLawTableColumns{
 std::string card_text(const LawCard& card, const Provenance& provenance, const std::string& table_id);
 
 /// Card without its table. Throws InputError with file and line, IoError.
-LawCard read_card_text(const std::string& toml_path);
+LawCard read_card_text(const Scene& file);
 
 /// Name of the table beside a card: the same with extension .h5.
 std::string table_path(const std::string& toml_path);

@@ -104,9 +104,8 @@ PairLaw read_pair(const SceneTable& table) {
 
 }  // namespace
 
-LawCard read_card_text(const std::string& toml_path) {
-  const Scene scene = Scene::load(toml_path);
-  const SceneTable root = scene.root();
+LawCard read_card_text(const Scene& file) {
+  const SceneTable root = file.root();
   LawCard card;
   card.schema = static_cast<int>(root.count("schema", kSchemaVersion, kSchemaVersion));
   card.table_id = read_words(root, {"form", "Delta", "normal", "tangential", "interval_95"});

@@ -161,6 +161,7 @@ std::string law_table_text(const LawTable& table, const Provenance& provenance, 
 
 /// Reads the card. Throws InputError with file:line for wrong content, IoError for files.
 LawTable load_law_table(const std::string& toml_path);
+LawTable load_law_table(const Scene& file);
 
 /// The entry of the packing that the table was made for. Where no entry says so, the one that was measured
 /// with most configurations, of those the one of most packings.

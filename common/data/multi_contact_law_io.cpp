@@ -227,9 +227,10 @@ std::string law_table_text(const LawTable& table, const Provenance& provenance, 
   return text;
 }
 
-LawTable load_law_table(const std::string& toml_path) {
-  const Scene scene = Scene::load(toml_path);
-  const SceneTable root = scene.root();
+LawTable load_law_table(const std::string& toml_path) { return load_law_table(Scene::load(toml_path)); }
+
+LawTable load_law_table(const Scene& file) {
+  const SceneTable root = file.root();
   LawTable table;
   table.schema = static_cast<int>(root.count("schema", 1, 1));
   table.table_id = read_words(root, {"lost_volume", "equivalent_volume", "pressure", "force", "ratio"});

@@ -20,7 +20,6 @@ namespace softgrain {
 
 namespace {
 
-using law::LawFile;
 using law::ValueTable;
 using law::ValueUnits;
 using nlohmann::json;
@@ -38,9 +37,9 @@ void refuse(const LawOptions& o, std::initializer_list<const char*> names, const
 }
 
 /// What goes with cards does not go with tables, and the reverse.
-void require_fitting_options(const LawOptions& o, const LawFile& file) {
+void require_fitting_options(const LawOptions& o, const FittedLaw& file) {
   const bool pairs = o.format == LawFormat::lammps_table;
-  if (file.card)
+  if (file.card() != nullptr)
     refuse(o, {"--form", "--arrangement", "--partner", "--ratio", "--shallow", "--solid-fraction", "--range"},
            "goes with a law table; " + file.path + " is a law card, which knows pairs alone");
   else if (!pairs)
@@ -53,7 +52,7 @@ void require_fitting_options(const LawOptions& o, const LawFile& file) {
   else
     refuse(o, {"--ratios", "--rows", "--delta-max"}, "goes with --to lammps-table");
   if (o.arrangement != Arrangement::beside_five) refuse(o, {"--shallow"}, "goes with --arrangement beside-five");
-  if (file.table && o.partner == PartnerKind::plane)
+  if (file.table() != nullptr && o.partner == PartnerKind::plane)
     refuse(o, {"--ratio"}, "goes with --partner solid or soft: a plane has no radius");
 }
 
@@ -103,8 +102,8 @@ std::vector<PairKind> kinds_of(const LawOptions& o) {
   return kinds;
 }
 
-const SoftParticleSpec& spec_of(const LawFile& file) {
-  return file.card ? file.card->spec : main_entry(*file.table).spec;
+const SoftParticleSpec& spec_of(const FittedLaw& file) {
+  return file.card() != nullptr ? file.card()->spec : main_entry(*file.table()).spec;
 }
 
 double quantity(const LawOptions& o, const char* name, const std::string& text, Unit unit) {
@@ -117,7 +116,7 @@ double quantity(const LawOptions& o, const char* name, const std::string& text, 
   throw InputError(fmt::format("law {}: {} \"{}\": must be above 0", to_string(*o.action), name, text));
 }
 
-ValueUnits units_of(const LawOptions& o, const LawFile& file) {
+ValueUnits units_of(const LawOptions& o, const FittedLaw& file) {
   ValueUnits units;
   units.si = !o.modulus.empty() || !o.radius.empty() || o.format == LawFormat::lammps_table;
   units.modulus = spec_of(file).youngs_modulus;
@@ -127,14 +126,16 @@ ValueUnits units_of(const LawOptions& o, const LawFile& file) {
   return units;
 }
 
-std::vector<ValueTable> card_tables(const LawOptions& o, const LawFile& file, std::int64_t steps) {
+std::vector<ValueTable> card_tables(const LawOptions& o, const FittedLaw& file, std::int64_t steps) {
   std::vector<ValueTable> out;
   const std::vector<PairKind> wanted = kinds_of(o);
   for (const PairKind kind : kPairKinds) {
-    const PairLaw* pair = file.card->find(kind);
+    const PairLaw* pair = file.card()->find(kind);
     const bool named = std::ranges::find(wanted, kind) != wanted.end();
     if (wanted.empty() ? pair == nullptr || !has_numbers(pair->status) : !named) continue;
-    const auto values = [&](const std::vector<double>& at) { return law::card_values(*file.card, kind, at, o.beyond); };
+    const auto values = [&](const std::vector<double>& at) {
+      return law::card_values(*file.card(), kind, at, o.beyond);
+    };
     if (pair == nullptr) (void)values({});  // says what is wrong
     ValueTable t;
     t.law = to_string(kind);
@@ -174,14 +175,14 @@ law::MultiContactQuestion fraction_question(const LawOptions& o) {
   return q;
 }
 
-ValueTable table_values(const LawOptions& o, const LawFile& file, std::int64_t steps) {
+ValueTable table_values(const LawOptions& o, const FittedLaw& file, std::int64_t steps) {
   law::MultiContactQuestion q = fraction_question(o);
   q.arrangement = o.arrangement;
   q.partner = o.partner;
   q.ratio = positive(o, "--ratio", o.ratio, 1e6);
   q.shallow = positive(o, "--shallow", o.shallow, 1.0);
-  const double end = law::multi_contact_values(*file.table, q, {}).overlap_max;
-  const law::MultiContactAnswer answer = law::multi_contact_values(*file.table, q, overlaps(o, end, steps));
+  const double end = law::multi_contact_values(*file.table(), q, {}).overlap_max;
+  const law::MultiContactAnswer answer = law::multi_contact_values(*file.table(), q, overlaps(o, end, steps));
   ValueTable t;
   t.law = question_text(q, answer);
   t.status = answer.entry.find(answer.form)->status;
@@ -191,17 +192,15 @@ ValueTable table_values(const LawOptions& o, const LawFile& file, std::int64_t s
   return t;
 }
 
-std::vector<ValueTable> value_tables(const LawOptions& o, const LawFile& file, std::int64_t steps) {
-  return file.card ? card_tables(o, file, steps) : std::vector<ValueTable>{table_values(o, file, steps)};
+std::vector<ValueTable> value_tables(const LawOptions& o, const FittedLaw& file, std::int64_t steps) {
+  return file.card() != nullptr ? card_tables(o, file, steps) : std::vector<ValueTable>{table_values(o, file, steps)};
 }
 
-json head_json(const LawOptions& o, const LawFile& file) {
+json head_json(const LawOptions& o, const FittedLaw& file) {
   return {{"command", "law " + to_string(*o.action)},
           {"status", "good"},
           {"file", file.path},
-          {"kind", file.cells  ? "cell law"
-                   : file.card ? "law card"
-                               : "law table"},
+          {"kind", kind_text(file)},
           {"provenance",
            {{"version", file.origin.version},
             {"commit", file.origin.commit},
@@ -209,9 +208,8 @@ json head_json(const LawOptions& o, const LawFile& file) {
             {"command", file.origin.command}}}};
 }
 
-json parameters_json(const LawFile& file) {
-  if (file.cells) return cell_law_json(*file.cells);
-  return file.card ? json_of(summary_of(*file.card)) : law_table_json(*file.table);
+json parameters_json(const FittedLaw& file) {
+  return std::visit([](const auto& law) { return law_json(law); }, file.content);
 }
 
 /// Refused values are no result to go on with.
@@ -237,10 +235,16 @@ json units_json(const ValueUnits& units) {
           {"R", units.radius}};
 }
 
+FittedLaw load_with_refits(const std::string& path) {
+  FittedLaw file = load_law(path);
+  read_refits(file);
+  return file;
+}
+
 /// Forces over overlaps, which the cell law has none of.
-LawFile load_contact_law(const LawOptions& o, const std::string& path) {
-  LawFile file = law::load_law_file(path);
-  if (file.cells)
+FittedLaw load_contact_law(const LawOptions& o, const std::string& path) {
+  FittedLaw file = load_with_refits(path);
+  if (file.cells() != nullptr)
     throw InputError(
         fmt::format("law {}: {} is a card of the cell law, a pressure over a volume: softgrain law show "
                     "has its numbers",
@@ -249,7 +253,7 @@ LawFile load_contact_law(const LawOptions& o, const std::string& path) {
 }
 
 ExitStatus eval(const LawOptions& o) {
-  const LawFile file = load_contact_law(o, o.files.front());
+  const FittedLaw file = load_contact_law(o, o.files.front());
   require_fitting_options(o, file);
   const ValueUnits units = units_of(o, file);
   const std::vector<ValueTable> tables = value_tables(o, file, o.steps);
@@ -285,15 +289,15 @@ law::PairTableChoice pair_choice(const LawOptions& o, const ValueUnits& units) {
   return c;
 }
 
-std::string lammps_file(const LawOptions& o, const LawFile& file, const ValueUnits& units) {
+std::string lammps_file(const LawOptions& o, const FittedLaw& file, const ValueUnits& units) {
   const std::vector<law::PairTable> tables = law::pair_tables(file, pair_choice(o, units));
   std::vector<std::string> head{"soft particles of softgrain, from " + file.path,
                                 fmt::format("E = {:.6g} Pa; normal forces without friction and damping; of two bodies "
                                             "alone:",
                                             units.modulus),
                                 "a soft particle with several neighbours is stiffer than a pair potential can say"};
-  if (file.table) {
-    const law::MultiContactAnswer a = law::multi_contact_values(*file.table, fraction_question(o), {});
+  if (file.table() != nullptr) {
+    const law::MultiContactAnswer a = law::multi_contact_values(*file.table(), fraction_question(o), {});
     head.push_back(fmt::format("the {} law at solid fraction {:.4f} of the table{}", to_string(a.form),
                                a.entry.solid_fraction, a.remark.empty() ? "" : " (" + a.remark + ")"));
   }
@@ -304,7 +308,7 @@ std::string lammps_file(const LawOptions& o, const LawFile& file, const ValueUni
   return law::lammps_text(tables, head);
 }
 
-json full_json(const LawOptions& o, const LawFile& file, const std::vector<ValueTable>& tables,
+json full_json(const LawOptions& o, const FittedLaw& file, const std::vector<ValueTable>& tables,
                const ValueUnits& units) {
   json out = head_json(o, file);
   out["status"] = status_word(status_of(tables));
@@ -316,7 +320,7 @@ json full_json(const LawOptions& o, const LawFile& file, const std::vector<Value
 
 ExitStatus export_law(const LawOptions& o) {
   if (!o.format) throw InputError("law export: give --to lammps-table, csv or json");
-  const LawFile file = load_contact_law(o, o.files.front());
+  const FittedLaw file = load_contact_law(o, o.files.front());
   require_fitting_options(o, file);
   const ValueUnits units = units_of(o, file);
   constexpr std::int64_t kSteps = 101;
@@ -357,7 +361,7 @@ json row_json(const law::DifferenceRow& r) {
           {"within", r.known ? json(r.within) : json(nullptr)}};
 }
 
-ExitStatus compare(const LawOptions& o, const LawFile& a, const LawFile& b) {
+ExitStatus compare(const LawOptions& o, const FittedLaw& a, const FittedLaw& b) {
   const std::vector<law::LawDifference> differences = law::law_differences(a, b);
   if (!o.json) {
     print(law::differences_text(a, b, differences, law::terminal_is_utf8()));
@@ -380,7 +384,7 @@ ExitStatus compare(const LawOptions& o, const LawFile& a, const LawFile& b) {
 
 ExitStatus show(const LawOptions& o) {
   if (o.files.size() == 2) return compare(o, load_contact_law(o, o.files.front()), load_contact_law(o, o.files.back()));
-  const LawFile file = law::load_law_file(o.files.front());
+  const FittedLaw file = load_with_refits(o.files.front());
   if (!o.json) {
     print(law::law_text(file, law::terminal_is_utf8()));
     return ExitStatus::good;

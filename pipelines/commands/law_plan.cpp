@@ -14,7 +14,7 @@
 #include "pipelines/kinds/law_table/law_plan.h"
 #include "pipelines/kinds/law_table/scene.h"
 #include "pipelines/kinds/macro/scene.h"
-#include "pipelines/law/law_file.h"
+#include "pipelines/law/fitted_law.h"
 
 namespace softgrain {
 
@@ -114,15 +114,14 @@ void require_plan_options(const LawOptions& o) {
 
 ExitStatus plan_next(const LawOptions& o) {
   require_plan_options(o);
-  const law::LawFile file = law::load_law_file(o.files.front());
-  if (!file.table)
+  const FittedLaw file = load_law(o.files.front());
+  if (file.table() == nullptr)
     throw InputError("law plan: " + file.path +
                      " is no law table: it has no configurations of several neighbours to plan with");
   const Scene table_scene = Scene::load(o.measure);
   const LawTableSetup candidates = read_law_table(table_scene);
   const std::string run = fs::is_directory(o.target) ? o.target : run_of(o, file.path);
-  const LawPlan plan =
-      plan_law(*file.table, file.path, candidates.multi_contact, curves_in(run), {o.packings, o.narrow, o.form});
+  const LawPlan plan = plan_law(file, candidates.multi_contact, curves_in(run), {o.packings, o.narrow, o.form});
   if (o.json)
     write_standard_output(json_of(plan, file.path, run).dump(2, ' ', false, json::error_handler_t::replace) + "\n");
   else

@@ -69,4 +69,13 @@ std::string where_text(const LawPoint& point, Extrapolation beyond) {
   }
 }
 
+std::vector<double> even(double low, double high, std::size_t n) {
+  std::vector<double> values;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double share = static_cast<double>(k) / static_cast<double>(n - 1);
+    values.push_back(k + 1 == n ? high : low + (high - low) * share);
+  }
+  return values;
+}
+
 }  // namespace softgrain::law

@@ -51,8 +51,7 @@ std::string plot_of(const CellCard& card, bool utf8) {
 
 }  // namespace
 
-std::string show_cells(const LawFile& file, bool utf8) {
-  const CellCard& card = *file.cells;
+std::string show(const CellCard& card, const FittedLaw& file, bool utf8) {
   std::string text = wrapped("cell law " + file.path + ": coarse grains in cells of fines, material without shells", 2);
   if (const std::string origin = origin_text(file.origin); !origin.empty()) text += wrapped(origin, 2);
   text += wrapped(
@@ -79,7 +78,7 @@ std::string show_cells(const LawFile& file, bool utf8) {
 
 }  // namespace law
 
-nlohmann::json cell_law_json(const CellCard& card) {
+nlohmann::json law_json(const CellCard& card) {
   nlohmann::json out{{"form", to_string(card.form)},
                      {"pressure_range", {card.pressure_low, card.pressure_high}},
                      {"mixture_max", card.mixture_high},

@@ -16,13 +16,14 @@ std::string interval(const Quantity& q) {
   return q.interval ? fmt::format("{:.3g} .. {:.3g}", q.interval->low, q.interval->high) : "-";
 }
 
-std::string source_text(const LawFile& file, double solid_fraction) {
-  if (!file.card) return fmt::format("law table, at solid fraction {:.4f}", solid_fraction);
-  if (file.card->from_experiment()) return "law card, from an experiment";
-  return fmt::format("law card, {} relaxation", file.card->relaxation);
+std::string source_text(const FittedLaw& file, double solid_fraction) {
+  const LawCard* card = file.card();
+  if (card == nullptr) return fmt::format("law table, at solid fraction {:.4f}", solid_fraction);
+  return card->from_experiment() ? "law card, from an experiment"
+                                 : fmt::format("law card, {} relaxation", card->relaxation);
 }
 
-std::string kind_line(const LawFile& file, char letter, double solid_fraction) {
+std::string kind_line(const FittedLaw& file, char letter, double solid_fraction) {
   return wrapped(fmt::format("{}: {}: {}", letter, file.path, source_text(file, solid_fraction)), 3);
 }
 
@@ -58,7 +59,7 @@ std::string difference_text(const LawDifference& d, bool utf8) {
 
 }  // namespace
 
-std::string differences_text(const LawFile& a, const LawFile& b, const std::vector<LawDifference>& differences,
+std::string differences_text(const FittedLaw& a, const FittedLaw& b, const std::vector<LawDifference>& differences,
                              bool utf8) {
   std::string text = kind_line(a, 'A', compared_fraction(a, b)) + kind_line(b, 'B', compared_fraction(b, a));
   if (differences.empty()) return text + "nothing in common: no kind of pair that both know in a common range\n";

@@ -43,8 +43,9 @@ std::optional<Source> table_source(const LawTable& table, PairKind kind, double 
   }
 }
 
-std::optional<Source> source(const LawFile& file, PairKind kind, const LawFile& other) {
-  return file.card ? card_source(*file.card, kind) : table_source(*file.table, kind, compared_fraction(file, other));
+std::optional<Source> source(const FittedLaw& file, PairKind kind, const FittedLaw& other) {
+  if (const LawCard* card = file.card()) return card_source(*card, kind);
+  return table_source(*file.table(), kind, compared_fraction(file, other));
 }
 
 using Get = std::function<std::optional<Quantity>(const LawPoint&)>;
@@ -109,16 +110,17 @@ void add(std::vector<LawDifference>& out, PairKind kind, const Source& a, const 
 
 }  // namespace
 
-double compared_fraction(const LawFile& file, const LawFile& other) {
-  if (file.card) return 0.0;
-  const std::vector<LawTableEntry>& entries = file.table->entries;
+double compared_fraction(const FittedLaw& file, const FittedLaw& other) {
+  if (file.card() != nullptr) return 0.0;
+  const LawCard* card = other.card();
+  const std::vector<LawTableEntry>& entries = file.table()->entries;
   const auto drawn_alike = [&](const LawTableEntry& e) {
-    return other.card && e.spec.beta == other.card->spec.beta && e.spec.trials == other.card->spec.trials;
+    return card != nullptr && e.spec.beta == card->spec.beta && e.spec.trials == card->spec.trials;
   };
   const auto alike = std::find_if(entries.begin(), entries.end(), drawn_alike);
   if (alike != entries.end()) return alike->solid_fraction;
-  if (other.card) return main_entry(*file.table).solid_fraction;
-  const double compared_quantities = main_entry(*other.table).solid_fraction;
+  if (card != nullptr) return main_entry(*file.table()).solid_fraction;
+  const double compared_quantities = main_entry(*other.table()).solid_fraction;
   return std::min_element(entries.begin(), entries.end(),
                           [compared_quantities](const auto& x, const auto& y) {
                             return std::abs(x.solid_fraction - compared_quantities) <
@@ -127,7 +129,7 @@ double compared_fraction(const LawFile& file, const LawFile& other) {
       ->solid_fraction;
 }
 
-std::vector<LawDifference> law_differences(const LawFile& a, const LawFile& b, std::size_t points) {
+std::vector<LawDifference> law_differences(const FittedLaw& a, const FittedLaw& b, std::size_t points) {
   std::vector<LawDifference> out;
   for (const PairKind kind : kPairKinds) {
     const auto of_a = source(a, kind, b);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipelines/law/law_file.h"
+#include "pipelines/law/fitted_law.h"
 #include "pipelines/law/law_values.h"
 
 namespace softgrain::law {
@@ -32,15 +32,15 @@ struct LawDifference {
 /// Every quantity that both files have, at `points` overlaps over the common range. A table stands for one plane
 /// (soft-solid) and one equal soft neighbour (soft-soft), by its best law at compared_fraction(). Empty when nothing is
 /// common.
-std::vector<LawDifference> law_differences(const LawFile& a, const LawFile& b, std::size_t points = 9);
+std::vector<LawDifference> law_differences(const FittedLaw& a, const FittedLaw& b, std::size_t points = 9);
 
 /// The solid fraction at which a table is compared with another law: that of the entry whose packings were drawn like
 /// those of the other card (same beta, trials), or lies nearest to the other table's first entry; else the first. 0 for
 /// a card.
-double compared_fraction(const LawFile& file, const LawFile& other);
+double compared_fraction(const FittedLaw& file, const FittedLaw& other);
 
 /// Tables and a plot for a terminal.
-std::string differences_text(const LawFile& a, const LawFile& b, const std::vector<LawDifference>& differences,
+std::string differences_text(const FittedLaw& a, const FittedLaw& b, const std::vector<LawDifference>& differences,
                              bool utf8);
 
 }  // namespace softgrain::law

@@ -82,19 +82,20 @@ const MultiContactLaw& drawn_law_of(const LawTableEntry& entry, LawForm form) {
 LawDraws table_draws(const LawSources& sources, const NamedLaws& named, const MacroSpec& spec, double fraction,
                      std::int64_t count) {
   const LawForm form = named.form;
-  LawTable table = *sources.table;
-  read_replicates(table, sources.table_file);
+  FittedLaw own = sources.serving(form);
+  read_refits(own);
+  const LawTable& table = *own.table();
   const std::size_t kept = replicate_count(table, form);
   if (kept == 0)
     throw InputError(
         fmt::format("bands: {} keeps no refits of its {} law: the .h5 beside it holds them; \"softgrain "
                     "calibrate multi_contact.h5\" makes both from the measurements",
-                    sources.table_file, to_string(form)));
+                    own.path, to_string(form)));
   if (static_cast<std::size_t>(count) > kept)
     throw InputError(
         fmt::format("bands = {}: {} keeps {} refits of its {} law; allowed: at most {}, or more refits by "
                     "\"softgrain calibrate multi_contact.h5 --set replicates=...\"",
-                    count, sources.table_file, kept, to_string(form), kept));
+                    count, own.path, kept, to_string(form), kept));
   std::string ignored;
   const LawTableEntry entry = law_entry(sources, fraction, ignored);
   const MultiContactLaw best = drawn_law_of(entry, form);
@@ -105,7 +106,7 @@ LawDraws table_draws(const LawSources& sources, const NamedLaws& named, const Ma
   const double factor = factor_of_several(entry.packings);
   LawSources drawn = sources;
   for (std::size_t r = 0; r < static_cast<std::size_t>(count); ++r) {
-    drawn.table = replicate_of(table, form, r);
+    drawn.laws = {{replicate_of(table, form, r)}};
     out.draws.push_back(
         with_logarithms(multi_contact_numbers(drawn_law_of(law_entry(drawn, fraction, ignored), form))));
     for (std::size_t k = 0; k < out.numbers.size(); ++k)
@@ -138,10 +139,9 @@ LawDraws table_draws(const LawSources& sources, const NamedLaws& named, const Ma
     LawTableEntry changed = entry;
     for (MultiContactLaw& law : changed.laws)
       if (law.form == form) law = law_of_numbers(best, numbers);
-    one.table = LawTable{};
-    one.table->entries = {changed};
+    one.laws = {{LawTable{.entries = {changed}}}};
     one.solid_fraction = changed.solid_fraction;
-    NamedLaws law = table_law_of(one, form, spec, 0.0);
+    NamedLaws law = law_of_form(one, form, spec, 0.0);
     law.name = named.name;
     return law;
   };
@@ -216,8 +216,8 @@ std::vector<double> card_probes(const LawCard& card) {
   return out;
 }
 
-LawDraws card_draws(const LawSources& sources, const NamedLaws& named, const MacroSpec& spec, std::int64_t count) {
-  const LawCard card = *sources.card;
+LawDraws card_draws(const LawCard& card, const LawSources& sources, const NamedLaws& named, const MacroSpec& spec,
+                    std::int64_t count) {
   LawDraws out;
   out.law = named;
   out.draws.resize(static_cast<std::size_t>(count));
@@ -269,10 +269,10 @@ std::vector<FormOffset> form_offsets(const MultiContactLaw& law) {
 
 LawDraws law_draws(const LawSources& sources, const NamedLaws& law, const MacroSpec& spec, double contents_fraction,
                    std::int64_t count) {
-  if (sources.cells)
+  if (sources.cells() != nullptr)
     throw InputError("bands: the card of a cell law keeps no refits; runs with cells have no bands: leave the key out");
-  const bool card = sources.card && (law.form == LawForm::pair || !sources.table);
-  return card ? card_draws(sources, law, spec, count) : table_draws(sources, law, spec, contents_fraction, count);
+  if (const LawCard* card = sources.serving(law.form).card()) return card_draws(*card, sources, law, spec, count);
+  return table_draws(sources, law, spec, contents_fraction, count);
 }
 
 }  // namespace softgrain

@@ -94,7 +94,7 @@ json verdict_json(const LawTableEntry& e) {
           {"overlap_max", e.overlap_max},       {"grain_overlap_max", e.grain_overlap_max}};
 }
 
-json law_table_json(const LawTable& table) {
+json law_json(const LawTable& table) {
   json out{{"entries", json::array()}};
   for (const LawTableEntry& e : table.entries) {
     json one = verdict_json(e);
@@ -118,5 +118,7 @@ std::map<std::string, PairLawSummary> summary_of(const LawCard& card) {
   for (const PairLaw& law : card.pairs) out[to_string(law.kind)] = summary_of(law, card.spec);
   return out;
 }
+
+json law_json(const LawCard& card) { return json_of(summary_of(card)); }
 
 }  // namespace softgrain

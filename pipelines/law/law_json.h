@@ -96,14 +96,15 @@ void fields(auto&& visit, Of<PairLawSummary> auto& s) {
 
 /// Laws of a card, by the kind of contact.
 std::map<std::string, PairLawSummary> summary_of(const LawCard& card);
+nlohmann::json law_json(const LawCard& card);
 
 /// { "entries": [ { "solid_fraction", "packings", "best", "volume_max", "overlap_max", "beyond", "unloading", "slides",
 /// "laws": [ { "form", "status", "a", ..., "partners", "error_fitted", ... } ] } ] }, dimensionless; estimates as in
 /// estimate_fields().
-nlohmann::json law_table_json(const LawTable& table);
+nlohmann::json law_json(const LawTable& table);
 
 /// Numbers with { "value", "standard_error", "interval" }, ranges, and what they were measured on; dimensionless.
-nlohmann::json cell_law_json(const CellCard& card);
+nlohmann::json law_json(const CellCard& card);
 
 /// What every list of laws says of a law: form, status, errors.
 nlohmann::json verdict_json(const MultiContactLaw& law);

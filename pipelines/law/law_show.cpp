@@ -132,8 +132,7 @@ std::string show_spec(const SoftParticleSpec& s) {
                             s.placement == Placement::voids ? " in voids" : "");
 }
 
-std::string show_card(const LawFile& file, bool utf8) {
-  const LawCard& card = *file.card;
+std::string show(const LawCard& card, const FittedLaw& file, bool utf8) {
   std::string text = wrapped(fmt::format("{}: law card, {}", file.path, measured_text(card)), 2);
   text += wrapped("  " + show_spec(card.spec), 2);
   const std::string origin = origin_text(file.origin);
@@ -148,9 +147,8 @@ std::string show_card(const LawFile& file, bool utf8) {
              0);
 }
 
-std::string law_text(const LawFile& file, bool utf8) {
-  if (file.cells) return show_cells(file, utf8);
-  return file.card ? show_card(file, utf8) : show_table(file, utf8);
+std::string law_text(const FittedLaw& file, bool utf8) {
+  return std::visit([&](const auto& law) { return show(law, file, utf8); }, file.content);
 }
 
 }  // namespace softgrain::law

@@ -75,4 +75,7 @@ MultiContactAnswer multi_contact_values(const LawTable& table, const MultiContac
 /// "no contact", "below range", "beyond range: extrapolated"...; empty inside.
 std::string where_text(const LawPoint& point, Extrapolation beyond);
 
+/// n >= 2 values evenly spread over [low, high], the ends exact.
+std::vector<double> even(double low, double high, std::size_t n);
+
 }  // namespace softgrain::law

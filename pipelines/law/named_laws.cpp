@@ -209,36 +209,13 @@ std::vector<WantedForm> read_forms(const SceneTable& law, bool has_table) {
 
 /// A solid fraction that the scene names is refused where it stands.
 void require_fraction(const SceneTable& t, const LawSources& sources) {
-  if (!sources.solid_fraction || !sources.table) return;
+  if (!sources.solid_fraction || sources.table() == nullptr) return;
   std::string ignored;
   try {
     (void)law_entry(sources, 0.0, ignored);
   } catch (const InputError& e) {
     t.add_error("solid_fraction", e.what());
   }
-}
-
-}  // namespace
-
-double law_fraction(const LawSources& sources, double contents_fraction) {
-  if (sources.solid_fraction) return *sources.solid_fraction;
-  return contents_fraction > 0.0 ? contents_fraction : main_entry(*sources.table).solid_fraction;
-}
-
-LawTableEntry law_entry(const LawSources& sources, double contents_fraction, std::string& remark) {
-  return entry_at(*sources.table, law_fraction(sources, contents_fraction), sources.range, remark,
-                  sources.solid_fraction ? kReachOfNumbers : kReachOfPackings);
-}
-
-const SoftParticleSpec& measured_spec(const LawSources& sources) {
-  if (sources.card) return sources.card->spec;
-  const double wanted = law_fraction(sources, 0.0);
-  const std::vector<LawTableEntry>& entries = sources.table->entries;
-  return std::min_element(entries.begin(), entries.end(),
-                          [wanted](const auto& a, const auto& b) {
-                            return std::abs(a.solid_fraction - wanted) < std::abs(b.solid_fraction - wanted);
-                          })
-      ->spec;
 }
 
 NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const MacroSpec& spec, double contents_fraction) {
@@ -287,6 +264,59 @@ NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const Macro
           [=](const System3& s) { return check.warning(s); }};
 }
 
+template <class Content>
+const Content* content_of(const std::vector<FittedLaw>& laws) {
+  for (const FittedLaw& law : laws)
+    if (const auto* content = std::get_if<Content>(&law.content)) return content;
+  return nullptr;
+}
+
+}  // namespace
+
+const LawCard* LawSources::card() const { return content_of<LawCard>(laws); }
+const LawTable* LawSources::table() const { return content_of<LawTable>(laws); }
+const CellCard* LawSources::cells() const { return content_of<CellCard>(laws); }
+
+const FittedLaw& LawSources::serving(WantedForm form) const {
+  const bool pair = form == LawForm::pair;
+  const auto wanted = std::ranges::find_if(laws, [&](const FittedLaw& law) { return (law.card() != nullptr) == pair; });
+  return wanted != laws.end() ? *wanted : laws.front();
+}
+
+std::vector<std::string> LawSources::files() const {
+  std::vector<std::string> out;
+  for (const FittedLaw& law : laws)
+    if (!law.path.empty()) out.push_back(law.path);
+  return out;
+}
+
+std::string LawSources::text() const {
+  std::string out;
+  for (const FittedLaw& law : laws) out += law.text;
+  return out;
+}
+
+double law_fraction(const LawSources& sources, double contents_fraction) {
+  if (sources.solid_fraction) return *sources.solid_fraction;
+  return contents_fraction > 0.0 ? contents_fraction : main_entry(*sources.table()).solid_fraction;
+}
+
+LawTableEntry law_entry(const LawSources& sources, double contents_fraction, std::string& remark) {
+  return entry_at(*sources.table(), law_fraction(sources, contents_fraction), sources.range, remark,
+                  sources.solid_fraction ? kReachOfNumbers : kReachOfPackings);
+}
+
+const SoftParticleSpec& measured_spec(const LawSources& sources) {
+  if (const LawCard* card = sources.card()) return card->spec;
+  const double wanted = law_fraction(sources, 0.0);
+  const std::vector<LawTableEntry>& entries = sources.table()->entries;
+  return std::min_element(entries.begin(), entries.end(),
+                          [wanted](const auto& a, const auto& b) {
+                            return std::abs(a.solid_fraction - wanted) < std::abs(b.solid_fraction - wanted);
+                          })
+      ->spec;
+}
+
 NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::string& name,
                       std::optional<Extrapolation> beyond) {
   const auto contact = [&](PairKind kind) {
@@ -301,24 +331,27 @@ NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::str
           card_note(card, spec)};
 }
 
+FittedLaw law_of_key(const SceneTable& table, const std::string& key, const std::string& path) {
+  FittedLaw law = load_law(path);
+  if (key == "card" ? law.card() == nullptr : law.table() == nullptr)
+    table.throw_error(key, path + " is no law " + key + " but a " + kind_text(law));
+  return law;
+}
+
 LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
   LawSources out;
-  const bool with_card = law.has("card");
-  const bool with_table = law.has("table");
-  if (with_card) out.files.push_back(scene.resolve(law.text({"card", "law card (pair law, as published)"})));
-  if (with_table)
-    out.table_file = scene.resolve(law.text({"table", "law table; `table`, `card` or both must be given"}));
-  if (with_table) out.files.push_back(out.table_file);
-  if (!with_card && !with_table) law.throw_error("table", "give a law table, a law card, or both");
-  if (law.has("forms")) out.forms = read_forms(law, with_table);
-  if (!with_table) out.forms = {LawForm::pair};
+  const std::string card = law.has("card") ? law.text({"card", "law card (pair law, as published)"}) : "";
+  const std::string table =
+      law.has("table") ? law.text({"table", "law table; `table`, `card` or both must be given"}) : "";
+  if (card.empty() && table.empty()) law.throw_error("table", "give a law table, a law card, or both");
+  if (law.has("forms")) out.forms = read_forms(law, !table.empty());
+  if (table.empty()) out.forms = {LawForm::pair};
   read_table_choices(law, out);
-  if (with_card) out.card = load_card(out.files.front());
-  if (with_table) out.table = load_law_table(out.table_file);
-  for (const std::string& file : out.files) out.text += read_text(file);
-  if (!out.table && law.has("form")) law.add_error("form", "goes with a law table; a card holds the pair law alone");
+  if (!card.empty()) out.laws.push_back(law_of_key(law, "card", scene.resolve(card)));
+  if (!table.empty()) out.laws.push_back(law_of_key(law, "table", scene.resolve(table)));
+  if (table.empty() && law.has("form")) law.add_error("form", "goes with a law table; a card holds the pair law alone");
   for (const char* key : kTableKeys)
-    if (!out.table && law.has(key)) law.add_error(key, "goes with a law table (key table)");
+    if (table.empty() && law.has(key)) law.add_error(key, "goes with a law table (key table)");
   require_fraction(law, out);
   return out;
 }
@@ -334,40 +367,36 @@ void read_law_choices(const SceneTable& root, LawSources& out) {
 LawSources read_scene_law(const SceneTable& root, const std::string& path) {
   LawSources out;
   read_law_choices(root, out);
-  out.files = {path};
-  out.text = read_text(path);
-  const LawFileKind kind = law_file_kind(path);
+  out.laws = {load_law(path)};
   const bool asks_cells = root.has("form") && root.text("form") == "cell";
-  if (asks_cells && kind != LawFileKind::cells)
-    root.add_error("form", "\"cell\" goes with a card of the cell law, and " + path + " is a law of soft particles");
-  if (kind == LawFileKind::cells) {
-    if (!asks_cells && root.has("form")) root.add_error("form", path + " is a card of the cell law: \"cell\"");
-    for (const char* key : {"solid_fraction", "range", "mu", "unloading", "rolling", "beyond"})
-      if (root.has(key))
-        root.add_error(key, "goes with laws of soft particles; " + path + " is a card of the cell law");
-    out.cells = read_cell_card(path);
-    return out;
-  }
-  if (kind == LawFileKind::table) {
-    out.table = load_law_table(path);
-    out.table_file = path;
-    require_fraction(root, out);
-    return out;
-  }
-  out.card = load_card(path);
-  const auto refuse = [&](const char* key) {
-    root.add_error(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
+  const auto refuse = [&](const char* key, const std::string& why) {
+    if (root.has(key)) root.add_error(key, why);
   };
-  if (root.has("form") && out.forms.front() != LawForm::pair) refuse("form");
-  for (const char* key : kTableKeys)
-    if (root.has(key)) refuse(key);
+  if (out.cells() != nullptr) {
+    if (!asks_cells) refuse("form", path + " is a card of the cell law: \"cell\"");
+    for (const char* key : {"solid_fraction", "range", "mu", "unloading", "rolling", "beyond"})
+      refuse(key, "goes with laws of soft particles; " + path + " is a card of the cell law");
+    return out;
+  }
+  if (asks_cells)
+    refuse("form", "\"cell\" goes with a card of the cell law, and " + path + " is a law of soft particles");
+  require_fraction(root, out);
+  if (out.card() == nullptr) return out;
+  const std::string pair_alone = "goes with a law table; " + path + " is a law card, which holds the pair law alone";
+  if (out.forms.front() != LawForm::pair) refuse("form", pair_alone);
+  for (const char* key : kTableKeys) refuse(key, pair_alone);
   return out;
+}
+
+NamedLaws law_of_form(const LawSources& sources, WantedForm form, const MacroSpec& spec, double contents_fraction) {
+  const LawCard* card = sources.serving(form).card();
+  return card != nullptr ? pair_law_of(*card, spec, "pair", sources.beyond)
+                         : table_law_of(sources, form, spec, contents_fraction);
 }
 
 NamedLaws scene_law(const LawSources& sources, const MacroSpec& spec, double contents_fraction,
                     const std::string& name) {
-  if (sources.card) return pair_law_of(*sources.card, spec, name, sources.beyond);
-  NamedLaws law = table_law_of(sources, sources.forms.front(), spec, contents_fraction);
+  NamedLaws law = law_of_form(sources, sources.forms.front(), spec, contents_fraction);
   law.name = name;
   return law;
 }
@@ -383,12 +412,7 @@ void add_law_texts(const NamedLaws& law, const System3& end, MacroCurve& curve) 
 
 std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec, double contents_fraction) {
   std::vector<NamedLaws> laws;
-  for (const WantedForm form : sources.forms) {
-    if (form == LawForm::pair && sources.card)
-      laws.push_back(pair_law_of(*sources.card, spec, "pair", sources.beyond));
-    else
-      laws.push_back(table_law_of(sources, form, spec, contents_fraction));
-  }
+  for (const WantedForm form : sources.forms) laws.push_back(law_of_form(sources, form, spec, contents_fraction));
   return laws;
 }
 

@@ -6,14 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "common/data/cell_card.h"
-#include "common/data/law_card.h"
 #include "common/data/macro_result.h"
-#include "common/data/multi_contact_law.h"
 #include "common/io/scene.h"
 #include "macrosim/macro_spec.h"
 #include "macrosim/macro_system.h"
-#include "pipelines/law/law_file_kind.h"
+#include "pipelines/law/fitted_law.h"
 
 namespace softgrain {
 
@@ -39,9 +36,9 @@ void add_law_texts(const NamedLaws& law, const System3& end, MacroCurve& curve);
 
 /// Where a scene takes its laws from: table [law] of a comparison, keys of a macro scene.
 struct LawSources {
-  std::optional<LawCard> card;    ///< pair law, as published
-  std::optional<LawTable> table;  ///< isotropic and directional law, and the pair law when there is no card
-  std::optional<CellCard> cells;  ///< card of the cell law of a macro scene (fines without shells), then the only law
+  /// One law; of a comparison a card (pair law, as published), a table (isotropic and directional law, and the pair law
+  /// when there is no card) or both. A card of the cell law (fines without shells) is the only law of a macro scene.
+  std::vector<FittedLaw> laws;
   std::vector<WantedForm> forms{LawForm::pair, LawForm::isotropic, LawForm::directional};  ///< one for a macro scene
   std::optional<double> solid_fraction{};   ///< solid fraction at which the table is taken; empty: see law_fraction()
   RangePolicy range = RangePolicy::reject;  ///< policy for solid fractions outside the table
@@ -49,9 +46,14 @@ struct LawSources {
   bool unloading = false;                   ///< whether the measured unloading branch is used
   bool rolling = true;                      ///< whether the measured rolling resistance is used
   std::optional<Extrapolation> beyond{};    ///< policy beyond the range, instead of that of card or table
-  std::vector<std::string> files{};         ///< files that the laws come from
-  std::string table_file{};                 ///< file of the table among them
-  std::string text;                         ///< content of these files
+
+  [[nodiscard]] const LawCard* card() const;
+  [[nodiscard]] const LawTable* table() const;
+  [[nodiscard]] const CellCard* cells() const;
+  /// The law that runs of this form take: the card the pair law, the table all else; where there is one, that one.
+  [[nodiscard]] const FittedLaw& serving(WantedForm form) const;
+  [[nodiscard]] std::vector<std::string> files() const;  ///< files that the laws come from
+  [[nodiscard]] std::string text() const;                ///< content of these files
 };
 
 /// Solid fraction at which a table is taken: what the scene says, else the mean of the contents of its soft particles,
@@ -65,6 +67,9 @@ LawTableEntry law_entry(const LawSources& sources, double contents_fraction, std
 /// entry nearest to the solid fraction that the scene says, else of the main one.
 const SoftParticleSpec& measured_spec(const LawSources& sources);
 
+/// The law in the file that a key names. Throws InputError where a key `card` names no law card, `table` no law table.
+FittedLaw law_of_key(const SceneTable& table, const std::string& key, const std::string& path);
+
 /// Reads [law]; paths are relative to the scene. Throws InputError, IoError.
 LawSources read_law_sources(const Scene& scene, const SceneTable& law);
 
@@ -76,17 +81,16 @@ LawSources read_scene_law(const SceneTable& root, const std::string& path);
 /// The keys of read_scene_law() alone, for scenes that are read without their law. Throws InputError.
 void read_law_choices(const SceneTable& root, LawSources& out);
 
-/// The law that read_scene_law() chose, under the name `name`. `contents_fraction` as in law_fraction(). Throws
-/// InputError.
+/// The law that serves this form, under the name of its form. Of a table: at law_fraction(); an empty form is the one
+/// that the entry prefers. Throws InputError when there is no usable law of the form, and of a table when it was
+/// measured with grains of another nu or mu, or does not reach this solid fraction (policy reject).
+NamedLaws law_of_form(const LawSources& sources, WantedForm form, const MacroSpec& spec, double contents_fraction);
+
+/// The law of the first form, under the name `name`: the one that read_scene_law() chose.
 NamedLaws scene_law(const LawSources& sources, const MacroSpec& spec, double contents_fraction,
                     const std::string& name);
 
-/// A law of a table at law_fraction(); An empty form is the one that the entry prefers. Throws InputError when the
-/// table has no such law, was measured with grains of another nu or mu, or does not reach this solid fraction (policy
-/// reject).
-NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const MacroSpec& spec, double contents_fraction);
-
-/// Every law that a comparison runs with, in the order of its tables and figures. The one place to add laws.
+/// Every law that a comparison runs with, in the order of its tables and figures.
 std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec, double contents_fraction);
 
 }  // namespace softgrain

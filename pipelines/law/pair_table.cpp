@@ -166,8 +166,9 @@ std::vector<Pair> table_pairs(const LawTable& table, const PairTableChoice& choi
 
 }  // namespace
 
-std::vector<PairTable> pair_tables(const LawFile& file, const PairTableChoice& choice) {
-  const std::vector<Pair> pairs = file.card ? card_pairs(*file.card, choice) : table_pairs(*file.table, choice);
+std::vector<PairTable> pair_tables(const FittedLaw& file, const PairTableChoice& choice) {
+  const LawCard* card = file.card();
+  const std::vector<Pair> pairs = card != nullptr ? card_pairs(*card, choice) : table_pairs(*file.table(), choice);
   if (pairs.empty()) throw InputError(file.path + ": the card has no usable law");
   std::vector<PairTable> out;
   for (const Pair& pair : pairs) out.push_back(tabulate(pair, choice));

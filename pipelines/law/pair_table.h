@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pipelines/law/law_file.h"
+#include "pipelines/law/fitted_law.h"
 
 namespace softgrain::law {
 
@@ -38,7 +38,7 @@ struct PairTable {
 /// smaller radius [SP 1.6]. Of a table: the single contact, whose lost volume knows the ratio of the radii. Throws
 /// InputError: no usable law, `delta_max` beyond the range of a law that refuses that, an overlap that reaches a
 /// centre.
-std::vector<PairTable> pair_tables(const LawFile& file, const PairTableChoice& choice);
+std::vector<PairTable> pair_tables(const FittedLaw& file, const PairTableChoice& choice);
 
 /// The file of LAMMPS' pair_style table, `units si`: one section per pair, keyword first. `head` goes into comments.
 std::string lammps_text(const std::vector<PairTable>& tables, const std::vector<std::string>& head);

@@ -124,14 +124,14 @@ std::string entry_text(const LawTableEntry& e, bool main, bool utf8) {
 
 }  // namespace
 
-std::string show_table(const LawFile& file, bool utf8) {
-  std::string text = wrapped(fmt::format("{}: law table, {} solid fraction{}", file.path, file.table->entries.size(),
-                                         file.table->entries.size() == 1 ? "" : "s"),
+std::string show(const LawTable& table, const FittedLaw& file, bool utf8) {
+  std::string text = wrapped(fmt::format("{}: law table, {} solid fraction{}", file.path, table.entries.size(),
+                                         table.entries.size() == 1 ? "" : "s"),
                              2);
   const std::string origin = origin_text(file.origin);
   if (!origin.empty()) text += wrapped("  " + origin, 2);
-  for (const std::string& note : file.table->notes) text += wrapped("  note: " + note, 4);
-  for (const LawTableEntry& e : file.table->entries) text += "\n" + entry_text(e, &e == &main_entry(*file.table), utf8);
+  for (const std::string& note : table.notes) text += wrapped("  note: " + note, 4);
+  for (const LawTableEntry& e : table.entries) text += "\n" + entry_text(e, &e == &main_entry(table), utf8);
   return text;
 }
 

@@ -52,13 +52,13 @@ void add_law(const LawSources& sources, const SoftParticleSpec& measured, double
 void add_made_laws(const RunData& run, std::vector<HeadLine>& lines) {
   if (run.card) {
     LawSources sources;
-    sources.card = run.card;
+    sources.laws = {{*run.card}};
     add_law(sources, run.card->spec, 0.0, lines);
   }
   if (!run.law_table) return;
   for (const LawTableEntry& entry : run.law_table->entries) {
     LawSources sources;
-    sources.table = run.law_table;
+    sources.laws = {{*run.law_table}};
     sources.forms = {entry.best};
     sources.solid_fraction = entry.solid_fraction;
     add_law(sources, entry.spec, entry.solid_fraction, lines);

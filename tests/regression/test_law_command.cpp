@@ -22,8 +22,9 @@ const std::string kRoot = SOFTGRAIN_SOURCE_DIR;
 const std::string kCard = "results/published/law.toml";
 const std::string kTable = "results/law_table/law_table.toml";
 
-law::LawFile committed(const std::string& path) {
-  law::LawFile file = law::load_law_file(kRoot + "/" + path);
+FittedLaw committed(const std::string& path) {
+  FittedLaw file = load_law(kRoot + "/" + path);
+  read_refits(file);
   file.path = path;
   return file;
 }
@@ -40,19 +41,19 @@ void expect_narrow(const std::string& text) {
 TEST(LawCommand, ShowsTheCommittedLawsAsBefore) {
   EXPECT_EQ(law::law_text(committed(kCard), false), reference("card.txt"));
   EXPECT_EQ(law::law_text(committed(kTable), false), reference("table.txt"));
-  const law::LawFile a = committed(kCard);
-  const law::LawFile b = committed(kTable);
+  const FittedLaw a = committed(kCard);
+  const FittedLaw b = committed(kTable);
   EXPECT_EQ(law::differences_text(a, b, law::law_differences(a, b), false), reference("difference.txt"));
 }
 
 /// By this number runs, reports and comparisons of all versions tell whether two laws are the same.
 TEST(LawCommand, TheNumberOfALawStays) {
   LawSources sources;
-  sources.table = load_law_table(kRoot + "/" + kTable);
+  sources.laws = {load_law(kRoot + "/" + kTable)};
   sources.forms = {LawForm::isotropic};
   MacroSpec spec;
-  spec.poisson_ratio = sources.table->entries.front().spec.poisson_ratio;
-  spec.friction = sources.table->entries.front().spec.friction;
+  spec.poisson_ratio = measured_spec(sources).poisson_ratio;
+  spec.friction = measured_spec(sources).friction;
   EXPECT_EQ(scene_law(sources, spec, 0.0, "law").identity.hash, "d708eed99b3e9fe7");
 }
 

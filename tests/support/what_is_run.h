@@ -122,8 +122,8 @@ void tell(Fingerprint& f, const ParticlesSceneOf<D>& s) {
 /// Without files' texts, which are in what was read of them.
 inline void tell(Fingerprint& f, const LawSources& law) {
   LawSources rest = law;
-  rest.text.clear();
-  if (!law.table) rest.range = RangePolicy::reject;
+  for (FittedLaw& one : rest.laws) one.text.clear();
+  if (law.table() == nullptr) rest.range = RangePolicy::reject;
   f.plain(rest);
 }
 

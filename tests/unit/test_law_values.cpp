@@ -302,8 +302,7 @@ TEST(MultiContactTables, WhatWasNotMeasuredIsSaid) {
 }
 
 TEST(LawDifferences, OfACardWithItself) {
-  law::LawFile file;
-  file.card = published();
+  const FittedLaw file{published()};
   const auto same = law::law_differences(file, file);
   ASSERT_EQ(same.size(), 6u);
   for (const law::LawDifference& d : same) {
@@ -313,16 +312,13 @@ TEST(LawDifferences, OfACardWithItself) {
 }
 
 TEST(LawDifferences, InPerCentAndAgainstIntervals) {
-  law::LawFile a;
-  law::LawFile b;
-  a.card = published();
-  b.card = published();
-  for (PairLaw& pair : b.card->pairs) {
+  LawCard changed = published();
+  for (PairLaw& pair : changed.pairs) {
     pair.normal.a.value *= 2.0;
     pair.normal.c.value *= 2.0;
     pair.delta_max *= 0.9;
   }
-  const auto differences = law::law_differences(a, b);
+  const auto differences = law::law_differences({published()}, {changed});
   const law::LawDifference& force = differences.front();
   EXPECT_NEAR(force.high, 0.27, kExact);
   EXPECT_NEAR(force.rows.back().relative, 1.0, kExact);

@@ -213,7 +213,7 @@ MacroSpec spec_of_table() {
 
 LawSources sources(WantedForm form = {}) {
   LawSources out;
-  out.table = LawTable{1, {law_entry()}};
+  out.laws = {{LawTable{1, {law_entry()}}}};
   out.forms = {form};
   return out;
 }

@@ -80,9 +80,7 @@ void expect_sound(const ReadTable& t, double touch) {
   EXPECT_NEAR(t.slope_low, slope, 1e-3 * std::abs(slope));
 }
 
-law::LawFile published() {
-  return law::load_law_file(std::string(SOFTGRAIN_SOURCE_DIR) + "/results/published/law.toml");
-}
+FittedLaw published() { return load_law(std::string(SOFTGRAIN_SOURCE_DIR) + "/results/published/law.toml"); }
 
 law::PairTableChoice choice() {
   law::PairTableChoice c;
@@ -93,7 +91,7 @@ law::PairTableChoice choice() {
 }
 
 TEST(PairTable, OfACard) {
-  const law::LawFile file = published();
+  const FittedLaw file = published();
   const auto tables = read_lammps(law::lammps_text(law::pair_tables(file, choice()), {"a remark"}));
   ASSERT_EQ(tables.size(), 6u);
   for (const double ratio : choice().ratios) {
@@ -103,7 +101,7 @@ TEST(PairTable, OfACard) {
     expect_sound(tables.at("SOFT_SOFT_" + text), touch);
     const ReadTable& solid = tables.at("SOFT_SOLID_" + text);
     EXPECT_NEAR(touch - solid.low, 0.3 * 0.01, 1e-15);
-    const PairLaw& law = *file.card->find(PairKind::soft_solid);
+    const PairLaw& law = *file.card()->find(PairKind::soft_solid);
     for (std::size_t k = 0; k < solid.n; k += 50) {
       const double expected = 2e6 * 1e-4 * std::max(law.normal.value((touch - solid.r[k]) / 0.01), 0.0);
       EXPECT_NEAR(solid.force[k], expected, 1e-10 * solid.force.front());
@@ -114,12 +112,11 @@ TEST(PairTable, OfACard) {
 }
 
 TEST(PairTable, OfALawTable) {
-  law::LawFile file;
   LawTableEntry entry = synthetic::law_entry();
   entry.volume_max = 0.5;
   entry.laws[2].partners[0].overlap_max = 0.8;  // or the smaller ones never press hard enough
   entry.laws[2].partners[3].overlap_max = 0.6;
-  file.table = LawTable{1, {entry}};
+  const FittedLaw file{LawTable{1, {entry}}};
   law::PairTableChoice c = choice();
   c.ratios = {1.0, 0.5, 2.0};
   const auto tables = read_lammps(law::lammps_text(law::pair_tables(file, c), {}));
@@ -148,15 +145,12 @@ TEST(PairTable, AClampedLawStaysConstantAndItsEnergyGoesOn) {
   c.beyond = Extrapolation::clamp;
   c.delta_max = 0.45;
   c.kinds = {PairKind::soft_solid};
-  law::LawFile file = published();
-  const law::PairTable t = law::pair_tables(file, c).front();
+  const law::PairTable t = law::pair_tables(published(), c).front();
   EXPECT_EQ(t.force[0], t.force[1]);
   EXPECT_NEAR((t.energy[0] - t.energy[1]) / (t.r[1] - t.r[0]), t.force[0], 1e-6 * t.force[0]);
   LawTableEntry entry = synthetic::law_entry();
   entry.volume_max = 0.01;
-  file.card.reset();
-  file.table = LawTable{1, {entry}};
-  const law::PairTable clamped = law::pair_tables(file, c).front();
+  const law::PairTable clamped = law::pair_tables({LawTable{1, {entry}}}, c).front();
   const double step = clamped.r[1] - clamped.r[0];
   expect_derivative(clamped.energy, clamped.force, step, 2e-4 * clamped.force.front());
 }

@@ -10,10 +10,10 @@
 #include "common/data/law_band.h"
 #include "common/data/law_remarks.h"
 #include "common/data/multi_contact_choice.h"
-#include "common/data/multi_contact_replicates.h"
+#include "common/io/scene.h"
 #include "pipelines/kinds/law_table/multi_contact_law_fit.h"
+#include "pipelines/law/fitted_law.h"
 #include "pipelines/law/law_json.h"
-#include "pipelines/law/named_laws.h"
 
 namespace softgrain {
 
@@ -39,8 +39,7 @@ void warn_of_card(const LawCard& card, Findings& out) {
   if (const std::string remark = kt_remark(card); !remark.empty()) out.warn(remark);
 }
 
-void check_card(const std::string& path, Findings& out) {
-  const LawCard card = load_card(path);
+void check_law(const LawCard& card, Findings& out) {
   out.add("kind", "law card", "law card, " + measured_text(card));
   if (!packing_known(card.spec))
     out.add("contents", "not known",
@@ -107,9 +106,7 @@ void warn_of_entry(const LawTableEntry& e, Findings& out) {
                            e.solid_fraction, to_string(row.kind), row.ratio, 100.0 * row.error));
 }
 
-void check_table(const std::string& path, Findings& out) {
-  LawTable table = load_law_table(path);
-  read_replicates(table, path);
+void check_law(const LawTable& table, Findings& out) {
   out.add("kind", "law table",
           fmt::format("law table: {} entries, solid fraction {}", table.entries.size(), fractions_text(table)));
   for (const LawTableEntry& e : table.entries) {
@@ -119,8 +116,7 @@ void check_table(const std::string& path, Findings& out) {
   for (const std::string& note : table.notes) out.warn(note);
 }
 
-void check_cell_card(const std::string& path, Findings& out) {
-  const CellCard card = read_cell_card(path);
+void check_law(const CellCard& card, Findings& out) {
   out.add("kind", "cell law",
           fmt::format("card of the cell law, {} form, for material without shells: K = {}, n = {}, E of its grains {}, "
                       "p/E from {:.3g} to {:.3g}, up to {:.3g} times as much fines as coarse grains",
@@ -136,9 +132,8 @@ void check_cell_card(const std::string& path, Findings& out) {
 }
 
 /// The card of a whole material, as a recipe writes it.
-void check_material_card(const std::string& path, Findings& out) {
-  const Scene scene = Scene::load(path);
-  const SceneTable root = scene.root();
+void check_material_card(const Scene& file, Findings& out) {
+  const SceneTable root = file.root();
   const SceneTable material = root.table("material");
   const Estimate onset = read_estimate_text(material.table("phi_J"), Range{0.0, 1.0, true, true});
   const Estimate modulus = read_estimate_text(material.table("K"), Range::positive());
@@ -164,15 +159,10 @@ void check_material_card(const std::string& path, Findings& out) {
 }  // namespace
 
 void check_laws(const std::string& path, Findings& out) {
-  if (is_material_card(path)) return check_material_card(path, out);
-  switch (law_file_kind(path)) {
-    case LawFileKind::card:
-      return check_card(path, out);
-    case LawFileKind::table:
-      return check_table(path, out);
-    case LawFileKind::cells:
-      return check_cell_card(path, out);
-  }
+  if (const Scene file = Scene::load(path); is_material_card(file)) return check_material_card(file, out);
+  FittedLaw law = load_law(path);
+  read_refits(law);  // of an edited table they are not used, which its notes say
+  std::visit([&](const auto& content) { check_law(content, out); }, law.content);
 }
 
 }  // namespace softgrain

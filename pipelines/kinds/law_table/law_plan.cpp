@@ -199,10 +199,9 @@ double seconds_alike(const std::vector<std::vector<double>>& predicted, const st
   return seconds * static_cast<double>(high);
 }
 
-LawDraws draws_of(const LawTable& table, const std::string& file, const MacroCurve& curve, std::size_t draws) {
+LawDraws draws_of(const FittedLaw& law, const MacroCurve& curve, std::size_t draws) {
   LawSources sources;
-  sources.table = table;
-  sources.table_file = file;
+  sources.laws = {law};
   sources.solid_fraction = curve.law.solid_fraction;
   NamedLaws named;
   named.name = curve.engine;
@@ -214,22 +213,22 @@ std::string depth_text(const PlanCandidate& c) { return fmt::format("{:.3f}", c.
 
 }  // namespace
 
-LawPlan plan_law(const LawTable& table, const std::string& table_file, const MultiContactSetup& candidates,
-                 const std::vector<MacroCurve>& curves, const LawPlanWish& wish) {
-  const LawForm form = form_of(table, curves, wish.form);
+LawPlan plan_law(const FittedLaw& table, const MultiContactSetup& candidates, const std::vector<MacroCurve>& curves,
+                 const LawPlanWish& wish) {
+  const LawForm form = form_of(*table.table(), curves, wish.form);
   const Curves drawn = drawn_curves(curves, form);
   LawPlan plan;
   plan.engine = drawn.front()->engine;
   plan.curves = drawn.size();
   plan.draws = drawn.front()->drawn_axial.size();
   plan.block = wish.block;
-  const LawDraws law = draws_of(table, table_file, *drawn.front(), plan.draws);
+  const LawDraws law = draws_of(table, *drawn.front(), plan.draws);
   plan.discrepancy = law.discrepancy;
   const auto predicted = predictions(drawn);
   plan.law_part = deviation(predicted);
   std::string ignored;
   LawSources sources;
-  sources.table = table;
+  sources.laws = {table};
   const LawTableEntry entry = law_entry(sources, drawn.front()->law.solid_fraction, ignored);
   const KnownErrors known(*entry.find(form), std::max(entry.packings, 1));
   Candidates all = candidates_of(candidates, known, law);

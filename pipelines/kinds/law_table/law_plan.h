@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/data/macro_result.h"
-#include "common/data/multi_contact_law.h"
 #include "pipelines/kinds/law_table/multi_contact_scene.h"
+#include "pipelines/law/fitted_law.h"
 
 namespace softgrain {
 
@@ -56,8 +56,8 @@ struct LawPlanWish {
 /// configuration tells the logarithm of the force on its neighbours at the overlap, off by the scatter of packings.
 /// `curves`: of runs with bands by this table. Throws InputError: none has draws of one of its laws, or of more than
 /// the table keeps.
-LawPlan plan_law(const LawTable& table, const std::string& table_file, const MultiContactSetup& candidates,
-                 const std::vector<MacroCurve>& curves, const LawPlanWish& wish);
+LawPlan plan_law(const FittedLaw& table, const MultiContactSetup& candidates, const std::vector<MacroCurve>& curves,
+                 const LawPlanWish& wish);
 
 /// The plan as text for people.
 std::string plan_text(const LawPlan& plan);

@@ -185,7 +185,7 @@ void check_table_law(const LawTable& table, const LawSources& given, WantedForm 
   const double contents_fraction = content.solid_fraction;
   LawSources laws = given;
   laws.range = RangePolicy::clamp;
-  const NamedLaws named = table_law_of(laws, form, spec, contents_fraction);  // says what is not usable
+  const NamedLaws named = law_of_form(laws, form, spec, contents_fraction);  // says what is not usable
   std::string remark;
   const LawTableEntry entry = law_entry(laws, contents_fraction, remark);
   const MultiContactLaw& law = *entry.find(named.form);
@@ -237,10 +237,11 @@ void check_laws_of(const LawSources& laws, const MacroSpec& spec, const MacroCon
   if (spec.cells) return check_cells(*spec.cells, spec, out);
   if (spec.soft_share > 0.0) out.add("picture", "shells", kMatterInShells);
   for (const WantedForm form : laws.forms) {
-    if (laws.card && (form == LawForm::pair || !laws.table))
-      check_card_law(*laws.card, laws, spec, out);
+    const FittedLaw& law = laws.serving(form);
+    if (const LawCard* card = law.card())
+      check_card_law(*card, laws, spec, out);
     else
-      check_table_law(*laws.table, laws, form, spec, content, out);
+      check_table_law(*law.table(), laws, form, spec, content, out);
   }
 }
 

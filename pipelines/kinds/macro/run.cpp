@@ -93,7 +93,7 @@ MacroRunSummary summarise(const MacroScene& scene, const LawIdentity& law, const
 
 LammpsRuns lammps_runs(const MacroScene& scene, const NamedLaws& law, const std::vector<ShellPacking>& contents,
                        const Provenance& provenance) {
-  return {scene.setup, law, mean_solid_fraction(contents), scene.title, lammps_identity(provenance, scene.law.text)};
+  return {scene.setup, law, mean_solid_fraction(contents), scene.title, lammps_identity(provenance, scene.law.text())};
 }
 
 constexpr const char* kInitialFile = "macro_initial.h5";
@@ -153,7 +153,8 @@ std::vector<LawDraws> draws_of(const MacroScene& scene, const NamedLaws& law,
 /// Checks before any work that the law has draws for bands. Throws InputError.
 void require_draws(const MacroScene& scene, bool lammps) {
   if (lammps) throw InputError("bands: runs in LAMMPS have none; leave --engine lammps out, or bands");
-  if (scene.law.cells) throw InputError("bands: the card of a cell law keeps no refits; leave the key out");
+  if (scene.law.cells() != nullptr)
+    throw InputError("bands: the card of a cell law keeps no refits; leave the key out");
   (void)draws_of(scene, scene_law(scene.law, scene.setup.spec, 0.0, "law"), {});
 }
 
@@ -176,7 +177,7 @@ ReadyMacro ready_macro(const Scene& scene, const CommonOptions& options) {
   const std::optional<LammpsEngine> lammps = ready.lammps = read_engine(options, macro.setup.spec.bodies);
   if (macro.setup.spec.preparation == Preparation::lammps && !lammps)
     throw InputError("key macro.preparation = \"lammps\" needs --engine lammps");
-  if (macro.law.cells && lammps) throw InputError("--engine lammps: LAMMPS knows no cells; leave it out");
+  if (macro.law.cells() != nullptr && lammps) throw InputError("--engine lammps: LAMMPS knows no cells; leave it out");
   if (macro.setup.bands > 0) require_draws(macro, lammps.has_value());
   return ready;
 }
@@ -186,11 +187,11 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
   const MacroScene& macro = ready.macro;
   const std::optional<LammpsEngine>& lammps = ready.lammps;
   const Run run(scene, options, "macrosim", macro.seed,
-                {macro.law.files, macro.law.text + sizes_text(macro.setup.spec)});
+                {macro.law.files(), macro.law.text() + sizes_text(macro.setup.spec)});
   const auto contents =
       macro.setup.twins.empty() ? std::vector<ShellPacking>{} : make_contents(macro.spec, macro.contents, run.seed);
   std::optional<NamedLaws> law;  // none with cells
-  if (!macro.law.cells) law = law_of(macro, contents);
+  if (macro.law.cells() == nullptr) law = law_of(macro, contents);
   if (lammps && lammps->write_only) return write_only(macro, *law, contents, run);
   std::vector<MacroCurve> curves;
   std::vector<BandRecord> bands;

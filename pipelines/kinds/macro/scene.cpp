@@ -526,10 +526,10 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
     read_law_choices(root, out.law);
   } else {
     out.law = read_scene_law(root, law_file);
-    out.spec = out.law.cells ? grains_of(*out.law.cells) : measured_spec(out.law);
+    out.spec = out.law.cells() != nullptr ? grains_of(*out.law.cells()) : measured_spec(out.law);
   }
-  const bool cells = law_file.empty() ? root.has("fines") : out.law.cells.has_value();
-  if (cells)
+  const CellCard* cells = out.law.cells();
+  if (law_file.empty() ? root.has("fines") : cells != nullptr)
     read_cell_material(root, out.spec);
   else if (root.has("material"))
     root.add_error("material",
@@ -538,8 +538,8 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   out.setup = read_macro_setup(macro, out.spec);
   read_stages(root, macro, out.setup.spec);
   refuse_idle_test_keys(macro, root, {&out.setup.spec});
-  if (out.law.cells) {
-    read_cells(root, macro, *out.law.cells, out.setup);
+  if (cells != nullptr) {
+    read_cells(root, macro, *cells, out.setup);
     if (!is_known(out.spec.youngs_modulus)) require_known_modulus(root, law_file);
   } else {
     if (!law_file.empty() && root.has("fines"))
@@ -549,8 +549,9 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   if (!root.has_errors()) require_macro_memory(macro, out.setup, out.spec);
   if (!root.has_errors()) require_room_for_images(macro, "bodies", out.setup, out.seed);
   refuse_idle_keys(macro, !out.setup.twins.empty(), true);  // --bands may give some
-  if (out.law.table) add_error_beside(macro, {"kt"}, "goes with a law card; a law table has one tangential stiffness");
-  if (out.law.card && std::ranges::none_of(out.law.card->pairs, has_tangential))
+  if (out.law.table() != nullptr)
+    add_error_beside(macro, {"kt"}, "goes with a law card; a law table has one tangential stiffness");
+  if (const LawCard* card = out.law.card(); card != nullptr && std::ranges::none_of(card->pairs, has_tangential))
     add_error_beside(macro, {"kt"}, "no tangential stiffness was measured for " + law_file + ": one is assumed");
   if (out.setup.twins.empty())
     add_error_beside(root, {"contents"}, "is of the soft particles of a resolved twin: goes with resolved = true");

@@ -62,7 +62,7 @@ SceneFacts facts_by_law(const MacroPacking& packing, const LawSources& sources) 
   SceneFacts facts = describe(packing, {});
   facts.exponent = {kUnknown, kUnknown};
   facts.largest_over_smallest = kUnknown;
-  if (!sources.table) return facts;
+  if (sources.table() == nullptr) return facts;
   std::string remark;
   const LawTableEntry entry = law_entry(sources, 0.0, remark);
   facts.inner_grains = std::llround(static_cast<double>(facts.soft) * entry.grains);
@@ -141,12 +141,12 @@ std::string console_summary(const std::vector<SceneResult>& results, const Run& 
 
 /// The packings of a comparison should be those that the law was measured on.
 std::vector<std::string> law_remarks(const SoftParticleSpec& mine, const LawSources& laws) {
-  if (laws.table)
-    for (const LawTableEntry& e : laws.table->entries)
+  if (const LawTable* table = laws.table())
+    for (const LawTableEntry& e : table->entries)
       if ((e.spec.sizes || mine.sizes) && !same_sizes(e.spec, mine))
         return {"the law table was measured on soft particles whose grains have other sizes than those of the twins"};
-  if (!laws.card) return {};
-  const SoftParticleSpec& law = laws.card->spec;
+  if (laws.card() == nullptr) return {};
+  const SoftParticleSpec& law = laws.card()->spec;
   if (!packing_known(law))
     return {
         "the law card does not say what is inside the soft particle that was measured; the twins are filled as this "
@@ -184,13 +184,13 @@ MacroComparisonSummary summarise(const MacroComparisonSetup& setup, const std::v
 ExitStatus run_macro_comparison(const Scene& scene, const CommonOptions& options) {
   const MacroComparisonSetup setup = read_macro_comparison(scene);
   std::string sizes = sizes_text(setup.spec);
-  std::vector<std::string> files = setup.laws.files;
-  std::string text = setup.laws.text;
+  std::vector<std::string> files = setup.laws.files();
+  std::string text = setup.laws.text();
   for (const ComparisonScene& s : setup.scenes) {
     sizes += sizes_text(s.setup.spec);
     if (!s.laws) continue;
-    files.insert(files.end(), s.laws->files.begin(), s.laws->files.end());
-    text += s.laws->text;
+    for (const std::string& file : s.laws->files()) files.push_back(file);
+    text += s.laws->text();
   }
   const Run run(scene, options, "run", setup.seed, {files, text + sizes});
   const auto contents = make_contents(setup.spec, setup.contents, run.seed);

@@ -43,11 +43,10 @@ LawSources read_shells(const Scene& scene, const SceneTable& t, MaterialModelsSc
   LawSources law;
   const std::string path = scene.resolve(t.text({"table", "shells: a law table", "-"}));
   law.forms = {t.choice<LawForm>({"form", "shells: form of the law"}, LawForm::directional)};
-  law.table = load_law_table(path);
-  law.files = {path};
+  law.laws = {law_of_key(t, "table", path)};
   if (std::find(out.files.begin(), out.files.end(), path) == out.files.end()) {
     out.files.push_back(path);
-    out.text += read_text(path);
+    out.text += law.text();
   }
   law.range = RangePolicy::clamp;
   return law;

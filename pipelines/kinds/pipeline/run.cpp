@@ -104,11 +104,10 @@ LawSources sources_of(const PipelineSetup& setup, const Run& run, const Pipeline
   if (setup.table) return *setup.table;
   LawSources out;
   if (has_multi_contact_law(setup, result)) {
-    out.table = result.multi_contact_fit.table;
-    out.table_file = run.path("law_table.toml");
+    out.laws = {{result.multi_contact_fit.table, run.path("law_table.toml")}};
     out.forms = {result.multi_contact_fit.table.entries.front().best};
   } else {
-    out.card = result.card;
+    out.laws = {{result.card}};
   }
   return out;
 }
@@ -245,9 +244,9 @@ std::string console_summary(const PipelineSetup& setup, const PipelineResult& r)
 ExitStatus run_pipeline(const Scene& scene, const CommonOptions& options) {
   const PipelineSetup setup = read_pipeline_setup(scene);
   const Run run(scene, options, "run", setup.measure.seed,
-                {.files = setup.table ? setup.table->files : std::vector<std::string>{},
+                {.files = setup.table ? setup.table->files() : std::vector<std::string>{},
                  .text = sizes_text(setup.measure.spec) + (setup.macro ? sizes_text(setup.macro->spec) : "") +
-                         (setup.table ? setup.table->text : "")});
+                         (setup.table ? setup.table->text() : "")});
   PipelineResult result;
   run.guard([&] { result.measured = run_measure_stage(setup.measure, run); });
   for (const std::string& r : measurement_remarks(result.measured.data)) result.remarks.push_back(r);

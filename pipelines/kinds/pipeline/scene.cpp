@@ -11,7 +11,8 @@ namespace {
 LawSources read_multi_contact_law(const Scene& scene, const SceneTable& law) {
   const std::string path = scene.resolve(law.text({"table", "existing law table (path relative to the scene)"}));
   LawSources out = read_scene_law(law, path);
-  if (!out.table) law.throw_error("table", path + " is no law table (the pair law is the one that this run measures)");
+  if (out.table() == nullptr)
+    law.throw_error("table", path + " is no law table (the pair law is the one that this run measures)");
   if (out.forms.front() == LawForm::pair)
     law.throw_error("form",
                     "the pair law is the one that this run measures: \"isotropic\", \"directional\" or \"best\"");

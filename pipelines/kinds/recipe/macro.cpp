@@ -116,9 +116,8 @@ RecipeCurve press_with_shells(const RecipeScene& scene, const CellCard& card, co
     setup.spec.cells.reset();
     setup.spec.increments_per_step = scene.material.variants.front().setup.spec.increments_per_step;
     LawSources sources;
-    sources.table = table;
+    sources.laws = {{table}};
     sources.forms = {scene.shells.form};
-    sources.text = "recipe";
     const double inside = law_fraction(sources, 0.0) > 0.0 ? law_fraction(sources, 0.0) : 1.0;
     const double largest = scene.levels[0].high;
     const Grading shells = Grading::power_law(3.5, kLow * largest, kHigh * largest);

@@ -11,7 +11,7 @@
 #include "common/io/provenance.h"
 #include "microsim/multi_contact_arrangements.h"
 #include "pipelines/commands/complaints.h"
-#include "pipelines/law/law_file_kind.h"
+#include "pipelines/law/fitted_law.h"
 #include "pipelines/python/binding/binding_tools.h"
 #include "pipelines/python/binding/table_binding.h"
 
@@ -38,15 +38,21 @@ void translate(std::exception_ptr thrown) {
   }
 }
 
-std::string kind_of_file(const std::string& path) {
-  switch (law_file_kind(path)) {
-    case LawFileKind::card:
-      return "card";
-    case LawFileKind::table:
-      return "table";
-    default:
-      return "cells";
-  }
+/// The file (that of a run directory) and its law, which must have forces at contacts.
+py::tuple load(const std::string& path) {
+  FittedLaw law = load_law(path);
+  read_refits(law);
+  return std::visit(
+      [&]<class Content>(Content& content) -> py::tuple {
+        if constexpr (std::is_same_v<Content, CellCard>)
+          throw InputError(law.path +
+                           ": a card of the cell law has no forces at contacts: softgrain law show tells its numbers");
+        else if constexpr (std::is_same_v<Content, LawCard>)
+          return py::make_tuple(law.path, CardBinding(std::move(content)));
+        else
+          return py::make_tuple(law.path, TableBinding(std::move(content)));
+      },
+      law.content);
 }
 
 TableBinding load_table(const std::string& path) {
@@ -71,7 +77,7 @@ PYBIND11_MODULE(_laws, m) {
   py::register_exception_translator(translate);
   m.attr("version") = build_provenance().version;
   m.attr("commit") = build_provenance().commit;
-  m.def("kind_of_file", kind_of_file);
+  m.def("load", load);
   m.def("arrangement", arrangement);
   py::class_<CardBinding>(m, "Card")
       .def(py::init([](const std::string& path) { return CardBinding(load_card(path)); }))

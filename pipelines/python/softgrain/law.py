@@ -76,16 +76,9 @@ class Law(Drawn):
     def load(path):
         """A card (law.toml) or a table (law_table.toml), or that of a run directory. InputError with file and line for wrong content,
         and for a card of the cell law, which has no forces at contacts; IoError for files."""
-        path = Path(os.fspath(path))
-        if path.is_dir():
-            names = [n for n in ("law_table.toml", "law.toml", "cell_law.toml") if (path / n).is_file()]
-            if not names:
-                raise InputError([f"{path}: a directory without law_table.toml, law.toml or cell_law.toml"])
-            path = path / names[0]
-        kind = installation.laws().kind_of_file(str(path))
-        if kind == "cells":
-            raise InputError([f"{path}: a card of the cell law has no forces at contacts: softgrain law show tells its numbers"])
-        return CardLaw(path) if kind == "card" else TableLaw(path)
+        laws = installation.laws()
+        file, law = laws.load(os.fspath(path))
+        return CardLaw(file, law) if isinstance(law, laws.Card) else TableLaw(file, law)
 
     def __reduce__(self):  # in another process the file is read again
         return Law.load, (str(self.path.resolve()),)
@@ -102,9 +95,9 @@ class Law(Drawn):
 class CardLaw(Law):
     """The law of single contacts: F = E R^2 a (Delta^b - delta^b) above the threshold delta [law card]."""
 
-    def __init__(self, path):
+    def __init__(self, path, law=None):
         self.path = Path(path)
-        self._laws = installation.laws().Card(str(path))
+        self._laws = law or installation.laws().Card(str(path))
         self.card = tomllib.loads(self.path.read_text(encoding="utf-8-sig"))
         self.pairs = _pairs(self.card)
         self.shell_radius = float(self.card["measurement"]["shell_radius"])
@@ -190,9 +183,9 @@ class TableLaw(Law):
     "opposite", "cube"... (softgrain law eval --help lists them).
     """
 
-    def __init__(self, path):
+    def __init__(self, path, law=None):
         self.path = Path(path)
-        self._laws = installation.laws().Table(str(path))
+        self._laws = law or installation.laws().Table(str(path))
         self.card = tomllib.loads(self.path.read_text(encoding="utf-8-sig"))
         main = self.about()
         self.shell_radius = main["shell_radius"]
