@@ -12,42 +12,43 @@
 
 namespace softgrain {
 
-std::string ResultCache::name(const std::string& prefix, const std::string& key) {
+std::string SharedResults::name(const std::string& prefix, const std::string& key) {
   return prefix + "-" + short_hash(key);
 }
 
-bool ResultCache::find(const std::string& key, const std::function<void(const h5::Group&)>& read) const {
-  const std::string path = directory_.empty() ? "" : file(key);
-  if (path.empty() || !std::filesystem::exists(path)) return false;
+void SharedResults::read(const std::string& format, const std::string& file, const std::string& key,
+                         const std::string& again, const std::function<void(const h5::Group&)>& content) const {
+  const std::string path = directory_ + "/" + file + ".h5";
+  if (directory_.empty() || !std::filesystem::exists(path)) return;
   try {
     const std::lock_guard lock(h5::library_mutex());
     if (check_seal(path) != Seal::whole) throw IoError(path + ": damaged, or written by an earlier version");
     const h5::Group root = h5::open_file(path);
-    require_format(root, format_.c_str(), path);
+    require_format(root, format.c_str(), path);
     if (root.text("key") != key) throw IoError(path + ": belongs to another result");
-    read(root);
-    return true;
+    content(root);
   } catch (const IoError& e) {
-    say_(std::string(e.what()) + "; " + again_);
-    return false;
+    say_(std::string(e.what()) + "; " + again);
   }
 }
 
-void ResultCache::keep(const std::string& key, const std::function<void(const h5::Group&)>& write) const {
+void SharedResults::write(const std::string& format, const std::string& file, const std::string& key,
+                          const std::function<void(const h5::Group&)>& content) const {
   if (directory_.empty()) return;
+  const std::string path = directory_ + "/" + file + ".h5";
   // Other processes may keep the same result: each writes a file of its own, the last one to finish stays.
-  const std::string own = file(key) + "." + std::to_string(::getpid());
+  const std::string own = path + "." + std::to_string(::getpid());
   {
     const std::lock_guard lock(h5::library_mutex());
     h5::AtomicFile out(own, false, true);
-    write_format(out.root(), format_.c_str());
+    write_format(out.root(), format.c_str());
     out.root().attribute("key", key);
-    write(out.root());
+    content(out.root());
     out.commit();
   }
   std::error_code error;
-  std::filesystem::rename(own, file(key), error);
-  if (error) throw IoError(file(key) + ": cannot be written: " + error.message());
+  std::filesystem::rename(own, path, error);
+  if (error) throw IoError(path + ": cannot be written: " + error.message());
 }
 
 KeyText& KeyText::add(const std::string& value) {

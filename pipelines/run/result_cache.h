@@ -29,31 +29,48 @@
 
 namespace softgrain {
 
-class ResultCache {
- public:
-  /// `directory` empty: nothing is ever found or kept. `format` of the files, whose names begin with `prefix`; `again`:
-  /// what is said to happen in place of a file that is ignored ("measured again"). `say` takes remarks.
-  ResultCache(std::string directory, std::string format, std::string prefix, std::string again,
-              std::function<void(const std::string&)> say)
-      : directory_(std::move(directory)),
-        format_(std::move(format)),
-        prefix_(std::move(prefix)),
-        again_(std::move(again)),
-        say_(std::move(say)) {}
+/// How results of one kind are kept, in a file of their own or among the tasks of a run.
+template <class T>
+struct KeptForm {
+  std::string format;                       ///< of shared files
+  std::string prefix;                       ///< their names begin with it
+  std::string again;                        ///< said to happen in place of a file that is ignored
+  std::function<T(const h5::Group&)> read;  ///< throws IoError for what is none
+  std::function<void(const h5::Group&, const T&)> write;
+  bool (*worth)(const T&) = [](const T&) { return true; };  ///< whether it is kept for later runs
+};
 
-  /// Calls `read` with what is kept of this key, the whole text of what determines the result. A file that is damaged
-  /// or belongs to another key is ignored, with a remark. Returns whether it was read.
-  bool find(const std::string& key, const std::function<void(const h5::Group&)>& read) const;
-  /// Atomic, also among several processes. Throws IoError.
-  void keep(const std::string& key, const std::function<void(const h5::Group&)>& write) const;
+/// Files in a directory that runs share; none where it is empty: nothing is ever found or kept. `say` takes remarks.
+class SharedResults {
+ public:
+  SharedResults(std::string directory, std::function<void(const std::string&)> say)
+      : directory_(std::move(directory)), say_(std::move(say)) {}
+
+  /// What is kept of this key, the whole text of what determines the result. A file that is damaged or belongs to
+  /// another key is ignored, with a remark.
+  template <class T>
+  [[nodiscard]] std::optional<T> find(const KeptForm<T>& form, const std::string& key) const {
+    std::optional<T> found;
+    read(form.format, name(form.prefix, key), key, form.again, [&](const h5::Group& g) { found = form.read(g); });
+    return found;
+  }
+  /// Atomic, also among several processes; what is not worth it is not kept. Throws IoError.
+  template <class T>
+  void keep(const KeptForm<T>& form, const std::string& key, const T& result) const {
+    if (!form.worth(result)) return;
+    write(form.format, name(form.prefix, key), key, [&](const h5::Group& g) { form.write(g, result); });
+  }
 
   /// `prefix`, "-" and 16 hexadecimal digits (FNV-1a, 64 bits) of a key.
   static std::string name(const std::string& prefix, const std::string& key);
 
  private:
-  [[nodiscard]] std::string file(const std::string& key) const { return directory_ + "/" + name(prefix_, key) + ".h5"; }
+  void read(const std::string& format, const std::string& file, const std::string& key, const std::string& again,
+            const std::function<void(const h5::Group&)>& content) const;
+  void write(const std::string& format, const std::string& file, const std::string& key,
+             const std::function<void(const h5::Group&)>& content) const;
 
-  std::string directory_, format_, prefix_, again_;
+  std::string directory_;
   std::function<void(const std::string&)> say_;
 };
 

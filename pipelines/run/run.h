@@ -10,6 +10,7 @@
 #include "common/core/cost.h"
 #include "common/io/hdf5_file.h"
 #include "common/io/scene.h"
+#include "pipelines/run/result_cache.h"
 #include "pipelines/run/run_context.h"
 
 namespace softgrain {
@@ -64,6 +65,23 @@ class Run {
   [[nodiscard]] std::string path(const std::string& file) const { return context.path(file); }
   /// Wall time since the beginning [s].
   [[nodiscard]] double seconds() const { return watch_.seconds(); }
+
+  /// A result as an earlier part of this run kept it under `task`, else the one of `key` among those that runs share
+  /// (`directory`: --law-cache and the like), else `make()`, which is kept in both. Without a task, or a directory, it
+  /// is neither looked for nor kept there.
+  template <class T, class Make>
+  T get_or_make(const KeptForm<T>& form, const std::string& task, const std::string& directory, const std::string& key,
+                Make&& make) const {
+    std::optional<T> known;
+    if (!task.empty()) store.load(task, [&](const h5::Group& g) { known = form.read(g); });
+    const SharedResults shared(directory, [this](const std::string& remark) { context.say(remark); });
+    if (!known) known = shared.find(form, key);
+    if (known) return std::move(*known);
+    T made = make();
+    if (!task.empty()) store.save(task, [&](const h5::Group& g) { form.write(g, made); });
+    shared.keep(form, key, made);
+    return made;
+  }
 
   /// RunContext::guard with the provenance of this run.
   void guard(const std::function<void()>& work) const { context.guard(provenance, work); }

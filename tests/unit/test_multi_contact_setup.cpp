@@ -5,7 +5,7 @@
 
 #include "common/core/error.h"
 #include "common/io/text_file.h"
-#include "pipelines/kinds/law_table/multi_contact_cache.h"
+#include "pipelines/kinds/law_table/kept_multi_contact.h"
 #include "pipelines/kinds/law_table/multi_contact_plan.h"
 #include "pipelines/kinds/law_table/multi_contact_scene.h"
 #include "tests/support/multi_contact.h"
@@ -192,7 +192,7 @@ MultiContactRun sample_run() {
   return run;
 }
 
-TEST(MultiContactCache, ARunIsFoundByWhatDeterminesIt) {
+TEST(SharedResults, ARunIsFoundByWhatDeterminesIt) {
   const MultiContactConfiguration c = test::multi_contact_of(PartnerKind::plane, 0.0, {Vec3{{1.0, 0.0, 0.0}}}, 0.3);
   const MultiContactPlan plan{{0.5, 1.0}};
   const std::string key = multi_contact_run_key({}, c, plan, {}, "seed 1 packings 0");
@@ -215,27 +215,28 @@ TEST(MultiContactCache, ARunIsFoundByWhatDeterminesIt) {
   EXPECT_EQ(multi_contact_run_name("a"), "crowd-af63dc4c8601ec8c");  // published values of FNV-1a
 }
 
-TEST(MultiContactCache, KeepsAndIgnoresDamage) {
+TEST(SharedResults, KeepsAndIgnoresDamage) {
   const test::TemporaryDirectory directory;
   std::string remarks;
-  const MultiContactCache cache(directory.path(), [&](const std::string& remark) { remarks += remark + "\n"; });
-  EXPECT_FALSE(cache.find("key"));
-  cache.keep("key", sample_run());
-  const auto found = cache.find("key");
+  const SharedResults cache(directory.path(), [&](const std::string& remark) { remarks += remark + "\n"; });
+  const KeptForm<MultiContactRun>& form = kept_multi_contact_run();
+  EXPECT_FALSE(cache.find(form, "key"));
+  cache.keep(form, "key", sample_run());
+  const auto found = cache.find(form, "key");
   ASSERT_TRUE(found);
   test::expect_equal(found->points, sample_run().points);
   EXPECT_EQ(remarks, "");
   const std::string file = directory.file(multi_contact_run_name("key") + ".h5");
   std::filesystem::copy_file(file, directory.file(multi_contact_run_name("other") + ".h5"));
-  EXPECT_FALSE(cache.find("other"));
+  EXPECT_FALSE(cache.find(form, "other"));
   EXPECT_NE(remarks.find("another result"), std::string::npos) << remarks;
   remarks.clear();
   std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
-  EXPECT_FALSE(cache.find("key"));
+  EXPECT_FALSE(cache.find(form, "key"));
   EXPECT_NE(remarks.find("measured again"), std::string::npos) << remarks;
-  cache.keep("key", sample_run());
-  EXPECT_TRUE(cache.find("key"));
-  EXPECT_FALSE(MultiContactCache("", [](const std::string&) {}).find("key"));
+  cache.keep(form, "key", sample_run());
+  EXPECT_TRUE(cache.find(form, "key"));
+  EXPECT_FALSE(SharedResults("", [](const std::string&) {}).find(form, "key"));
 }
 
 }  // namespace

@@ -85,14 +85,9 @@ void measure(CheckRun& check, const HierarchySetup& setup, const InnerLaws& laws
   check.grains = static_cast<double>(e.system.particles.grains);
   check.inside = static_cast<double>(content.inner.size());
   const std::string name = fmt::format("check-{}-{}", name_of(check.task.engine), check.task.packing);
-  bool known = false;
-  run.store.load(name, [&](const h5::Group& g) {
-    check.run = read_multi_contact_runs(g).at(0);
-    known = true;
+  check.run = run.get_or_make(kept_multi_contact_run(), name, "", "", [&] {
+    return run_kept_multi_contact(run.store, name, e, plan, setup.multi_contact.options, {});
   });
-  if (known) return;
-  check.run = run_kept_multi_contact(run.store, name, e, plan, setup.multi_contact.options, {});
-  run.store.save(name, [&](const h5::Group& g) { write_multi_contact_runs(g, {check.run}); });
 }
 
 std::vector<MultiContactRun> runs_of(const std::vector<CheckRun>& checks, Engine engine) {

@@ -1,6 +1,8 @@
 #include "pipelines/kinds/law_table/kept_multi_contact.h"
 
+#include "common/core/error.h"
 #include "common/state/system_io.h"
+#include "pipelines/kinds/law_table/multi_contact_members.h"
 
 namespace softgrain {
 
@@ -50,7 +52,33 @@ MultiContactPlace read_place(const h5::Group& group, MultiContactExperiment& e) 
   return place;
 }
 
+/// Neither its name nor what it is used for changes what is measured.
+MultiContactConfiguration without_name(MultiContactConfiguration configuration) {
+  const MultiContactConfiguration none;
+  configuration.name = none.name;
+  configuration.held_out = none.held_out;
+  return configuration;
+}
+
 }  // namespace
+
+std::string multi_contact_run_key(const SoftParticleSpec& spec, const MultiContactConfiguration& configuration,
+                                  const MultiContactPlan& plan, const MultiContactOptions& options,
+                                  const std::string& contents) {
+  return KeyText("crowd run", kMultiContactSchema, spec, without_name(configuration), plan, options, contents).text();
+}
+
+const KeptForm<MultiContactRun>& kept_multi_contact_run() {
+  static const KeptForm<MultiContactRun> form{
+      "crowd-run", "crowd", "measured again",
+      [](const h5::Group& group) {
+        std::vector<MultiContactRun> runs = read_multi_contact_runs(group);
+        if (runs.size() != 1) throw IoError("damaged: holds no single run");
+        return std::move(runs.front());
+      },
+      [](const h5::Group& group, const MultiContactRun& run) { write_multi_contact_runs(group, {run}); }};
+  return form;
+}
 
 MultiContactRun run_kept_multi_contact(const TaskStore& store, const std::string& name,
                                        MultiContactExperiment& experiment, const MultiContactPlan& plan,

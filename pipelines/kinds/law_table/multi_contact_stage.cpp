@@ -12,7 +12,6 @@
 #include "common/io/progress.h"
 #include "microsim/shell_packing.h"
 #include "pipelines/kinds/law_table/kept_multi_contact.h"
-#include "pipelines/kinds/law_table/multi_contact_cache.h"
 #include "pipelines/kinds/law_table/multi_contact_plan.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
 
@@ -50,11 +49,7 @@ class MultiContactRunner {
  public:
   MultiContactRunner(const MultiContactSetup& setup, const Run& run, const std::vector<SoftContent>& contents,
                      const MultiContactLevel* level)
-      : setup_(setup),
-        run_(run),
-        cache_(run.context.law_cache(), [&run](const std::string& remark) { run.context.say(remark); }),
-        contents_(contents),
-        level_(level) {}
+      : setup_(setup), run_(run), contents_(contents), level_(level) {}
 
   /// Runs tasks in parallel, long ones first; results are in the order of the tasks.
   /// Those that came to their end, in the order of tasks. What broke off (a grain squeezed out of its shell...) is left
@@ -118,19 +113,16 @@ class MultiContactRunner {
                                     Progress& progress) const {
     const std::string key = key_of(task, options);
     const std::string name = multi_contact_run_name(key);
-    std::optional<MultiContactRun> run = cache_.find(key);
-    if (!run) run_.store.load(name, [&](const h5::Group& g) { run = read_multi_contact_runs(g).at(0); });
-    if (run) {
-      progress.advance(weight);
-    } else {
-      run = measured(task, name, options, weight, progress);
-      run_.store.save(name, [&](const h5::Group& g) { write_multi_contact_runs(g, {*run}); });
-      cache_.keep(key, *run);
-    }
-    run->configuration = task.index;
-    run->packing = task.packing;
-    run->orientation = task.orientation;
-    return *run;
+    bool now = false;
+    MultiContactRun run = run_.get_or_make(kept_multi_contact_run(), name, run_.context.law_cache(), key, [&] {
+      now = true;
+      return measured(task, name, options, weight, progress);
+    });
+    if (!now) progress.advance(weight);
+    run.configuration = task.index;
+    run.packing = task.packing;
+    run.orientation = task.orientation;
+    return run;
   }
 
   MultiContactRun measured(const MultiContactTask& task, const std::string& name, const MultiContactOptions& options,
@@ -149,7 +141,6 @@ class MultiContactRunner {
 
   const MultiContactSetup& setup_;
   const Run& run_;
-  MultiContactCache cache_;
   const std::vector<SoftContent>& contents_;
   const MultiContactLevel* level_;
   std::vector<std::string> left_out_;

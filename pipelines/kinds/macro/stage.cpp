@@ -325,19 +325,10 @@ std::vector<ShellPacking> make_contents(const SoftParticleSpec& spec, std::int64
 
 MacroPacking kept_packing(const std::string& key, const std::string& task, const Run& run,
                           const std::function<MacroPacking()>& make) {
-  std::optional<MacroPacking> packing;
-  const auto read = [&](const h5::Group& g) { packing = read_macro_packing(g); };
-  const auto write = [&](const h5::Group& g) { write_macro_packing(g, *packing); };
-  run.store.load(task, read);
-  if (packing) return std::move(*packing);
-  const ResultCache cache(run.context.packing_cache(), "macro packing", "packing", "prepared again",
-                          [&](const std::string& remark) { run.context.say(remark); });
-  if (!cache.find(key, read)) {
-    packing = make();
-    cache.keep(key, write);
-  }
-  run.store.save(task, write);
-  return std::move(*packing);
+  static const KeptForm<MacroPacking> form{
+      "macro packing", "packing", "prepared again", [](const h5::Group& g) { return read_macro_packing(g); },
+      [](const h5::Group& g, const MacroPacking& packing) { write_macro_packing(g, packing); }};
+  return run.get_or_make(form, task, run.context.packing_cache(), key, make);
 }
 
 std::vector<MacroPacking> prepare_packings(const MacroSetup& setup, const Run& run, const std::string& file_name) {

@@ -87,21 +87,19 @@ std::string twin_key(const MacroSpec& spec, const MacroSetup& setup, const Macro
 }
 
 RunOutcome kept_twin(const std::string& key, const Run& run, const std::function<RunOutcome()>& go) {
-  RunOutcome out;
-  const ResultCache cache(run.context.twin_cache(), "macro twin", "twin", "run again",
-                          [&](const std::string& remark) { run.context.say(remark); });
-  const bool found = cache.find(key, [&](const h5::Group& g) {
-    out.curve = read_macro_curve(g.open("curve"));
-    out.states = read_snapshot_list(g.open("states"));
-  });
-  if (found) return out;
-  out = go();
-  if (out.curve.usable)
-    cache.keep(key, [&](const h5::Group& g) {
-      write_macro_curve(g.create("curve"), out.curve);
-      write_snapshot_list(g.create("states"), out.states);
-    });
-  return out;
+  static const KeptForm<RunOutcome> form{
+      "macro twin",
+      "twin",
+      "run again",
+      [](const h5::Group& g) {
+        return RunOutcome{read_macro_curve(g.open("curve")), read_snapshot_list(g.open("states"))};
+      },
+      [](const h5::Group& g, const RunOutcome& out) {
+        write_macro_curve(g.create("curve"), out.curve);
+        write_snapshot_list(g.create("states"), out.states);
+      },
+      [](const RunOutcome& out) { return out.curve.usable; }};
+  return run.get_or_make(form, "", run.context.twin_cache(), key, go);
 }
 
 }  // namespace softgrain

@@ -76,24 +76,27 @@ std::vector<MacroCurve> kept_tests(const MacroRuns& runs, const Run& run,
                                    const std::function<std::vector<MacroCurve>()>& go) {
   const std::string& directory = run.context.law_cache();
   if (directory.empty() || runs.setup.kept_states > 0) return go();
-  const ResultCache cache(directory, "material test", "material", "tested again",
-                          [&](const std::string& remark) { run.context.say(remark); });
+  const std::size_t samples = runs.packings.size();
+  const KeptForm<std::vector<MacroCurve>> form{
+      "material test",
+      "material",
+      "tested again",
+      [samples](const h5::Group& g) {
+        std::vector<MacroCurve> curves;
+        for (std::size_t k = 0; k < samples; ++k)
+          curves.push_back(read_macro_curve(g.open(fmt::format("sample_{}", k))));
+        return curves;
+      },
+      [](const h5::Group& g, const std::vector<MacroCurve>& curves) {
+        for (std::size_t k = 0; k < curves.size(); ++k)
+          write_macro_curve(g.create(fmt::format("sample_{}", k)), curves[k]);
+      },
+      [](const std::vector<MacroCurve>& curves) {
+        return std::ranges::all_of(curves, [](const MacroCurve& c) { return c.usable; });
+      }};
   std::string key;
-  for (std::size_t k = 0; k < runs.packings.size(); ++k)
-    key += test_key(runs.setup, runs.packings[k], static_cast<std::int64_t>(k));
-  std::vector<MacroCurve> curves;
-  const bool found = cache.find(key, [&](const h5::Group& g) {
-    for (std::size_t k = 0; k < runs.packings.size(); ++k)
-      curves.push_back(read_macro_curve(g.open(fmt::format("sample_{}", k))));
-  });
-  if (found) return curves;
-  curves = go();
-  if (std::ranges::all_of(curves, [](const MacroCurve& c) { return c.usable; }))
-    cache.keep(key, [&](const h5::Group& g) {
-      for (std::size_t k = 0; k < curves.size(); ++k)
-        write_macro_curve(g.create(fmt::format("sample_{}", k)), curves[k]);
-    });
-  return curves;
+  for (std::size_t k = 0; k < samples; ++k) key += test_key(runs.setup, runs.packings[k], static_cast<std::int64_t>(k));
+  return run.get_or_make(form, "", directory, key, go);
 }
 
 VariantResult run_variant(const MaterialScene& scene, const MaterialVariant& v,

@@ -32,7 +32,7 @@ struct OneSample {
 
   /// Bodies in places of their own, which no loading moves.
   [[nodiscard]] MacroPacking own_packing(const std::string& key, const std::function<MacroPacking()>& make) const {
-    return kept_packing(key, ResultCache::name("model_packing", key), run, make);
+    return kept_packing(key, SharedResults::name("model_packing", key), run, make);
   }
   [[nodiscard]] MacroPacking own_packing(const MacroSpec& spec, std::size_t sample) const {
     return own_packing(packing_key(spec, run.seed, sample), [&] { return make_packing(spec, run.seed, sample); });

@@ -128,7 +128,7 @@ RecipeCurve press_with_shells(const RecipeScene& scene, const CellCard& card, co
       const double fines = coarse * fines_over_coarse(scene, 0) / inside;
       const std::string key =
           fmt::format("{}shells of a recipe, volume {:.17g}\n", packing_key(setup.spec, run.seed, k), fines);
-      packings.push_back(kept_packing(key, ResultCache::name("recipe_shells", key), run, [&] {
+      packings.push_back(kept_packing(key, SharedResults::name("recipe_shells", key), run, [&] {
         return pack_bodies(setup.spec, with_shells(cells[k].bodies, shells, fines, run.seed, k), run.seed, k);
       }));
       packings.back().springs.clear();
