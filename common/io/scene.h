@@ -171,6 +171,15 @@ class SceneTable {
   [[noreturn]] void throw_error(const std::string& key, const std::string& problem) const;
   /// Adds an error as throw_error() does, where reading can go on: within Scene::read it is noted.
   void add_error(const std::string& key, const std::string& problem) const;
+  /// Adds the error to each of these keys that is given: they do not go with what was read.
+  template <class Keys>
+  void refuse(const Keys& keys, const std::string& problem) const {
+    for (const auto& key : keys)
+      if (has(key)) add_error(key, problem);
+  }
+  void refuse(std::initializer_list<const char*> keys, const std::string& problem) const {
+    refuse<std::initializer_list<const char*>>(keys, problem);
+  }
   /// Whether anything was found wrong so far in this table or one below. Ask this before a check that takes values of
   /// several tables.
   [[nodiscard]] bool has_errors() const;

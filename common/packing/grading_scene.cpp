@@ -316,8 +316,7 @@ Grading stored_grading(const std::string& text, int dimension) {
 std::optional<Grading> read_sizes(const SceneTable& t, const Key& key, std::initializer_list<const char*> instead,
                                   int dimension) {
   if (!t.has(key.name)) return std::nullopt;
-  for (const char* other : instead)
-    if (t.has(other)) t.add_error(other, "goes without " + key.name + ", which says all sizes");
+  t.refuse(instead, "goes without " + key.name + ", which says all sizes");
   const SceneTable sizes = t.table(key);
   std::optional<Grading> out;
   sizes.section([&] { out = read_grading(sizes, dimension); });

@@ -103,8 +103,7 @@ namespace {
 /// Limits of a guard that looks at nothing.
 void refuse_idle(const SceneTable& t, const GuardRule& rule, std::initializer_list<const char*> keys) {
   if (rule.action != GuardAction::ignore) return;
-  for (const char* key : keys)
-    if (t.has(key)) t.add_error(key, "nothing is watched with action = \"ignore\"");
+  t.refuse(keys, "nothing is watched with action = \"ignore\"");
 }
 
 }  // namespace

@@ -129,8 +129,7 @@ void require_resolved(const Scene& scene, const System<D>& s) {
 template <int D>
 void read_output(const SceneTable& t, ParticlesSceneOf<D>& out) {
   out.record = t.flag({"record", "false: no trajectory is written"}, true);
-  if (!out.record && t.has("snapshots"))
-    t.add_error("snapshots", "cannot be combined with record = false, which records nothing");
+  if (!out.record) t.refuse({"snapshots"}, "cannot be combined with record = false, which records nothing");
   out.snapshots = t.count({"snapshots", "number of frames that keep their contacts, evenly spread, the last included",
                            "100; above 2000 particles 200,000 over their number, at least 1"},
                           0, 1'000'000, default_snapshots(out.system.particles.grains));

@@ -140,7 +140,7 @@ void add_drawn(Builder<D>& b, const SceneTable& root, const SceneTable& t, const
   if (!t.has("count") && !t.has("sizes")) {
     const std::string nothing =
         "nothing is drawn at random in this scene ([particles] count and sizes are); leave it out";
-    if (root.has("seed")) root.add_error("seed", nothing);
+    root.refuse({"seed"}, nothing);
     if (seed) throw InputError("--seed: " + nothing);
     return;
   }

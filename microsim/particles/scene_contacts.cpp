@@ -24,8 +24,7 @@ Material read_material(const SceneTable& t, const std::string& name, int dimensi
                         "- for particles"},
                        dimension == 3 ? Unit::density : Unit::none, Range::positive(), 0.0);
   if (m.rigid) {
-    for (const char* key : {"E", "nu"})
-      if (t.has(key)) t.add_error(key, "a rigid material has none");
+    t.refuse({"E", "nu"}, "a rigid material has none");
     return m;
   }
   if (!t.has("E") && !t.has("nu")) return m;  // enough for laws that need no elasticity

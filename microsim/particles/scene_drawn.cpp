@@ -190,7 +190,7 @@ void place(const SceneTable& t, const Region<D>& region, const std::vector<Scene
 /// Reads the seed at the top level, as in scenes of all kinds, or in the table.
 std::uint64_t read_seed(const SceneTable& root, const SceneTable& t) {
   constexpr std::int64_t kMost = 1'000'000'000'000;
-  if (root.has("seed") && t.has("seed")) t.add_error("seed", "is given at the top level too: leave one of them out");
+  if (root.has("seed")) t.refuse({"seed"}, "is given at the top level too: leave one of them out");
   return static_cast<std::uint64_t>(root.count(kSeedKey, 0, kMost,
                                                t.count({"seed",
                                                         "seed of the random places, better given at the top level as "

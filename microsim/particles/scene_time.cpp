@@ -178,8 +178,8 @@ SceneTime read_time(const SceneTable& t, const System<D>& system, const std::vec
       Unit::none, Range{0.0, largest_fraction<D>(), true, false}, kDefaultFraction);
   const Key warm_up{"warm_up_steps", "first steps, left out of the measured cost"};
   const bool automatic = !t.has("step") || (t.is_text("step") && t.text(kStepKey) == "auto");
-  if (!automatic && t.has("step_fraction"))
-    t.add_error("step_fraction", "goes with step = \"auto\", which follows from it; here the step is given");
+  if (!automatic)
+    t.refuse({"step_fraction"}, "goes with step = \"auto\", which follows from it; here the step is given");
   if (!valid || t.has_errors()) {
     if (!automatic) (void)t.number(kStepKey, Unit::time, Range::positive());
     (void)t.count(warm_up, 0, static_cast<std::int64_t>(kMostSteps), 0);

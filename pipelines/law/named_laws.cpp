@@ -349,9 +349,8 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
   read_table_choices(law, out);
   if (!card.empty()) out.laws.push_back(law_of_key(law, "card", scene.resolve(card)));
   if (!table.empty()) out.laws.push_back(law_of_key(law, "table", scene.resolve(table)));
-  if (table.empty() && law.has("form")) law.add_error("form", "goes with a law table; a card holds the pair law alone");
-  for (const char* key : kTableKeys)
-    if (table.empty() && law.has(key)) law.add_error(key, "goes with a law table (key table)");
+  if (table.empty()) law.refuse({"form"}, "goes with a law table; a card holds the pair law alone");
+  if (table.empty()) law.refuse(kTableKeys, "goes with a law table (key table)");
   require_fraction(law, out);
   return out;
 }
@@ -369,22 +368,19 @@ LawSources read_scene_law(const SceneTable& root, const std::string& path) {
   read_law_choices(root, out);
   out.laws = {load_law(path)};
   const bool asks_cells = root.has("form") && root.text("form") == "cell";
-  const auto refuse = [&](const char* key, const std::string& why) {
-    if (root.has(key)) root.add_error(key, why);
-  };
   if (out.cells() != nullptr) {
-    if (!asks_cells) refuse("form", path + " is a card of the cell law: \"cell\"");
-    for (const char* key : {"solid_fraction", "range", "mu", "unloading", "rolling", "beyond"})
-      refuse(key, "goes with laws of soft particles; " + path + " is a card of the cell law");
+    if (!asks_cells) root.refuse({"form"}, path + " is a card of the cell law: \"cell\"");
+    root.refuse({"solid_fraction", "range", "mu", "unloading", "rolling", "beyond"},
+                "goes with laws of soft particles; " + path + " is a card of the cell law");
     return out;
   }
   if (asks_cells)
-    refuse("form", "\"cell\" goes with a card of the cell law, and " + path + " is a law of soft particles");
+    root.refuse({"form"}, "\"cell\" goes with a card of the cell law, and " + path + " is a law of soft particles");
   require_fraction(root, out);
   if (out.card() == nullptr) return out;
   const std::string pair_alone = "goes with a law table; " + path + " is a law card, which holds the pair law alone";
-  if (out.forms.front() != LawForm::pair) refuse("form", pair_alone);
-  for (const char* key : kTableKeys) refuse(key, pair_alone);
+  if (out.forms.front() != LawForm::pair) root.refuse({"form"}, pair_alone);
+  root.refuse(kTableKeys, pair_alone);
   return out;
 }
 

@@ -46,8 +46,8 @@ void read_contact(const SceneTable& t, PowderSpec& spec) {
       t.number({"rolling_friction",
                 "with `rolling = true`: mu_r [m] over mu a; the rolling moment is at most mu_r K_N h at the overlap h"},
                Unit::none, Range::not_negative(), spec.rolling_friction);
-  for (const char* key : {"rolling_stiffness", "rolling_friction"})
-    if (!spec.rolling && t.has(key)) t.add_error(key, "goes with rolling = true: nothing resists rolling here");
+  if (!spec.rolling)
+    t.refuse({"rolling_stiffness", "rolling_friction"}, "goes with rolling = true: nothing resists rolling here");
 }
 
 /// L/a of the start.
@@ -83,13 +83,11 @@ void read_protocol(const SceneTable& t, PowderSetup& setup) {
   p.edge_speed_cap = t.number({"edge_speed_cap", "largest |dL/dt| of a cell edge of length L, in a/T0; 0: none",
                                "0 for method 1, 0.05 for method 2"},
                               Unit::none, Range::not_negative(), aggregates ? 0.05 : 0.0);
-  for (const char* key : {"aggregation_kappa", "stiffening_time"})
-    if (!aggregates && t.has(key)) t.add_error(key, "only method 2 has disks that aggregate first");
+  if (!aggregates) t.refuse({"aggregation_kappa", "stiffening_time"}, "only method 2 has disks that aggregate first");
   if (!aggregates) return;
   p.aggregation_kappa = t.number({"aggregation_kappa", "method 2: stiffness during aggregation; 0: `kappa`"},
                                  Unit::none, Range::not_negative(), 0.0);
-  if (p.aggregation_kappa == 0.0 && t.has("stiffening_time"))
-    t.add_error("stiffening_time", "nothing stiffens without an aggregation_kappa");
+  if (p.aggregation_kappa == 0.0) t.refuse({"stiffening_time"}, "nothing stiffens without an aggregation_kappa");
   if (p.aggregation_kappa > 0.0)
     p.stiffening_time = t.number(
         {"stiffening_time", "method 2 with `aggregation_kappa`: time in T0 in which the stiffness grows to `kappa`"},
@@ -99,7 +97,7 @@ void read_protocol(const SceneTable& t, PowderSetup& setup) {
 /// Reads `pressures`: they rise to a largest one and, where that is not the last, fall from there.
 void read_pressures(const SceneTable& t, PowderSetup& setup) {
   if (!t.has("pressures")) return;
-  if (t.has("pressure")) t.add_error("pressure", "\"pressures\" says them all: leave one of the two out");
+  t.refuse({"pressure"}, "\"pressures\" says them all: leave one of the two out");
   const std::vector<double> p = t.numbers({"pressures",
                                            "instead of `pressure`: a list of P*, each held until equilibrium; they "
                                            "increase to a largest one and may then decrease",
@@ -203,10 +201,8 @@ void read_structure(const SceneTable& t, PowderStructureOptions& o) {
                     Range{5.0, 1000.0, false, false}, o.mesh);
   o.fit_k_max = t.number({"fit_k_max", "of `scattering`: largest wave number k of the fit, times a", "pi"}, Unit::none,
                          Range{0.0, 100.0, true, false}, o.fit_k_max);
-  if (!o.scattering && t.has("fit_k_max"))
-    t.add_error("fit_k_max", "goes with scattering = true: nothing is fitted here");
-  if (!o.scattering && !o.holes && t.has("mesh"))
-    t.add_error("mesh", "goes with scattering or holes, which are found on the mesh");
+  if (!o.scattering) t.refuse({"fit_k_max"}, "goes with scattering = true: nothing is fitted here");
+  if (!o.scattering && !o.holes) t.refuse({"mesh"}, "goes with scattering or holes, which are found on the mesh");
 }
 
 }  // namespace

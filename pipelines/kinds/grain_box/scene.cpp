@@ -158,7 +158,7 @@ void read_solver(const SceneTable& t, LeastWorkOptions& o) {
 /// `increment`, or `increments` with the strain that every stage but the last covers. `usual`: of a variant.
 void read_increments(const SceneTable& t, GrainBoxLoading& l, const std::string& usual = "") {
   if (t.has("increment")) {
-    if (t.has("increments")) t.add_error("increments", "give increment or increments, not both");
+    t.refuse({"increments"}, "give increment or increments, not both");
     l.increments = {
         t.number({"increment", "strain per increment", usual.empty() ? "1e-4" : usual}, Unit::none, kIncrement)};
     l.stage_strains.clear();
@@ -260,8 +260,8 @@ void read_loading(const SceneTable& t, GrainBoxLoading& l) {
   l.stress_tolerance = t.number({"stress_tolerance", "relative tolerance of stress-controlled axes"}, Unit::none,
                                 Range{0.0, 0.1, true, false}, l.stress_tolerance);
   const bool by_stress = std::find(l.control.begin(), l.control.end(), AxisControl::stress) != l.control.end();
-  if (!by_stress && t.has("stress_tolerance"))
-    t.add_error("stress_tolerance", "goes with a side that goes by stress (lateral_stress, or control): none does");
+  if (!by_stress)
+    t.refuse({"stress_tolerance"}, "goes with a side that goes by stress (lateral_stress, or control): none does");
   l.max_halvings = static_cast<int>(
       t.count({"max_halvings", "how often an increment without equilibrium is halved"}, 0, 12, l.max_halvings));
 }

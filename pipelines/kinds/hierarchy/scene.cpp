@@ -32,8 +32,8 @@ void read_levels(const SceneTable& t, HierarchySetup& out) {
     out.inner_radius_min = t.number(
         {"inner_radius_min", "`\"voids\"`: holes with a smaller radius over Rs stay empty", "0.45 of `inner_radius`"},
         Unit::none, Range{0.0, out.inner_radius, true, false}, kSmallestHole * out.inner_radius);
-  else if (t.has("inner_radius_min"))
-    t.add_error("inner_radius_min", "goes with fill = \"voids\"");
+  else
+    t.refuse({"inner_radius_min"}, "goes with fill = \"voids\"");
   const Range volumes{0.0, 100.0, true, false};
   const Key volume{"next_volume", "volume of the grains of the next finer level, over that of a level's own grains",
                    "Pi^(b-4), Pi: `polydispersity`, b: `exponent`; must be given with `[packing.sizes]`"};

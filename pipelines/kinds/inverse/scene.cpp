@@ -73,7 +73,7 @@ void refuse_searched(const SceneTable& root, const std::vector<SearchParameter>&
     }
   const bool ratio =
       std::any_of(search.begin(), search.end(), [](const auto& p) { return p.name == "rmax_over_shell"; });
-  if (ratio && packing.has("rmax")) packing.add_error("rmax", "rmax_over_shell is searched: its range is in [search]");
+  if (ratio) packing.refuse({"rmax"}, "rmax_over_shell is searched: its range is in [search]");
 }
 
 /// The largest packings of the box must be drawable too.

@@ -153,33 +153,32 @@ void read_path_keys(const SceneTable& t, ConfigurationKeys& w) {
   if (slides(w.path))
     w.slide = t.number({"slide", "paths with a slide: sliding distance over Rs"}, Unit::none,
                        Range{0.0, 1.0, true, false}, 0.1);
-  else if (t.has("slide"))
-    t.add_error("slide", "only paths that slide have it: \"slide\", \"back-and-forth\", \"slide-press\"");
+  else
+    t.refuse({"slide"}, "only paths that slide have it: \"slide\", \"back-and-forth\", \"slide-press\"");
   if (w.path == MultiContactPath::roll)
     w.slide =
         t.number({"roll", "path `\"roll\"`: rolling distance over Rs"}, Unit::none, Range{0.0, 1.0, true, false}, 0.1);
-  else if (t.has("roll"))
-    t.add_error("roll", "only a path that rolls has it: path = \"roll\"");
+  else
+    t.refuse({"roll"}, "only a path that rolls has it: path = \"roll\"");
   if (w.path == MultiContactPath::shear)
     w.shear = t.number({"shear",
                         "path `\"shear\"`: s. Overlaps h first reach h/(1 + s), then h (1 + s (3 c^2 - 1)/2)/(1 + s); "
                         "c: cosine of the angle to the first neighbour"},
                        Unit::none, Range{0.0, 1.0, true, false}, 0.3);
-  else if (t.has("shear"))
-    t.add_error("shear", "only a path of that name has it: path = \"shear\"");
+  else
+    t.refuse({"shear"}, "only a path of that name has it: path = \"shear\"");
   if (w.path == MultiContactPath::oblique)
     w.angle = t.number({"angle", "path `\"oblique\"`: angle between the motion and the normal [degree]"}, Unit::none,
                        Range::closed(0.0, 85.0), 45.0);
-  else if (t.has("angle"))
-    t.add_error("angle", "only an oblique path has it: path = \"oblique\"");
+  else
+    t.refuse({"angle"}, "only an oblique path has it: path = \"oblique\"");
 }
 
 /// Radii of spheres: one, or those that scattered ones are drawn from.
 void read_ratios(const SceneTable& t, ConfigurationKeys& w) {
   const bool scattered = w.arrangement == Arrangement::scattered;
   if (w.partner == PartnerKind::plane) {
-    for (const char* key : {"ratio", "ratios"})
-      if (t.has(key)) t.add_error(key, "a plane has no radius; leave it out");
+    t.refuse({"ratio", "ratios"}, "a plane has no radius; leave it out");
   } else if (scattered && t.has("ratios")) {
     w.scatter.ratios = t.numbers(
         {"ratios", "`\"scattered\"`, instead of `ratio`: radii over Rs. Each neighbour draws its radius from the list"},
@@ -188,12 +187,12 @@ void read_ratios(const SceneTable& t, ConfigurationKeys& w) {
       t.add_error("ratios", "at least one");
       w.scatter.ratios = {1.0};
     }
-    if (t.has("ratio")) t.add_error("ratio", "the ratios are given already; leave one of the two out");
+    t.refuse({"ratio"}, "the ratios are given already; leave one of the two out");
   } else {
     w.ratio =
         t.number({"ratio", "radius of the neighbours over Rs; not for planes"}, Unit::none, Range::positive(), 1.0);
     w.scatter.ratios = {w.ratio};
-    if (t.has("ratios")) t.add_error("ratios", "only the arrangement scattered draws radii; give one ratio");
+    t.refuse({"ratios"}, "only the arrangement scattered draws radii; give one ratio");
   }
   for (const double ratio : w.scatter.ratios)
     if (w.overlap >= ratio)
@@ -233,12 +232,11 @@ ConfigurationKeys read_configuration_keys(const SceneTable& t) {
   if (scattered)
     read_scatter(t, w);
   else
-    for (const char* key : {"neighbours", "draw"})
-      if (t.has(key)) t.add_error(key, "only the arrangement scattered is drawn");
+    t.refuse({"neighbours", "draw"}, "only the arrangement scattered is drawn");
   if (w.arrangement == Arrangement::beside_five)
     w.shallow = t.number(kShallow, Unit::none, Range{0.0, 1.0, true, false}, 0.5);
-  else if (!scattered && t.has("shallow"))
-    t.add_error("shallow", "only the arrangements beside-five and scattered have shallow neighbours");
+  else if (!scattered)
+    t.refuse({"shallow"}, "only the arrangements beside-five and scattered have shallow neighbours");
   return w;
 }
 

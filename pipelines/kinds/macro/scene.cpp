@@ -50,82 +50,6 @@ void set_size_limits(const std::optional<Grading>& sizes, double& radius_max, do
   polydispersity = sizes->largest() / sizes->smallest();
 }
 
-void add_error_beside(const SceneTable& t, std::initializer_list<const char*> keys, const std::string& problem) {
-  for (const char* key : keys)
-    if (t.has(key)) t.add_error(key, problem);
-}
-
-}  // namespace
-
-void refuse_protocol_keys(const SceneTable& t) {
-  add_error_beside(t,
-                   {"inertial_number", "compaction_mu", "compaction_restitution", "coarse_share", "first_pressure",
-                    "preparation_tolerance", "preparation_passes"},
-                   "LAMMPS has a protocol of its own: goes without preparation = \"lammps\"");
-}
-
-/// A name stands for all that defines a preparation; keys beside it replace single parts, whichever table gave them.
-void read_preparation(const SceneTable& t, MacroSetup& setup) {
-  MacroSpec& spec = setup.spec;
-  spec.preparation = t.choice<Preparation>(
-      {"preparation",
-       "how particles are compacted; sets those of the keys from `start_fraction` to `preparation_passes` that are not "
-       "given. `\"softgrain\"`: as `\"frictionless\"`; `\"lammps\"` goes with `--engine lammps`"},
-      spec.preparation);
-  const bool renewed = t.has("preparation") || t.has("mu");
-  const PreparationProtocol named = protocol_of(spec.preparation, spec.friction);
-  spec.start_pressure = t.number({"start_pressure", "pressure at the end of the preparation, over E"}, Unit::none,
-                                 Range{0.0, 1e-2, true, false}, spec.start_pressure);
-  PreparationProtocol& p = spec.protocol;
-  const auto follows = [&](const std::string& key) {  // from the name and mu, as nobody said it
-    if (t.has(key)) setup.said.insert(key);
-    return renewed && !setup.said.contains(key);
-  };
-  using Protocol = PreparationProtocol;
-  const auto read = [&](const SceneTable& from, const Key& key, double Protocol::*part, const Range& range) {
-    if (follows(key.name)) p.*part = named.*part;
-    p.*part = from.number(key, Unit::none, range, p.*part);
-  };
-  read(t, {"start_fraction", "solid fraction at placement (`construction = \"mixed\"` only)"},
-       &Protocol::start_fraction, Range::closed(0.05, 0.4));
-  read(t,
-       {"inertial_number",
-        "strain rate of the box times d sqrt(density/pressure), with the mean diameter d; 0: no motion",
-        "0; `\"fast\"`: 0.1, `\"slow\"`: 1e-3"},
-       &Protocol::inertial_number, Range::closed(0.0, 1.0));
-  read(t, {"compaction_mu", "friction during the preparation", "0; `\"fast\"`, `\"slow\"`: `mu`"}, &Protocol::friction,
-       Range::not_negative());
-  read(t, {"compaction_restitution", "coefficient of restitution during motion"}, &Protocol::restitution,
-       Range::closed(0.05, 1.0));
-  read(t, {"coarse_share", "volume share of the largest particles, which jam first", "1; `\"dense\"`: 0.75"},
-       &Protocol::coarse_share, Range{0.0, 1.0, true, false});
-  read(t, {"first_pressure", "first pressure over `start_pressure`", "128; `\"fast\"`, `\"slow\"`: 1"},
-       &Protocol::first_pressure, Range::closed(1.0, 1e6));
-  read(t,
-       {"preparation_tolerance",
-        "largest net force over mean contact force at the end; with more than 2000 particles one in 2000 may exceed "
-        "it. The pressure is met to a third of this value",
-        "0.03; scenes of materials: 3e-3"},
-       &Protocol::tolerance, Range{0.0, 0.1, true, false});
-  if (follows("preparation_passes")) p.max_passes = named.max_passes;
-  p.max_passes =
-      t.count({"preparation_passes", "largest number of loop passes of a relaxation"}, 10, 100000000, p.max_passes);
-  if (spec.preparation == Preparation::lammps) refuse_protocol_keys(t);
-  if (!(p.inertial_number > 0.0))
-    add_error_beside(t, {"compaction_restitution"},
-                     "nothing moves at inertial_number = 0: give one, or preparation = \"fast\"");
-  if (spec.construction != Construction::voids) return;
-  if (spec.preparation == Preparation::lammps)
-    t.add_error("preparation",
-                "\"lammps\" goes with construction \"mixed\": holes are filled in a packing that is compacted");
-  if (p.coarse_share < 1.0)
-    t.add_error(t.has("coarse_share") ? "coarse_share" : "preparation",
-                "fines grow between coarse bodies of construction \"mixed\" alone");
-  add_error_beside(t, {"start_fraction"}, "construction \"voids\" begins at solid_fill");
-}
-
-namespace {
-
 void read_bodies(const SceneTable& t, MacroSetup& setup) {
   MacroSpec& spec = setup.spec;
   spec.boundary =
@@ -158,8 +82,8 @@ void read_bodies(const SceneTable& t, MacroSetup& setup) {
     spec.soft_sizes = read_sizes(
         t, {"soft_sizes", "another distribution of radii of the soft particles; not with `construction = \"voids\"`"},
         {"soft_radius_max", "soft_polydispersity"});
-  if (spec.solid_sizes && spec.soft_sizes && t.has("exponent"))
-    t.add_error("exponent", "goes without solid_sizes and soft_sizes, which say all sizes");
+  if (spec.solid_sizes && spec.soft_sizes)
+    t.refuse({"exponent"}, "goes without solid_sizes and soft_sizes, which say all sizes");
   set_size_limits(spec.solid_sizes, spec.solid_radius_max, spec.solid_polydispersity);
   set_size_limits(spec.soft_sizes, spec.soft_radius_max, spec.soft_polydispersity);
   if (spec.construction == Construction::voids && spec.soft_sizes)
@@ -172,14 +96,14 @@ void read_bodies(const SceneTable& t, MacroSetup& setup) {
                               "0.44 (1 - `soft_share`)"},
                              Unit::none, Range{0.0, 0.74, false, true}, spec.solid_fill);
   if (spec.construction == Construction::mixed)
-    add_error_beside(t, {"solid_fill"}, "goes with construction = \"voids\", which fills solid grains first");
+    t.refuse({"solid_fill"}, "goes with construction = \"voids\", which fills solid grains first");
   if (spec.construction == Construction::voids && spec.soft_share >= 1.0)
     t.add_error("soft_share", "construction \"voids\" needs solid grains: must be below 1");
   spec.friction = t.number({"mu", "friction of particles", "as `[material]`, or as the law"}, Unit::none,
                            Range::not_negative(), spec.friction);
   spec.wall_friction =
       t.number({"wall_mu", "friction of walls"}, Unit::none, Range::not_negative(), spec.wall_friction);
-  if (spec.boundary == Boundary::periodic) add_error_beside(t, {"wall_mu"}, "a periodic cell has no walls");
+  if (spec.boundary == Boundary::periodic) t.refuse({"wall_mu"}, "a periodic cell has no walls");
   read_preparation(t, setup);
 }
 
@@ -249,8 +173,7 @@ void read_given(const SceneTable& t, MacroSetup& setup) {
     if (t.has(key))
       t.add_error(key, own ? "goes without packing, which says where all bodies are"
                            : "goes without the common packing, which says where all bodies are");
-  if (!own && t.has("boundary"))
-    t.add_error("boundary", "is that of the common packing: give it beside that, or packing here too");
+  if (!own) t.refuse({"boundary"}, "is that of the common packing: give it beside that, or packing here too");
   if (setup.samples > 1) t.add_error("samples", "a packing is one sample: must be 1");
   if (!own) return;
   t.section([&] {
@@ -313,8 +236,8 @@ void read_twin_motion(const SceneTable& t, TwinMotion& m) {
        "too stiff at low stress. In both, stress-controlled axes relax without inertia"},
       m.relaxation);
   if (m.relaxation == TwinRelaxation::damped)
-    add_error_beside(t, {"twin_speed", "twin_step_factor", "twin_settle_time"},
-                     "goes without motion: twin_relaxation = \"damped\"");
+    t.refuse({"twin_speed", "twin_step_factor", "twin_settle_time"},
+             "goes without motion: twin_relaxation = \"damped\"");
   m.speed = t.number({"twin_speed",
                       "speed at which neighbours of the largest radius approach each other, over sqrt(E/rho); the "
                       "default is as published"},
@@ -455,10 +378,10 @@ void require_known_modulus(const SceneTable& root, const std::string& law_file) 
 }  // namespace
 
 void refuse_idle_keys(const SceneTable& macro, bool twins, bool bands) {
-  if (!bands) add_error_beside(macro, {"band_estimator"}, "goes with bands, the number of draws of the law");
+  if (!bands) macro.refuse({"band_estimator"}, "goes with bands, the number of draws of the law");
   if (!twins)
-    add_error_beside(macro, {"twin_relaxation", "twin_speed", "twin_step_factor", "twin_settle_time"},
-                     "goes with a resolved twin: resolved = true");
+    macro.refuse({"twin_relaxation", "twin_speed", "twin_step_factor", "twin_settle_time"},
+                 "goes with a resolved twin: resolved = true");
 }
 
 namespace {
@@ -495,10 +418,10 @@ void read_cells(const SceneTable& root, const SceneTable& macro, const CellCard&
   if (spec.construction == Construction::voids)
     macro.add_error("construction", "\"voids\" goes with soft particles in shells; cells fill all voids");
   if (spec.soft_share >= 1.0) macro.add_error("soft_share", "cells need solid grains: must be below 1");
-  add_error_beside(macro, {"wall_mu"}, "walls of cells are smooth");
-  add_error_beside(macro, {"kt"}, "the tangential stiffness of cells is that of the card");
-  add_error_beside(macro, {"law_increments", "noise_samples"},
-                   "goes with laws of soft particles; increments_per_step serves cells");
+  macro.refuse({"wall_mu"}, "walls of cells are smooth");
+  macro.refuse({"kt"}, "the tangential stiffness of cells is that of the card");
+  macro.refuse({"law_increments", "noise_samples"},
+               "goes with laws of soft particles; increments_per_step serves cells");
   CellMatter matter = read_fines(root);
   matter.card = card;
   if (setup.given && matter.solid_fraction > 0.0)
@@ -542,19 +465,18 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
     read_cells(root, macro, *cells, out.setup);
     if (!is_known(out.spec.youngs_modulus)) require_known_modulus(root, law_file);
   } else {
-    if (!law_file.empty() && root.has("fines"))
-      root.add_error("fines", "goes with a card of the cell law (see the guide)");
+    if (!law_file.empty()) root.refuse({"fines"}, "goes with a card of the cell law (see the guide)");
     require_known_contents(macro, out.setup, out.spec, law_file);
   }
   if (!root.has_errors()) require_macro_memory(macro, out.setup, out.spec);
   if (!root.has_errors()) require_room_for_images(macro, "bodies", out.setup, out.seed);
   refuse_idle_keys(macro, !out.setup.twins.empty(), true);  // --bands may give some
   if (out.law.table() != nullptr)
-    add_error_beside(macro, {"kt"}, "goes with a law card; a law table has one tangential stiffness");
+    macro.refuse({"kt"}, "goes with a law card; a law table has one tangential stiffness");
   if (const LawCard* card = out.law.card(); card != nullptr && std::ranges::none_of(card->pairs, has_tangential))
-    add_error_beside(macro, {"kt"}, "no tangential stiffness was measured for " + law_file + ": one is assumed");
+    macro.refuse({"kt"}, "no tangential stiffness was measured for " + law_file + ": one is assumed");
   if (out.setup.twins.empty())
-    add_error_beside(root, {"contents"}, "is of the soft particles of a resolved twin: goes with resolved = true");
+    root.refuse({"contents"}, "is of the soft particles of a resolved twin: goes with resolved = true");
   out.setup.kept_states = read_kept_states(root, states_to_see(out.setup.spec));
   out.contents =
       root.count({"contents", "number of different packings in the soft particles of the twin; refused without a twin"},

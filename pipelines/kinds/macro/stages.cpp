@@ -71,7 +71,7 @@ class StageReader {
                   "of `tolerance` times the largest target stress",
                   "that of the whole test; `\"hold\"`: a tenth of it"},
                  Unit::none, Range{0.0, 1.0, true, false}, hold ? 0.1 * spec_.tolerance : spec_.tolerance);
-    if (hold) refuse(t, {"modulus_stress"}, "nothing is driven while all is held: there is no modulus");
+    if (hold) t.refuse({"modulus_stress"}, "nothing is driven while all is held: there is no modulus");
     if (!hold) stage.record.modulus_stress = spec_.modulus_stress;
     read_modulus_stress(t, stage.record.modulus_stress);
     return stage;
@@ -100,22 +100,17 @@ class StageReader {
     return before == 0 ? word : fmt::format("{} {}", word, before + 1);
   }
 
-  static void refuse(const SceneTable& t, std::initializer_list<const char*> keys, const std::string& problem) {
-    for (const char* key : keys)
-      if (t.has(key)) t.add_error(key, problem);
-  }
-
   static void refuse_foreign_keys(const SceneTable& t, const std::string& word) {
     const auto is = [&](StageKind kind) { return word == to_string(kind); };
-    if (!is(StageKind::triaxial)) refuse(t, {"lateral_stress"}, "goes with " + quoted(StageKind::triaxial));
+    if (!is(StageKind::triaxial)) t.refuse({"lateral_stress"}, "goes with " + quoted(StageKind::triaxial));
     if (!is(StageKind::axes))
-      refuse(t, {"strain_x", "strain_y", "strain_z", "stress_x", "stress_y", "stress_z"},
-             "goes with " + quoted(StageKind::axes));
-    if (!is(StageKind::hold)) refuse(t, {"by"}, "goes with " + quoted(StageKind::hold));
-    if (word != kCycles) refuse(t, {"count"}, "goes with kind = \"cycles\"");
+      t.refuse({"strain_x", "strain_y", "strain_z", "stress_x", "stress_y", "stress_z"},
+               "goes with " + quoted(StageKind::axes));
+    if (!is(StageKind::hold)) t.refuse({"by"}, "goes with " + quoted(StageKind::hold));
+    if (word != kCycles) t.refuse({"count"}, "goes with kind = \"cycles\"");
     if (is(StageKind::axes) || is(StageKind::hold))
-      refuse(t, {"strain", "stress"},
-             is(StageKind::hold) ? "nothing is driven while all is held" : "give strain_x or stress_x, and so on");
+      t.refuse({"strain", "stress"},
+               is(StageKind::hold) ? "nothing is driven while all is held" : "give strain_x or stress_x, and so on");
   }
 
   [[nodiscard]] std::int64_t here() const { return static_cast<std::int64_t>(stages_.size()) - 1; }
@@ -148,7 +143,7 @@ class StageReader {
     MacroStage& stage = stages_.back();
     if (way == StageKind::axes) return read_axes(t, stage);
     if (way == StageKind::consolidation) {
-      refuse(t, {"strain"}, "a consolidation goes to a stress, and so does a stage that unloads or repeats it");
+      t.refuse({"strain"}, "a consolidation goes to a stress, and so does a stage that unloads or repeats it");
       return by_stress(stage, way, read_stresses(t));
     }
     const bool strain = t.has("strain");
@@ -334,8 +329,7 @@ void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& s
       {"stage",
        "one loading of a test, in this order; such tables replace `test`, `strain`, `preload` and `preload_steps`"});
   if (tables.empty()) return;
-  for (const char* key : {"test", "strain", "preload", "preload_steps"})
-    if (macro.has(key)) macro.add_error(key, "goes without [[stage]], which says the whole test");
+  macro.refuse({"test", "strain", "preload", "preload_steps"}, "goes without [[stage]], which says the whole test");
   take_stages(tables, spec);
 }
 

@@ -172,8 +172,8 @@ class Loadings {
   /// Numbers of the loadings that a variant is tested under.
   [[nodiscard]] std::vector<std::size_t> of_variant(const SceneTable& t) const {
     if (!empty()) {
-      for (const char* key : {"test", "strain", "preload", "preload_steps", "stage"})
-        if (t.has(key)) t.add_error(key, "goes without [[loading]], which says what is tested");
+      t.refuse({"test", "strain", "preload", "preload_steps", "stage"},
+               "goes without [[loading]], which says what is tested");
     }
     if (!t.has("loadings")) return all();
     std::vector<std::size_t> some;

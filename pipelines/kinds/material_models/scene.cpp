@@ -75,11 +75,11 @@ MaterialModel read_model(const Scene& scene, const SceneTable& t, MaterialModels
       Unit::none, Range{0.0, 0.6, false, false}, 0.0);
   if (m.soft_share > 0.0 && m.places == ModelPlaces::truth)
     t.add_error("soft_share", "soft bodies are at places of their own: places = \"own\"");
-  if (m.kind == ModelKind::cells && m.soft_share == 0.0 && t.has("radii"))
-    t.add_error("radii", "are those of soft bodies: goes with soft_share above 0");
+  if (m.kind == ModelKind::cells && m.soft_share == 0.0)
+    t.refuse({"radii"}, "are those of soft bodies: goes with soft_share above 0");
   m.mapped = t.flag({"mapped", "substitutes: map stresses by the equation of state"}, false);
-  if (m.kind == ModelKind::substitute && !m.mapped && t.has("card"))
-    t.add_error("card", "says the equation of state that stresses are mapped by: goes with mapped = true");
+  if (m.kind == ModelKind::substitute && !m.mapped)
+    t.refuse({"card"}, "says the equation of state that stresses are mapped by: goes with mapped = true");
   m.scale = t.number({"scale", "shells: factor on their radii after they are placed"}, Unit::none,
                      Range{0.0, 2.0, true, false}, m.scale);
   const std::vector<double> radii = t.numbers({"radii",

@@ -91,7 +91,7 @@ WantedCuts read_cuts(const SceneTable& t) {
   out.ratio = t.number({"ratio", "upper limit of largest over smallest diameter in a level; cuts are at equal ratios"},
                        Unit::none, Range::closed(1.5, 10.0), out.ratio);
   if (!t.has("cut_diameters")) return out;
-  if (t.has("ratio")) t.add_error("ratio", "goes without cut_diameters, which say where the curve is cut");
+  t.refuse({"ratio"}, "goes without cut_diameters, which say where the curve is cut");
   out.given = t.numbers({"cut_diameters", "diameters at which the curve is cut, instead of `ratio`"}, Unit::length,
                         Range::positive());
   for (double& cut : out.given) cut *= 0.5;
@@ -366,8 +366,8 @@ RecipeScene read_recipe_scene(const Scene& scene) {
     base.kept_states = read_kept_states(root, 0);
     out.constituents = read_constituents(root, base.spec.density);
     if (!out.constituents.empty())
-      for (const char* key : {"sizes", "exponent", "radius_max", "ratio"})
-        if (grains.has(key)) grains.add_error(key, "goes without [[constituent]], which have sizes of their own");
+      grains.refuse({"sizes", "exponent", "radius_max", "ratio"},
+                    "goes without [[constituent]], which have sizes of their own");
     const double shear =
         read_law(root.table_or_empty({"law", "fits of the equation of state and of the cell law"}), out);
     read_rest(root, out);

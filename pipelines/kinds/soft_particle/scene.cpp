@@ -263,8 +263,8 @@ void refuse_idle_protocols(const SceneTable& measure, const std::vector<Relaxati
   goes_with("least_work", one_of({Relaxation::least_work, Relaxation::slow_dynamics}),
             "\"least-work\" or \"slow-dynamics\"");
   if (rotates) return;
-  for (const char* key : {"turn_speed", "rotation_step_deg", "shell_turns", "rotation"})
-    if (measure.has(key)) measure.add_error(key, "goes with angles_deg: nothing is rotated in this scene");
+  measure.refuse({"turn_speed", "rotation_step_deg", "shell_turns", "rotation"},
+                 "goes with angles_deg: nothing is rotated in this scene");
 }
 
 void require_drawable(const SceneTable& t, const SoftParticleSpec& spec) {
