@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "common/data/multi_contact_replicates.h"
 #include "pipelines/law/law_difference.h"
 #include "pipelines/law/law_show.h"
 #include "pipelines/law/named_laws.h"
@@ -44,6 +45,31 @@ TEST(LawCommand, ShowsTheCommittedLawsAsBefore) {
   const FittedLaw a = committed(kCard);
   const FittedLaw b = committed(kTable);
   EXPECT_EQ(law::differences_text(a, b, law::law_differences(a, b), false), reference("difference.txt"));
+}
+
+TEST(FittedLaw, OfARunDirectoryIsToldByItsContent) {
+  const FittedLaw card = load_law(kRoot + "/results/published");
+  FittedLaw table = load_law(kRoot + "/results/law_table");
+  EXPECT_NE(card.card(), nullptr);
+  EXPECT_EQ(kind_text(card), "law card");
+  ASSERT_NE(table.table(), nullptr);
+  EXPECT_EQ(kind_text(table), "law table");
+  EXPECT_EQ(table.path, kRoot + "/results/law_table/law_table.toml");
+  read_refits(table);
+  const std::size_t refits = replicate_count(*table.table(), LawForm::isotropic);
+  EXPECT_GT(refits, 0u);
+  read_refits(table);  // has them already
+  EXPECT_EQ(replicate_count(*table.table(), LawForm::isotropic), refits);
+}
+
+TEST(FittedLaw, ACardServesThePairLawAndATableAllElse) {
+  LawSources sources;
+  sources.laws = {load_law(kRoot + "/" + kCard), load_law(kRoot + "/" + kTable)};
+  EXPECT_NE(sources.serving(LawForm::pair).card(), nullptr);
+  EXPECT_NE(sources.serving(LawForm::directional).table(), nullptr);
+  EXPECT_NE(sources.serving({}).table(), nullptr);
+  sources.laws.pop_back();
+  EXPECT_NE(sources.serving(LawForm::directional).card(), nullptr);
 }
 
 /// By this number runs, reports and comparisons of all versions tell whether two laws are the same.
