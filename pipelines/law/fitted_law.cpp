@@ -49,8 +49,11 @@ FittedLaw load_law(const std::string& given) {
   const std::string path = file_in(given);
   if (std::filesystem::path(path).extension() == ".h5")
     throw InputError(path + ": give the card or table itself, the .toml beside it");
-  const Scene file = Scene::load(path);
-  return {read_content(file), path, file.text(), read_origin(file.root())};
+  return load_law(Scene::load(path));
+}
+
+FittedLaw load_law(const Scene& file) {
+  return {read_content(file), file.path(), file.text(), read_origin(file.root())};
 }
 
 void read_refits(FittedLaw& law) {

@@ -37,6 +37,7 @@ std::string kind_text(const FittedLaw& law);
 /// cell law, or those of a run directory (law_table.toml before law.toml and cell_law.toml). They are told apart by
 /// content: [[pair]], [[entry]], [cell]. Throws InputError with file and line for anything else, IoError.
 FittedLaw load_law(const std::string& path);
+FittedLaw load_law(const Scene& file);
 
 /// The refits of a table from the .h5 beside it, where they were not read before. Throws InputError, IoError.
 void read_refits(FittedLaw& law);

@@ -340,17 +340,20 @@ FittedLaw law_of_key(const SceneTable& table, const std::string& key, const std:
 
 LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
   LawSources out;
-  const std::string card = law.has("card") ? law.text({"card", "law card (pair law, as published)"}) : "";
-  const std::string table =
-      law.has("table") ? law.text({"table", "law table; `table`, `card` or both must be given"}) : "";
-  if (card.empty() && table.empty()) law.throw_error("table", "give a law table, a law card, or both");
-  if (law.has("forms")) out.forms = read_forms(law, !table.empty());
-  if (table.empty()) out.forms = {LawForm::pair};
+  std::vector<std::pair<std::string, std::string>> files;  // by key; read when all choices are known
+  for (const Key& key : {Key{"card", "law card (pair law, as published)"},
+                         Key{"table", "law table; `table`, `card` or both must be given"}})
+    if (law.has(key.name)) files.emplace_back(key.name, scene.resolve(law.text(key)));
+  const bool with_table = law.has("table");
+  if (files.empty()) law.throw_error("table", "give a law table, a law card, or both");
+  if (law.has("forms")) out.forms = read_forms(law, with_table);
   read_table_choices(law, out);
-  if (!card.empty()) out.laws.push_back(law_of_key(law, "card", scene.resolve(card)));
-  if (!table.empty()) out.laws.push_back(law_of_key(law, "table", scene.resolve(table)));
-  if (table.empty()) law.refuse({"form"}, "goes with a law table; a card holds the pair law alone");
-  if (table.empty()) law.refuse(kTableKeys, "goes with a law table (key table)");
+  if (!with_table) {
+    out.forms = {LawForm::pair};
+    law.refuse({"form"}, "goes with a law table; a card holds the pair law alone");
+    law.refuse(kTableKeys, "goes with a law table (key table)");
+  }
+  for (const auto& [key, path] : files) out.laws.push_back(law_of_key(law, key, path));
   require_fraction(law, out);
   return out;
 }

@@ -50,7 +50,7 @@ struct LawSources {
   [[nodiscard]] const LawCard* card() const;
   [[nodiscard]] const LawTable* table() const;
   [[nodiscard]] const CellCard* cells() const;
-  /// The law that runs of this form take: the card the pair law, the table all else; where there is one, that one.
+  /// The law that runs of this form take: the card serves the pair law, the table all others; a single law serves all.
   [[nodiscard]] const FittedLaw& serving(WantedForm form) const;
   [[nodiscard]] std::vector<std::string> files() const;  ///< files that the laws come from
   [[nodiscard]] std::string text() const;                ///< content of these files

@@ -159,8 +159,9 @@ void check_material_card(const Scene& file, Findings& out) {
 }  // namespace
 
 void check_laws(const std::string& path, Findings& out) {
-  if (const Scene file = Scene::load(path); is_material_card(file)) return check_material_card(file, out);
-  FittedLaw law = load_law(path);
+  const Scene file = Scene::load(path);
+  if (is_material_card(file)) return check_material_card(file, out);
+  FittedLaw law = load_law(file);
   read_refits(law);  // of an edited table they are not used, which its notes say
   std::visit([&](const auto& content) { check_law(content, out); }, law.content);
 }
