@@ -28,7 +28,8 @@ void SharedResults::read(const std::string& format, const std::string& file, con
     if (root.text("key") != key) throw IoError(path + ": belongs to another result");
     content(root);
   } catch (const IoError& e) {
-    say_(std::string(e.what()) + "; " + again);
+    const std::string why = e.what();
+    say_((why.find(path) == std::string::npos ? path + ": " + why : why) + "; " + again);
   }
 }
 

@@ -215,6 +215,19 @@ TEST(SharedResults, ARunIsFoundByWhatDeterminesIt) {
   EXPECT_EQ(multi_contact_run_name("a"), "crowd-af63dc4c8601ec8c");  // published values of FNV-1a
 }
 
+TEST(SharedResults, SaysWhichFileItIgnores) {
+  const test::TemporaryDirectory directory;
+  std::string remarks;
+  const SharedResults cache(directory.path(), [&](const std::string& remark) { remarks += remark; });
+  KeptForm<MultiContactRun> two = kept_multi_contact_run();
+  two.write = [](const h5::Group& group, const MultiContactRun& run) { write_multi_contact_runs(group, {run, run}); };
+  cache.keep(two, "key", sample_run());
+  EXPECT_FALSE(cache.find(kept_multi_contact_run(), "key"));
+  EXPECT_NE(remarks.find(directory.file(multi_contact_run_name("key") + ".h5") + ": damaged: holds no single run"),
+            std::string::npos)
+      << remarks;
+}
+
 TEST(SharedResults, KeepsAndIgnoresDamage) {
   const test::TemporaryDirectory directory;
   std::string remarks;
