@@ -24,7 +24,7 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
   const SceneKind& kind = kind_of(scene);
   out.add("kind", kind.name, std::string("scene of kind ") + kind.name);
   if (!options.law.empty() && !kind.takes_law) throw InputError("check: --law goes with scenes of kind \"macro\"");
-  kind.check(scene, options.law, out);
+  kind.check(scene, options, out);
 }
 
 /// Laws and scenes are both TOML; cards and tables of laws have a schema at the top.

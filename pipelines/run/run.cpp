@@ -50,10 +50,9 @@ void TaskStore::clear() const {
   std::filesystem::remove_all(directory_, error);
 }
 
-Run::Run(const Scene& scene, const CommonOptions& options, const std::string& command, std::uint64_t scene_seed,
-         const RunInputs& inputs)
+Run::Run(const Scene& scene, const CommonOptions& options, const std::string& command, const RunInputs& inputs)
     : Run(RunContext(options, command, std::filesystem::path(scene.path()).stem().string(), inputs.files), scene,
-          scene_seed, inputs.text) {}
+          inputs.seed, inputs.text) {}
 
 Run::Run(RunContext held, const Scene& scene, std::uint64_t scene_seed, const std::string& text)
     : context(std::move(held)),

@@ -41,10 +41,11 @@ class TaskStore {
   std::string fingerprint_;  ///< scene with overrides, seed, and what stands beside
 };
 
-/// What a run needs beside its scene.
+/// What determines a run besides the text of its scene.
 struct RunInputs {
-  std::vector<std::string> files{};  ///< files that it reads, besides the scene
-  std::string text{};                ///< text that determines it, besides scene and seed: that of a law file, say
+  std::uint64_t seed = 0;            ///< seed of the scene; --seed goes before it
+  std::vector<std::string> files{};  ///< files that it reads
+  std::string text{};                ///< content that determines it: the text of a law file, say
 };
 
 /// A run: its directory, kept tasks, seed and provenance, and the clock; every part of the run is handed this.
@@ -56,8 +57,7 @@ class Run {
   const TaskStore store;
 
   /// Begins the run, or goes on with it (--resume). Throws IoError, InputError as RunContext and TaskStore do.
-  Run(const Scene& scene, const CommonOptions& options, const std::string& command, std::uint64_t scene_seed,
-      const RunInputs& inputs = {});
+  Run(const Scene& scene, const CommonOptions& options, const std::string& command, const RunInputs& inputs);
 
   /// Begins a part of another run, in a directory that is held already.
   Run(RunContext held, const Scene& scene, std::uint64_t scene_seed, const std::string& text = "");

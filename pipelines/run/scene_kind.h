@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,14 +19,14 @@ struct SceneKind {
   const char* name = "";     ///< value of the key `kind`
   const char* command = "";  ///< command that runs it: "run", "microsim" or "macrosim"
   /// Reads the scene, runs it, writes what came out and the report; see the folder of the kind. Throws Error.
-  ExitStatus (*run)(const Scene& scene, const CommonOptions& options) = nullptr;
-  /// What follows from the scene without running it; `law` as in CommonOptions. Throws InputError, IoError.
-  void (*check)(const Scene& scene, const std::string& law, Findings& out) = nullptr;
+  std::function<ExitStatus(const Scene& scene, const CommonOptions& options)> run{};
+  /// What follows from the scene without running it. Throws InputError, IoError.
+  std::function<void(const Scene& scene, const CommonOptions& options, Findings& out)> check{};
   /// Reads the scene to its last key, but no file that it names (a law, states): what a reader makes of any text.
   /// Throws InputError.
-  void (*read)(const Scene& scene) = nullptr;
-  /// Throws all that run() refuses before it begins, files that the scene names included; null: as `read`.
-  void (*refuse)(const Scene& scene, const CommonOptions& options) = nullptr;
+  std::function<void(const Scene& scene)> read{};
+  /// Throws all that run() refuses before it begins, files that the scene names included; empty: as `read`.
+  std::function<void(const Scene& scene, const CommonOptions& options)> refuse{};
   KindResults results{};
   bool takes_law = false;     ///< whether --law goes with it
   bool takes_engine = false;  ///< whether --engine and what belongs to it do

@@ -34,7 +34,7 @@ class KeysThatCount : public ::testing::Test {
   [[nodiscard]] std::vector<std::string> warnings(const std::string& text) const {
     Findings out;
     const Scene s = scene(text);
-    kind_of(s).check(s, "", out);
+    kind_of(s).check(s, {}, out);
     return out.warnings();
   }
 

@@ -109,9 +109,10 @@ TEST(MaterialLawScene, RefusesWhatGivesNoLaw) {
 
 TEST(MaterialLawScene, WarnsOfFewGrains) {
   Findings findings;
-  check_material_law(Scene::parse("kind = \"material-law\"\n[grains]\ncount = 600\n[law]\nmixtures = [0.2, 0.5, 0.9]\n"
-                                  "[packing]\npreparation = \"fast\"\n",
-                                  "s"),
+  check_material_law(read_material_law_scene(Scene::parse(
+                         "kind = \"material-law\"\n[grains]\ncount = 600\n[law]\nmixtures = [0.2, 0.5, 0.9]\n"
+                         "[packing]\npreparation = \"fast\"\n",
+                         "s")),
                      findings);
   std::string all;
   for (const std::string& w : findings.warnings()) all += w + "\n";

@@ -60,7 +60,7 @@ class MultiContactStage : public ::testing::Test {
     std::filesystem::create_directories(options_.law_cache);
   }
   MultiContactMeasurements measure(const MultiContactLevel* level) {
-    const softgrain::Run run(scene_, options_, "run", setup_.seed);
+    const softgrain::Run run(scene_, options_, "run", {.seed = setup_.seed});
     contents_.clear();
     MultiContactMeasurements data = run_multi_contact_stage(setup_, run, left_out_, contents_, level);
     run.store.clear();

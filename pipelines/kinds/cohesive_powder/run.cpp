@@ -207,8 +207,8 @@ ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options) {
   const PowderSetup setup = read_powder(scene);
   // A run goes on only with the states that it began with.
   const std::string states = setup.states.empty() ? "" : short_hash(read_text(setup.states));
-  return run_powder_ensemble(setup, Run(scene, options, "microsim", setup.seed,
-                                        {.files = {setup.states}, .text = powder_text(setup) + states}));
+  return run_powder_ensemble(
+      setup, Run(scene, options, "microsim", {setup.seed, {setup.states}, powder_text(setup) + states}));
 }
 
 void read_any_powder(const Scene& scene) {
@@ -224,7 +224,7 @@ SceneKind cohesive_powder_kind() {
   return {.name = "cohesive-powder",
           .command = "microsim",
           .run = run_powder_scene,
-          .check = [](const Scene& scene, const std::string&, Findings& out) { check_powder(scene, out); },
+          .check = [](const Scene& scene, const CommonOptions&, Findings& out) { check_powder(scene, out); },
           .read = read_any_powder,
           .results = powder_results()};
 }

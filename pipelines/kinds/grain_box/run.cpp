@@ -8,7 +8,7 @@
 #include "common/io/progress.h"
 #include "microsim/grain_box/grain_box_run.h"
 #include "pipelines/results/summary.h"
-#include "pipelines/run/run.h"
+#include "pipelines/run/typed_kind.h"
 
 namespace softgrain {
 
@@ -56,9 +56,11 @@ std::string console_summary(const std::vector<GrainBoxResult>& results) {
   return text;
 }
 
-ExitStatus run_grain_box_scene(const Scene& scene, const CommonOptions& options) {
-  const GrainBoxSetup setup = read_grain_box(scene);
-  const Run run(scene, options, "microsim", setup.seed, {.text = sizes_text(setup.packs.front().material)});
+RunInputs inputs_of(const GrainBoxSetup& setup) {
+  return {.seed = setup.seed, .text = sizes_text(setup.packs.front().material)};
+}
+
+Outcome run_grain_boxes(const GrainBoxSetup& setup, const Run& run) {
   const std::vector<GrainBoxResult> results = run_packs(setup, run);
   save_grain_boxes(run.path("grain_box.h5"), results, run.provenance);
 
@@ -72,20 +74,21 @@ ExitStatus run_grain_box_scene(const Scene& scene, const CommonOptions& options)
   summary["remarks"] = grain_box_remarks(results);
   if (setup.packs.front().material.sizes) summary["sizes"] = json_of(summaries_of(drawn_sizes(setup, run.seed)));
   summary["files"] = {{"record", run.path("grain_box.h5")}, {"report", run.path("report.html")}};
-  return run.finish(std::move(summary), console_summary(results));
+  return {std::move(summary), console_summary(results)};
 }
 
 }  // namespace
 
 SceneKind grain_box_kind() {
-  return {.name = "grain-box",
-          .command = "microsim",
-          .run = run_grain_box_scene,
-          .check = [](const Scene& scene, const std::string&,
-                      Findings& out) { check_grain_box(read_grain_box(scene), out); },
-          .read = [](const Scene& scene) { (void)read_grain_box(scene); },
-          .results = grain_box_results(),
-          .explored_from = {"", "[loading]\ntest = \"polyaxial\"\ncontrol = [\"stress\", \"strain\", \"strain\"]\n"}};
+  return scene_kind(TypedKind<GrainBoxSetup>{
+      .name = "grain-box",
+      .command = "microsim",
+      .read = read_grain_box,
+      .inputs = inputs_of,
+      .run = run_grain_boxes,
+      .check = check_grain_box,
+      .results = grain_box_results(),
+      .explored_from = {"", "[loading]\ntest = \"polyaxial\"\ncontrol = [\"stress\", \"strain\", \"strain\"]\n"}});
 }
 
 }  // namespace softgrain

@@ -50,8 +50,7 @@ void spend_on_resolved(const HierarchySetup& setup, const MeasureTrial& trial, F
 
 }  // namespace
 
-void check_hierarchy(const Scene& scene, Findings& out) {
-  const HierarchySetup setup = read_hierarchy_setup(scene);
+void check_hierarchy(const HierarchySetup& setup, Findings& out) {
   const auto configurations = static_cast<std::int64_t>(setup.multi_contact.configurations.size());
   out.facts["levels"] = setup.levels;
   out.facts["levels_max"] = setup.iterations;

@@ -13,8 +13,8 @@
 #include "pipelines/kinds/hierarchy/summary.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
 #include "pipelines/report/run_data.h"
-#include "pipelines/run/run.h"
 #include "pipelines/run/size_summary.h"
+#include "pipelines/run/typed_kind.h"
 
 namespace softgrain {
 
@@ -193,9 +193,11 @@ void check_levels(const HierarchySetup& setup, const Run& run, HierarchyRun& res
   result.remarks.emplace_back("the resolved check holds states that did not converge");
 }
 
-ExitStatus run_hierarchy(const Scene& scene, const CommonOptions& options) {
-  const HierarchySetup setup = read_hierarchy_setup(scene);
-  const Run run(scene, options, "run", setup.multi_contact.seed, {.text = sizes_text(setup.multi_contact.spec)});
+RunInputs inputs_of(const HierarchySetup& setup) {
+  return {.seed = setup.multi_contact.seed, .text = sizes_text(setup.multi_contact.spec)};
+}
+
+Outcome run_hierarchy(const HierarchySetup& setup, const Run& run) {
   HierarchyRun result;
   run.guard([&] {
     run_levels(setup, run, result);
@@ -205,7 +207,7 @@ ExitStatus run_hierarchy(const Scene& scene, const CommonOptions& options) {
     result.usable = false;
     result.remarks.emplace_back("the fixed point was not reached: allow more iterations or packings");
   }
-  return run.finish(json_of(summarise(setup, result, run)), console_summary(setup, result));
+  return {json_of(summarise(setup, result, run)), console_summary(setup, result)};
 }
 
 std::vector<HeadLine> lines_of(const report::RunData& run) {
@@ -234,16 +236,18 @@ NextSteps next_of(const report::RunData& run) {
 }  // namespace
 
 SceneKind hierarchy_kind() {
-  return {.name = "hierarchy",
-          .command = "run",
-          .run = run_hierarchy,
-          .check = [](const Scene& scene, const std::string&, Findings& out) { check_hierarchy(scene, out); },
-          .read = [](const Scene& scene) { (void)read_hierarchy_setup(scene); },
-          .results = {.sections = {{Part::several, report::hierarchy_section}},
-                      .lines = lines_of,
-                      .values = values_of,
-                      .next = next_of},
-          .explored_from = {"", "[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"}};
+  return scene_kind(TypedKind<HierarchySetup>{
+      .name = "hierarchy",
+      .command = "run",
+      .read = read_hierarchy_setup,
+      .inputs = inputs_of,
+      .run = run_hierarchy,
+      .check = check_hierarchy,
+      .results = {.sections = {{Part::several, report::hierarchy_section}},
+                  .lines = lines_of,
+                  .values = values_of,
+                  .next = next_of},
+      .explored_from = {"", "[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"}});
 }
 
 }  // namespace softgrain

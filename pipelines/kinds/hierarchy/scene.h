@@ -49,6 +49,6 @@ HierarchySetup read_hierarchy_setup(const Scene& scene);
 SceneKind hierarchy_kind();
 
 /// Counts, overlaps, memory and time of its levels. Throws InputError.
-void check_hierarchy(const Scene& scene, Findings& out);
+void check_hierarchy(const HierarchySetup& setup, Findings& out);
 
 }  // namespace softgrain

@@ -34,8 +34,7 @@ double seconds_per_run(const InverseSetup& setup) {
 
 }  // namespace
 
-void check_inverse(const Scene& scene, Findings& out) {
-  const InverseSetup setup = read_inverse(scene);
+void check_inverse(const InverseSetup& setup, Findings& out) {
   const std::int64_t runs = setup.budget * setup.packings + setup.confirm;
   out.facts["evaluations"] = setup.budget;
   out.facts["points_per_run"] = setup.target.delta.size();

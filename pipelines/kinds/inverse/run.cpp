@@ -9,8 +9,8 @@
 #include "common/io/text_file.h"
 #include "pipelines/kinds/inverse/summary.h"
 #include "pipelines/report/run_data.h"
-#include "pipelines/run/run.h"
 #include "pipelines/run/size_summary.h"
+#include "pipelines/run/typed_kind.h"
 
 namespace softgrain {
 
@@ -137,13 +137,15 @@ std::string console_summary(const InverseSetup& setup, const InverseResult& r, d
                             r.check.packings, misfit);
 }
 
-ExitStatus run_inverse(const Scene& scene, const CommonOptions& options) {
-  const InverseSetup setup = read_inverse(scene);
+RunInputs inputs_of(const InverseSetup& setup) {
   // The target may stand in another file: what was kept for one serves no other.
   std::string target;
   for (std::size_t j = 0; j < setup.target.delta.size(); ++j)
     target += fmt::format("{:a} {:a} {:a}\n", setup.target.delta[j], setup.target.force[j], setup.target.error[j]);
-  const Run run(scene, options, "run", setup.measure.seed, {.text = target + sizes_text(setup.measure.spec)});
+  return {.seed = setup.measure.seed, .text = target + sizes_text(setup.measure.spec)};
+}
+
+Outcome run_inverse(const InverseSetup& setup, const Run& run) {
   InverseResult result;
   run.guard([&] { result = run_inverse_stage(setup, run); });
   save(result.confirmed, run.path("measurements.h5"), run.provenance);
@@ -158,8 +160,7 @@ ExitStatus run_inverse(const Scene& scene, const CommonOptions& options) {
   summary.head.sizes = summaries_of(shell_sizes(result.confirmed.spec, result.confirmed.packings));
   for (const char* file : {"measurements.h5", "evaluations.csv", "report.html"})
     summary.head.files[file] = run.path(file);
-  std::string console = console_summary(setup, result, misfit);
-  return run.finish(json_of(summary), console);
+  return {json_of(summary), console_summary(setup, result, misfit)};
 }
 
 std::vector<RunValue> values_of(const report::RunData& run) {
@@ -181,15 +182,16 @@ NextSteps next_of(const report::RunData& run) {
 }  // namespace
 
 SceneKind inverse_kind() {
-  return {.name = "inverse",
-          .command = "run",
-          .run = run_inverse,
-          .check = [](const Scene& scene, const std::string&, Findings& out) { check_inverse(scene, out); },
-          .read = [](const Scene& scene) { (void)read_inverse(scene); },
-          .results = {.files = {{.names = "evaluations\\.csv"}},
-                      .sections = {{Part::answer, report::inverse_section}},
-                      .values = values_of,
-                      .next = next_of}};
+  return scene_kind(TypedKind<InverseSetup>{.name = "inverse",
+                                            .command = "run",
+                                            .read = read_inverse,
+                                            .inputs = inputs_of,
+                                            .run = run_inverse,
+                                            .check = check_inverse,
+                                            .results = {.files = {{.names = "evaluations\\.csv"}},
+                                                        .sections = {{Part::answer, report::inverse_section}},
+                                                        .values = values_of,
+                                                        .next = next_of}});
 }
 
 }  // namespace softgrain

@@ -53,6 +53,6 @@ InverseSetup read_inverse(const Scene& scene);
 SceneKind inverse_kind();
 
 /// What follows from the scene without running it.
-void check_inverse(const Scene& scene, Findings& out);
+void check_inverse(const InverseSetup& setup, Findings& out);
 
 }  // namespace softgrain

@@ -6,8 +6,7 @@
 
 namespace softgrain {
 
-void check_law_table(const Scene& scene, Findings& out) {
-  const LawTableSetup setup = read_law_table(scene);
+void check_law_table(const LawTableSetup& setup, Findings& out) {
   const MeasureTrial trial = check_multi_contact(setup.multi_contact, out);
   spend_on_packings(setup.multi_contact, trial, 1.0, out);
   spend_on_multi_contact(setup.multi_contact, trial, 1.0, "measuring", out);

@@ -12,8 +12,8 @@
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
 #include "pipelines/kinds/law_table/results.h"
 #include "pipelines/results/summary.h"
-#include "pipelines/run/run.h"
 #include "pipelines/run/size_summary.h"
+#include "pipelines/run/typed_kind.h"
 
 namespace softgrain {
 
@@ -69,24 +69,28 @@ std::string console_summary(const LawTableRun& result, const Run& run) {
   return text + "law table: " + run.path("law_table.toml") + "\n";
 }
 
-ExitStatus run_law_table(const Scene& scene, const CommonOptions& options) {
-  const LawTableSetup setup = read_law_table(scene);
-  const Run run(scene, options, "run", setup.multi_contact.seed, {.text = sizes_text(setup.multi_contact.spec)});
+RunInputs inputs_of(const LawTableSetup& setup) {
+  return {.seed = setup.multi_contact.seed, .text = sizes_text(setup.multi_contact.spec)};
+}
+
+Outcome run_law_table(const LawTableSetup& setup, const Run& run) {
   LawTableRun result;
   run.guard([&] { result = measure_and_fit(setup, run); });
-  return run.finish(summarise(setup, result, run), console_summary(result, run));
+  return {summarise(setup, result, run), console_summary(result, run)};
 }
 
 }  // namespace
 
 SceneKind law_table_kind() {
-  return {.name = "law-table",
-          .command = "run",
-          .run = run_law_table,
-          .check = [](const Scene& scene, const std::string&, Findings& out) { check_law_table(scene, out); },
-          .read = [](const Scene& scene) { (void)read_law_table(scene); },
-          .results = law_table_results(),
-          .explored_from = {"", "[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"}};
+  return scene_kind(TypedKind<LawTableSetup>{
+      .name = "law-table",
+      .command = "run",
+      .read = read_law_table,
+      .inputs = inputs_of,
+      .run = run_law_table,
+      .check = check_law_table,
+      .results = law_table_results(),
+      .explored_from = {"", "[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"}});
 }
 
 }  // namespace softgrain

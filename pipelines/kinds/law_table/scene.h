@@ -36,6 +36,6 @@ LawTableSetup read_law_table(const Scene& scene);
 SceneKind law_table_kind();
 
 /// Counts, overlaps, memory, time, and what the table will lack. Throws InputError.
-void check_law_table(const Scene& scene, Findings& out);
+void check_law_table(const LawTableSetup& setup, Findings& out);
 
 }  // namespace softgrain

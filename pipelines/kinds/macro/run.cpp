@@ -186,8 +186,8 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
   const ReadyMacro ready = ready_macro(scene, options);
   const MacroScene& macro = ready.macro;
   const std::optional<LammpsEngine>& lammps = ready.lammps;
-  const Run run(scene, options, "macrosim", macro.seed,
-                {macro.law.files(), macro.law.text() + sizes_text(macro.setup.spec)});
+  const Run run(scene, options, "macrosim",
+                {macro.seed, macro.law.files(), macro.law.text() + sizes_text(macro.setup.spec)});
   const auto contents =
       macro.setup.twins.empty() ? std::vector<ShellPacking>{} : make_contents(macro.spec, macro.contents, run.seed);
   std::optional<NamedLaws> law;  // none with cells
@@ -222,7 +222,8 @@ SceneKind macro_kind() {
   return {.name = "macro",
           .command = "macrosim",
           .run = run_macro_scene,
-          .check = check_macro_scene,
+          .check = [](const Scene& scene, const CommonOptions& options,
+                      Findings& out) { check_macro_scene(scene, options.law, out); },
           .read = [](const Scene& scene) { (void)read_macro_scene_alone(scene); },
           .refuse = [](const Scene& scene, const CommonOptions& options) { (void)ready_macro(scene, options); },
           .results = macro_results(),

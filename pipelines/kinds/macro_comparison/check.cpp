@@ -12,8 +12,7 @@ namespace softgrain {
 
 using nlohmann::json;
 
-void check_macro_comparison(const Scene& scene, Findings& out) {
-  const MacroComparisonSetup setup = read_macro_comparison(scene);
+void check_macro_comparison(const MacroComparisonSetup& setup, Findings& out) {
   out.lines += fmt::format("  comparison of laws with twins on {} scenes\n", setup.scenes.size());
   const MacroContent content = content_of(setup.spec, setup.contents, setup.seed);
   out.add("solid_fraction", content.solid_fraction,

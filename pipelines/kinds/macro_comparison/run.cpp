@@ -12,8 +12,8 @@
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/macro_comparison/results.h"
 #include "pipelines/kinds/macro_comparison/summary.h"
-#include "pipelines/run/run.h"
 #include "pipelines/run/text_table.h"
+#include "pipelines/run/typed_kind.h"
 
 namespace softgrain {
 
@@ -181,8 +181,7 @@ MacroComparisonSummary summarise(const MacroComparisonSetup& setup, const std::v
   return s;
 }
 
-ExitStatus run_macro_comparison(const Scene& scene, const CommonOptions& options) {
-  const MacroComparisonSetup setup = read_macro_comparison(scene);
+RunInputs inputs_of(const MacroComparisonSetup& setup) {
   std::string sizes = sizes_text(setup.spec);
   std::vector<std::string> files = setup.laws.files();
   std::string text = setup.laws.text();
@@ -192,7 +191,10 @@ ExitStatus run_macro_comparison(const Scene& scene, const CommonOptions& options
     for (const std::string& file : s.laws->files()) files.push_back(file);
     text += s.laws->text();
   }
-  const Run run(scene, options, "run", setup.seed, {files, text + sizes});
+  return {setup.seed, std::move(files), text + sizes};
+}
+
+Outcome run_macro_comparison(const MacroComparisonSetup& setup, const Run& run) {
   const auto contents = make_contents(setup.spec, setup.contents, run.seed);
   for (const ComparisonScene& s : setup.scenes) {  // before any run
     const double fraction = inside_fraction(s, contents);
@@ -206,19 +208,21 @@ ExitStatus run_macro_comparison(const Scene& scene, const CommonOptions& options
   write_text_atomic(run.path("comparison.json"),
                     json_of(summary.compared).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   write_tables(whole_table(results), run);
-  return run.finish(json_of(summary), console_summary(results, run));
+  return {json_of(summary), console_summary(results, run)};
 }
 
 }  // namespace
 
 SceneKind macro_comparison_kind() {
-  return {.name = "macro-comparison",
-          .command = "run",
-          .run = run_macro_comparison,
-          .check = [](const Scene& scene, const std::string&, Findings& out) { check_macro_comparison(scene, out); },
-          .read = [](const Scene& scene) { (void)read_macro_comparison(scene); },
-          .results = macro_comparison_results(),
-          .explored_from = {"", explored_stages(), explored_stages("scene")}};
+  return scene_kind(
+      TypedKind<MacroComparisonSetup>{.name = "macro-comparison",
+                                      .command = "run",
+                                      .read = read_macro_comparison,
+                                      .inputs = inputs_of,
+                                      .run = run_macro_comparison,
+                                      .check = check_macro_comparison,
+                                      .results = macro_comparison_results(),
+                                      .explored_from = {"", explored_stages(), explored_stages("scene")}});
 }
 
 }  // namespace softgrain

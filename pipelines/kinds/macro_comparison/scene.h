@@ -42,6 +42,6 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene);
 SceneKind macro_comparison_kind();
 
 /// What every scene asks of its laws, and the time of all. Throws InputError, IoError.
-void check_macro_comparison(const Scene& scene, Findings& out);
+void check_macro_comparison(const MacroComparisonSetup& setup, Findings& out);
 
 }  // namespace softgrain

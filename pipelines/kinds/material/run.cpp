@@ -400,7 +400,7 @@ ExitStatus run_material(const Scene& scene, const CommonOptions& options) {
                                        [](auto& a, auto& b) { return a.setup.spec.bodies < b.setup.spec.bodies; });
   const std::optional<LammpsEngine> lammps = read_engine(options, fewest->setup.spec.bodies);
   require_engine(material, lammps);
-  const Run run(scene, options, "run", material.seed, {.text = sizes_text(material)});
+  const Run run(scene, options, "run", {.seed = material.seed, .text = sizes_text(material)});
   if (lammps && lammps->write_only) return write_only(material, run);
   const auto [results, failures] = run_variants(material, run, {.lammps = lammps});
   MaterialSummary summary = summarise(material, results, run).summary;
@@ -420,7 +420,7 @@ SceneKind material_kind() {
   return {.name = "material",
           .command = "run",
           .run = run_material,
-          .check = [](const Scene& scene, const std::string&,
+          .check = [](const Scene& scene, const CommonOptions&,
                       Findings& out) { check_variants(read_material_scene(scene), out); },
           .read = [](const Scene& scene) { (void)read_material_scene(scene); },
           .results = material_results(),

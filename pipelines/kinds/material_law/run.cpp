@@ -9,6 +9,7 @@
 #include "pipelines/kinds/material_law/fit.h"
 #include "pipelines/kinds/material_law/results.h"
 #include "pipelines/kinds/material_law/scene.h"
+#include "pipelines/run/typed_kind.h"
 
 namespace softgrain {
 
@@ -26,9 +27,11 @@ std::string law_text(const CellLawSummary& s) {
   return text;
 }
 
-ExitStatus run_material_law(const Scene& scene, const CommonOptions& options) {
-  const MaterialLawScene law = read_material_law_scene(scene);
-  const Run run(scene, options, "run", law.material.seed, {.text = sizes_text(law.material)});
+RunInputs inputs_of(const MaterialLawScene& law) {
+  return {.seed = law.material.seed, .text = sizes_text(law.material)};
+}
+
+Outcome run_material_law(const MaterialLawScene& law, const Run& run) {
   const auto [results, failures] = run_variants(law.material, run);
   MaterialOutcome measured = summarise(law.material, results, run);
   reject_failures(failures, measured.summary.head);
@@ -46,18 +49,19 @@ ExitStatus run_material_law(const Scene& scene, const CommonOptions& options) {
   }
   std::string text = console_summary(summary.material) + law_text(summary.law);
   for (const std::string& problem : fitted.problems) text += "no cell law: " + problem + "\n";
-  return run.finish(json_of(summary), text);
+  return {json_of(summary), text};
 }
 
 }  // namespace
 
 SceneKind material_law_kind() {
-  return {.name = "material-law",
-          .command = "run",
-          .run = run_material_law,
-          .check = [](const Scene& scene, const std::string&, Findings& out) { check_material_law(scene, out); },
-          .read = [](const Scene& scene) { (void)read_material_law_scene(scene); },
-          .results = material_law_results()};
+  return scene_kind(TypedKind<MaterialLawScene>{.name = "material-law",
+                                                .command = "run",
+                                                .read = read_material_law_scene,
+                                                .inputs = inputs_of,
+                                                .run = run_material_law,
+                                                .check = check_material_law,
+                                                .results = material_law_results()});
 }
 
 }  // namespace softgrain

@@ -143,8 +143,7 @@ MaterialLawScene read_material_law_scene(const Scene& scene) {
   });
 }
 
-void check_material_law(const Scene& scene, Findings& out) {
-  const MaterialLawScene law = read_material_law_scene(scene);
+void check_material_law(const MaterialLawScene& law, Findings& out) {
   check_variants(law.material, out);
   for (std::size_t k = kFirstMixture; k < law.material.variants.size(); ++k) {
     const MaterialVariant& v = law.material.variants[k];

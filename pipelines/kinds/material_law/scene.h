@@ -41,7 +41,7 @@ GrainShares shares_of(const MaterialLawScene& scene, const MaterialVariant& vari
 MaterialLawScene read_material_law_scene(const Scene& scene);
 
 /// Variants, time, and what to mind. Throws InputError, IoError.
-void check_material_law(const Scene& scene, Findings& out);
+void check_material_law(const MaterialLawScene& law, Findings& out);
 
 /// Measures all variants, fits the cell law; writes cell_law.toml beside what a scene of kind "material" leaves. Status
 /// not_usable, and no card, where a part of the law could not be determined.

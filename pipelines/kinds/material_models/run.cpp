@@ -5,6 +5,7 @@
 #include "pipelines/kinds/material_models/models.h"
 #include "pipelines/kinds/material_models/results.h"
 #include "pipelines/kinds/material_models/scores.h"
+#include "pipelines/run/typed_kind.h"
 
 namespace softgrain {
 
@@ -32,10 +33,11 @@ std::vector<ModelScore> run_models(const MaterialModelsScene& scene, const std::
   return scores;
 }
 
-ExitStatus run_material_models(const Scene& file, const CommonOptions& options) {
-  const MaterialModelsScene scene = read_material_models_scene(file);
-  const Run run(file, options, "run", scene.material.seed,
-                {.files = scene.files, .text = scene.text + sizes_text(scene.material)});
+RunInputs inputs_of(const MaterialModelsScene& scene) {
+  return {scene.material.seed, scene.files, scene.text + sizes_text(scene.material)};
+}
+
+Outcome run_material_models(const MaterialModelsScene& scene, const Run& run) {
   const VariantRuns measured_variants = run_variants(scene.material, run, {.packings = true});
   const std::vector<VariantResult>& truths = measured_variants.results;
   MaterialOutcome measured = summarise(scene.material, truths, run);
@@ -45,11 +47,10 @@ ExitStatus run_material_models(const Scene& file, const CommonOptions& options) 
   run.guard([&] { summary.scores = run_models(scene, truths, run); });
   write_text_atomic(run.path("models.csv"), as_csv(table_of(summary.scores)));
   summary.material.head.files["models"] = run.path("models.csv");
-  return run.finish(json_of(summary), console_summary(summary.material) + console_summary(summary.scores));
+  return {json_of(summary), console_summary(summary.material) + console_summary(summary.scores)};
 }
 
-void check_models(const Scene& file, Findings& out) {
-  const MaterialModelsScene scene = read_material_models_scene(file);
+void check_models(const MaterialModelsScene& scene, Findings& out) {
   check_variants(scene.material, out);
   if (!scene.models.empty()) out.lines += "  the time of the models is not in what is said below\n";
   for (const MaterialModel& m : scene.models) out.lines += "  model " + m.name + ": " + to_string(m.kind) + "\n";
@@ -58,13 +59,15 @@ void check_models(const Scene& file, Findings& out) {
 }  // namespace
 
 SceneKind material_models_kind() {
-  return {.name = "material-models",
-          .command = "run",
-          .run = run_material_models,
-          .check = [](const Scene& scene, const std::string&, Findings& out) { check_models(scene, out); },
-          .read = [](const Scene& scene) { (void)read_material_models_scene(scene); },
-          .results = material_models_results(),
-          .explored_from = {"", explored_stages(), explored_stages("variant")}};
+  return scene_kind(
+      TypedKind<MaterialModelsScene>{.name = "material-models",
+                                     .command = "run",
+                                     .read = read_material_models_scene,
+                                     .inputs = inputs_of,
+                                     .run = run_material_models,
+                                     .check = check_models,
+                                     .results = material_models_results(),
+                                     .explored_from = {"", explored_stages(), explored_stages("variant")}});
 }
 
 }  // namespace softgrain

@@ -36,7 +36,7 @@ template <int D>
 ExitStatus run_scene(const Scene& scene, const CommonOptions& options) {
   const double memory_before = peak_memory();
   ParticlesSceneOf<D> setup = read_particles_scene<D>(scene, seed_of(options));
-  const Run run(scene, options, "microsim", setup.seed, {.files = contact_law_files(scene)});
+  const Run run(scene, options, "microsim", {.seed = setup.seed, .files = contact_law_files(scene)});
   const ParticlesResultOf<D> result = run_with_progress(setup, std::move(setup.system), run.context);
   ParticlesSummary summary = summary_of(setup, result, memory_before);
   summary.head.sizes = summaries_of(drawn_sizes(setup));
@@ -80,7 +80,7 @@ SceneKind particles_kind() {
       .name = "particles",
       .command = "microsim",
       .run = run_particles_scene,
-      .check = [](const Scene& scene, const std::string&, Findings& out) { check_any_particles(scene, out); },
+      .check = [](const Scene& scene, const CommonOptions&, Findings& out) { check_any_particles(scene, out); },
       .read = [](const Scene& scene) { read_any_particles(scene, {}); },
       .refuse = [](const Scene& scene, const CommonOptions& options) { read_any_particles(scene, seed_of(options)); },
       .results = particles_results(),

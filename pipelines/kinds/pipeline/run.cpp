@@ -23,7 +23,7 @@
 #include "pipelines/law/law_json.h"
 #include "pipelines/report/run_data.h"
 #include "pipelines/results/summary.h"
-#include "pipelines/run/run.h"
+#include "pipelines/run/typed_kind.h"
 
 namespace softgrain {
 
@@ -241,12 +241,13 @@ std::string console_summary(const PipelineSetup& setup, const PipelineResult& r)
   return text;
 }
 
-ExitStatus run_pipeline(const Scene& scene, const CommonOptions& options) {
-  const PipelineSetup setup = read_pipeline_setup(scene);
-  const Run run(scene, options, "run", setup.measure.seed,
-                {.files = setup.table ? setup.table->files() : std::vector<std::string>{},
-                 .text = sizes_text(setup.measure.spec) + (setup.macro ? sizes_text(setup.macro->spec) : "") +
-                         (setup.table ? setup.table->text() : "")});
+RunInputs inputs_of(const PipelineSetup& setup) {
+  return {setup.measure.seed, setup.table ? setup.table->files() : std::vector<std::string>{},
+          sizes_text(setup.measure.spec) + (setup.macro ? sizes_text(setup.macro->spec) : "") +
+              (setup.table ? setup.table->text() : "")};
+}
+
+Outcome run_pipeline(const PipelineSetup& setup, const Run& run) {
   PipelineResult result;
   run.guard([&] { result.measured = run_measure_stage(setup.measure, run); });
   for (const std::string& r : measurement_remarks(result.measured.data)) result.remarks.push_back(r);
@@ -260,11 +261,10 @@ ExitStatus run_pipeline(const Scene& scene, const CommonOptions& options) {
     summary["multi_contact"] = multi_contact_json(result.multi_contact, setup.measured_table->multi_contact.target);
     summary["entries"] = entries_json(result.multi_contact_fit.table);
   }
-  return run.finish(summary, console_summary(setup, result) + bands_text(result.bands, banded_ends(result.curves)));
+  return {summary, console_summary(setup, result) + bands_text(result.bands, banded_ends(result.curves))};
 }
 
-void check_pipeline(const Scene& scene, const std::string&, Findings& out) {
-  const PipelineSetup setup = read_pipeline_setup(scene);
+void check_pipeline(const PipelineSetup& setup, Findings& out) {
   const MeasureTrial trial = check_measurements(setup.measure, out);
   if (setup.measured_table) {
     check_configurations(setup.measured_table->multi_contact, out);
@@ -297,15 +297,17 @@ NextSteps next_of(const report::RunData& run) {
 }  // namespace
 
 SceneKind pipeline_kind() {
-  return {.name = "pipeline",
-          .command = "run",
-          .run = run_pipeline,
-          .check = check_pipeline,
-          .read = [](const Scene& scene) { (void)read_pipeline_setup(scene); },
-          .results = {.next = next_of},
-          .explored_from = {
-              "", "[macro]\n" + explored_stages(),
-              "[macro]\n[multi_contact]\n[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"}};
+  return scene_kind(TypedKind<PipelineSetup>{
+      .name = "pipeline",
+      .command = "run",
+      .read = read_pipeline_setup,
+      .inputs = inputs_of,
+      .run = run_pipeline,
+      .check = check_pipeline,
+      .results = {.next = next_of},
+      .explored_from = {
+          "", "[macro]\n" + explored_stages(),
+          "[macro]\n[multi_contact]\n[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"}});
 }
 
 }  // namespace softgrain

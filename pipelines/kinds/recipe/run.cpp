@@ -13,6 +13,7 @@
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/material_law/results.h"
 #include "pipelines/kinds/recipe/law.h"
+#include "pipelines/run/typed_kind.h"
 
 namespace softgrain {
 
@@ -326,22 +327,25 @@ std::string recipe_text(const RecipeSummary& s) {
   return text;
 }
 
-ExitStatus run_recipe(const Scene& scene, const CommonOptions& options) {
-  const RecipeScene recipe = read_recipe_scene(scene);
-  const Run run(scene, options, "run", recipe.material.seed, {.text = sizes_text(recipe.material)});
+RunInputs inputs_of(const RecipeScene& recipe) {
+  return {.seed = recipe.material.seed, .text = sizes_text(recipe.material)};
+}
+
+Outcome run_recipe(const RecipeScene& recipe, const Run& run) {
   const RecipeSummary summary = RecipeRun(recipe, run).finish();
-  return run.finish(json_of(summary), recipe_text(summary));
+  return {json_of(summary), recipe_text(summary)};
 }
 
 }  // namespace
 
 SceneKind recipe_kind() {
-  return {.name = "recipe",
-          .command = "run",
-          .run = run_recipe,
-          .check = [](const Scene& scene, const std::string&, Findings& out) { check_recipe(scene, out); },
-          .read = [](const Scene& scene) { (void)read_recipe_scene(scene); },
-          .results = recipe_results()};
+  return scene_kind(TypedKind<RecipeScene>{.name = "recipe",
+                                           .command = "run",
+                                           .read = read_recipe_scene,
+                                           .inputs = inputs_of,
+                                           .run = run_recipe,
+                                           .check = check_recipe,
+                                           .results = recipe_results()});
 }
 
 }  // namespace softgrain

@@ -26,7 +26,7 @@ inline constexpr const char* kTwoLevelsTellNothing =
     "grains) check three levels";
 
 /// Levels, packings, time, and what to mind. Throws InputError, IoError.
-void check_recipe(const Scene& scene, Findings& out);
+void check_recipe(const RecipeScene& recipe, Findings& out);
 
 KindResults recipe_results();
 

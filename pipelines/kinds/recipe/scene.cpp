@@ -391,8 +391,7 @@ RecipeScene read_recipe_scene(const Scene& scene) {
   });
 }
 
-void check_recipe(const Scene& scene, Findings& out) {
-  const RecipeScene recipe = read_recipe_scene(scene);
+void check_recipe(const RecipeScene& recipe, Findings& out) {
   out.warn_of_metres("the largest grain", recipe.sizes.largest());
   for (const Constituent& c : recipe.constituents)
     out.lines += fmt::format("  {}: {:.3g} % of the mass, {:.3g} % of the solid volume\n", c.name, 100.0 * c.mass_share,

@@ -6,8 +6,8 @@
 #include "pipelines/kinds/soft_particle/results.h"
 #include "pipelines/kinds/soft_particle/stage.h"
 #include "pipelines/results/summary.h"
-#include "pipelines/run/run.h"
 #include "pipelines/run/size_summary.h"
+#include "pipelines/run/typed_kind.h"
 
 namespace softgrain {
 
@@ -23,15 +23,17 @@ void fields(auto&& visit, Of<SoftParticleSummary> auto& s) {
   fields(visit, s.measured);
 }
 
-ExitStatus run_soft_particle_scene(const Scene& scene, const CommonOptions& options) {
-  const SoftParticleScene read = read_soft_particle_scene(scene);
-  const MeasureSetup& setup = read.measure;
-  const Run run(scene, options, "microsim", setup.seed, {.text = sizes_text(setup.spec)});
+RunInputs inputs_of(const SoftParticleScene& scene) {
+  return {.seed = scene.measure.seed, .text = sizes_text(scene.measure.spec)};
+}
+
+Outcome run_soft_particle(const SoftParticleScene& scene, const Run& run) {
+  const MeasureSetup& setup = scene.measure;
   MeasureResult result;
   run.guard([&] { result = run_measure_stage(setup, run); });
 
   SoftParticleSummary summary;
-  summary.head.title = read.title;
+  summary.head.title = scene.title;
   summary.head.remarks = measurement_remarks(result.data);
   if (!summary.head.remarks.empty() || !result.enough_left) summary.head.status = RunStatus::not_usable;
   summary.head.warnings = result.left_out;
@@ -42,19 +44,20 @@ ExitStatus run_soft_particle_scene(const Scene& scene, const CommonOptions& opti
   std::string console =
       fmt::format("{} packings, solid fraction {:.4f}, {} points measured in {:.1f} s\n", result.data.packings.size(),
                   summary.measured.packings.solid_fraction, summary.measured.measurement.points, result.wall_seconds);
-  return run.finish(json_of(summary), console);
+  return {json_of(summary), console};
 }
 
 }  // namespace
 
 SceneKind soft_particle_kind() {
-  return {.name = "soft-particle",
-          .command = "microsim",
-          .run = run_soft_particle_scene,
-          .check = [](const Scene& scene, const std::string&,
-                      Findings& out) { (void)check_measurements(read_soft_particle_scene(scene).measure, out); },
-          .read = [](const Scene& scene) { (void)read_soft_particle_scene(scene); },
-          .results = soft_particle_results()};
+  return scene_kind(TypedKind<SoftParticleScene>{
+      .name = "soft-particle",
+      .command = "microsim",
+      .read = read_soft_particle_scene,
+      .inputs = inputs_of,
+      .run = run_soft_particle,
+      .check = [](const SoftParticleScene& scene, Findings& out) { (void)check_measurements(scene.measure, out); },
+      .results = soft_particle_results()});
 }
 
 }  // namespace softgrain
