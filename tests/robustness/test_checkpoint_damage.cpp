@@ -214,7 +214,7 @@ class DamagedEverywhere : public ::testing::TestWithParam<KindScene> {
 };
 
 TEST_P(DamagedEverywhere, StartsAfreshWhereNothingIsLeft) { expect_to_start_afresh(); }
-INSTANTIATE_TEST_SUITE_P(Kinds, DamagedEverywhere, ::testing::ValuesIn(quick_kinds()), name_of_kind);
+INSTANTIATE_TEST_SUITE_P(Kinds, DamagedEverywhere, ::testing::ValuesIn(quick_kinds_with_tasks()), name_of_kind);
 
 using SlowDamagedEverywhere = DamagedEverywhere;
 TEST_P(SlowDamagedEverywhere, StartsAfreshWhereNothingIsLeft) { expect_to_start_afresh(); }

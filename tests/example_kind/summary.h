@@ -1,0 +1,39 @@
+// What a run of kind "example" came to: its summary.json, which the report reads back.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipelines/results/kind_results.h"
+#include "pipelines/results/summary.h"
+
+namespace softgrain {
+
+struct ExampleImpact {
+  double speed = 0.0;        ///< [m/s]
+  double duration = 0.0;     ///< of the contact, integrated [s]
+  double closed_form = 0.0;  ///< the same by Hertz [s]
+};
+
+void fields(auto&& visit, Of<ExampleImpact> auto& s) {
+  visit("speed", s.speed);
+  visit("duration", s.duration);
+  visit("closed_form", s.closed_form);
+}
+
+struct ExampleSummary {
+  SummaryHead head;
+  std::string grain;  ///< the grain in words
+  std::vector<ExampleImpact> impacts;
+};
+
+void fields(auto&& visit, Of<ExampleSummary> auto& s) {
+  fields(visit, s.head);
+  visit("grain", s.grain);
+  visit("impacts", s.impacts);
+}
+
+/// Files, sections, head lines and numbers of the kind.
+KindResults example_results();
+
+}  // namespace softgrain
