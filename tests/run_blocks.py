@@ -110,6 +110,8 @@ RULES = [
     (r"\./softgrain test( -[LR] \w+)?", Elsewhere("this suite; the start script by the test start_script")),
     (r"ctest --preset [\w-]+|cmake --(build )?--preset [\w-]+|cmake --build --preset [\w-]+|cmake --preset [\w-]+",
      Elsewhere(PRESETS)),
+    (r"python3 tests/new_kind\.py my-kind|cmake --build build/release|python3 tests/guide_keys\.py .*",
+     Elsewhere("default suite: the tests new_kind_self_test and guide_keys")),
     (r"cmake --install build/release --prefix /usr/local", Elsewhere("default suite: the test install")),
     (r"\(cd build/package|cpack -G DEB\)|apt-get install \./build/package/(python3-)?softgrain_\*\.deb"
      r"|softgrain run /usr/share/softgrain/pipelines/quickstart\.toml",
