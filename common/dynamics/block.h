@@ -59,9 +59,8 @@ inline constexpr int kRollsOf = D == 3 ? 3 : 0;
 template <int D>
 struct Block {
   int touching = 0;
-  std::array<std::int32_t, kBlock + 8> pair;    ///< place in the list
-  std::array<std::int32_t, kBlock + 8> number;  ///< number of the pair in an ordered range
-  std::array<Quad, kBlock + 8> record;          ///< x_i - x_j and one number more, see `fourth`
+  std::array<std::int32_t, kBlock + 8> pair;  ///< place in the list, or number among foreign pairs
+  std::array<Quad, kBlock + 8> record;        ///< x_i - x_j and one number more, see `fourth`
   Rows<D> branch;
   std::array<Quad, kBlock + 8> upright_record;  ///< normals of planes
   Row fourth;                                   ///< r_i + r_j of spheres, r_j - r_i of a shell, r_i above a plane

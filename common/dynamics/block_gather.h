@@ -21,29 +21,62 @@ Block<D>& scratch() {
   return block;
 }
 
-/// Pairs of a range that a loop takes: all of them, those of an order, or those that are not lent. With those
-/// not lent, the waiting loads are added in between.
-enum class PairSubset { all, ordered, own };
+/// Pairs that a loop goes over: those of the list, or copies of pairs of another thread (ForeignPairs).
+enum class PairSource { list, foreign };
 
 /// Finds the touching pairs of a block and brings all that a law asks for into rows. kTraits: what laws of this kind
 /// ask for.
-template <int D, LawTraits kTraits, Geometry kGeometry, bool kPeriodic, PairSubset kSubset>
+template <int D, LawTraits kTraits, Geometry kGeometry, bool kPeriodic, PairSource kSource>
 class Gatherer {
  public:
   Gatherer(System<D>& s, const Kernel<D>& kernel, const PairRange& range, const BlockPass<D>& pass)
       : s_(s), list_(s.contacts), kernel_(kernel), range_(range), pass_(pass), images_(s.cell) {}
 
  protected:
-  static constexpr bool kOrdered = kSubset == PairSubset::ordered;
+  static constexpr bool kForeign = kSource == PairSource::foreign;
   static constexpr bool kSumsUp =
       kTraits.is_multi_contact && !kTraits.has_tangential;  ///< the first half of a particle pass
 
   static std::size_t u(std::int32_t k) { return static_cast<std::size_t>(k); }
 
-  /// Place in the list of number k of the range.
-  [[nodiscard]] std::int32_t place_of(std::int32_t k) const {
-    if constexpr (!kOrdered) return k;
-    return range_.at(k);
+  // What is known of pairs, by their places in the list or numbers among the foreign ones.
+  [[nodiscard]] const std::vector<Slot>& first_bodies() const {
+    if constexpr (kForeign)
+      return pass_.foreign->i;
+    else
+      return list_.i;
+  }
+  [[nodiscard]] const std::vector<Slot>& second_bodies() const {
+    if constexpr (kForeign)
+      return pass_.foreign->j;
+    else
+      return list_.j;
+  }
+  [[nodiscard]] const std::int32_t* images() const {
+    if constexpr (kForeign)
+      return pass_.foreign->image.data();
+    else
+      return list_.image.data();
+  }
+  [[nodiscard]] const PairConstants* constants() const {
+    if constexpr (kForeign)
+      return pass_.foreign->constants.data();
+    else
+      return list_.constants.data();
+  }
+  /// Histories.
+  [[nodiscard]] const auto& histories() const {
+    if constexpr (kForeign)
+      return *pass_.foreign;
+    else
+      return list_;
+  }
+  /// Place in the list.
+  [[nodiscard]] std::size_t place_of(std::size_t c) const {
+    if constexpr (kForeign)
+      return u(pass_.foreign->place[c]);
+    else
+      return c;
   }
 
   // Arrays are taken by local pointers in all loops: otherwise every store makes the compiler load them again.
@@ -69,30 +102,19 @@ class Gatherer {
     }
   }
 
-  /// One bit for each of four pairs from place k on that is lent.
-  [[nodiscard]] int lent([[maybe_unused]] std::int32_t k) const {
-    int bits = 0;
-    if constexpr (kSubset == PairSubset::own) {
-      std::uint32_t flags = 0;
-      std::memcpy(&flags, pass_.lent + k, sizeof flags);
-      if (flags != 0)
-        for (int l = 0; l < 4; ++l) bits |= static_cast<int>(flags >> (8 * l) & 1U) << l;
-    }
-    return bits;
-  }
-
   /// Branch vector and the fourth number of every pair, and which touch. No branch depends on that: about one pair in
   /// three does, which no processor can guess.
   // NOLINTNEXTLINE(readability-function-size): one hot loop
   [[gnu::always_inline]] void find_touching(std::int32_t begin, std::int32_t end) {
-    const Slot* const first = list_.i.data();
-    const Slot* const second = list_.j.data();
+    const Slot* const first = first_bodies().data();
+    const Slot* const second = second_bodies().data();
     const Sphere<D>* const spheres = s_.particles.sphere.data();
+    [[maybe_unused]] const std::int32_t* const image = images();
     const auto branch_of = [&](std::int32_t c) {
       const Quad a = place(spheres[u(first[c])]);
       const Quad b = place(spheres[u(second[c])]);
       Quad d = a - b;
-      if constexpr (kPeriodic) d -= images_.shift[u(list_.image[u(c)])];
+      if constexpr (kPeriodic) d -= images_.shift[u(image[c])];
       if constexpr (kGeometry == Geometry::sphere_sphere) return with_fourth(d, a + b);
       return with_fourth(d, kGeometry == Geometry::sphere_shell ? b - a : a);
     };
@@ -108,7 +130,6 @@ class Gatherer {
     Quad* const record = block_.record.data();
     [[maybe_unused]] Quad* const upright = block_.upright_record.data();
     std::int32_t* const pair = block_.pair.data();
-    [[maybe_unused]] std::int32_t* const number = block_.number.data();
     int n = 0;
     for (std::int32_t k = begin; k < end; k += 4) {
       const int valid = std::min(end - k, 4);
@@ -116,26 +137,22 @@ class Gatherer {
       std::array<Quad, 4> normal{};
       std::array<std::int32_t, 4> c;
       for (int l = 0; l < 4; ++l) {
-        c[u(l)] = place_of(std::min(k + l, end - 1));
+        c[u(l)] = std::min(k + l, end - 1);
         d[u(l)] = branch_of(c[u(l)]);
         if constexpr (kGeometry == Geometry::sphere_plane) normal[u(l)] = upright_of(c[u(l)]);
       }
       std::array<Quad, 4> t = d;
       transpose(t[0], t[1], t[2], t[3]);
-      const int here = ((1 << valid) - 1) & ~lent(k);
+      const int here = (1 << valid) - 1;
       const int touch = ~apart(t, normal) & here;
       for (int l = 0; l < 4; ++l) {
         record[n] = d[u(l)];
         pair[n] = c[u(l)];
         if constexpr (kGeometry == Geometry::sphere_plane) upright[n] = normal[u(l)];
-        if constexpr (kOrdered) number[n] = k + l;
         n += touch >> l & 1;
       }
       if (far_) fetch_ahead(c);
-      if constexpr (kTraits.has_tangential) note_touch(c, here, touch);
-      if constexpr (kOrdered)
-        if (pass_.touches != nullptr)
-          for (int l = 0; l < valid; ++l) pass_.touches[k + l] = static_cast<std::uint8_t>(touch >> l & 1);
+      if constexpr (kTraits.has_tangential && !kForeign) note_touch(c, here, touch);
     }
     block_.touching = n;
     for (int pad = n; n > 0 && pad < n + 8; ++pad) {  // lanes without a contact repeat the last one
@@ -154,8 +171,8 @@ class Gatherer {
   [[gnu::always_inline]] void fetch_ahead(const std::array<std::int32_t, 4>& c) const {
     constexpr std::size_t kLater = 32;
     const auto& p = s_.particles;
-    const Slot* const second = list_.j.data();
-    const std::size_t last = list_.j.size() - 1;
+    const Slot* const second = second_bodies().data();
+    const std::size_t last = second_bodies().size() - 1;
     for (std::size_t l = 0; l < 4; ++l) {
       const std::size_t place = u(c[l]);
       const std::size_t j = u(second[place]);
@@ -173,6 +190,7 @@ class Gatherer {
             __builtin_prefetch(&list_.particle_sum[j].second[1], kSumsUp ? 1 : 0);
         }
     }
+    if constexpr (kForeign) return;
     const std::size_t place = u(c[0]);
     __builtin_prefetch(&list_.constants[place]);
     if constexpr (kTraits.has_tangential) {
@@ -190,17 +208,15 @@ class Gatherer {
       return;
     }
     std::uint8_t* const touched = list_.touched.data();
-    if constexpr (!kOrdered) {
-      if (here == 15) {  // four flags in one word, which seldom changes
-        std::uint32_t old = 0;
-        std::memcpy(&old, touched + c[0], sizeof old);
-        const std::uint32_t now = kFlags[u(touch)];
-        if (old == now) return;
-        std::memcpy(touched + c[0], &now, sizeof now);
-        for (int l = 0; l < 4; ++l)
-          if ((old & ~now) >> (8 * l) & 1U) forget(list_.spring, list_.memory, list_.roll, u(c[u(l)]));
-        return;
-      }
+    if (here == 15) {  // four flags in one word, which seldom changes
+      std::uint32_t old = 0;
+      std::memcpy(&old, touched + c[0], sizeof old);
+      const std::uint32_t now = kFlags[u(touch)];
+      if (old == now) return;
+      std::memcpy(touched + c[0], &now, sizeof now);
+      for (int l = 0; l < 4; ++l)
+        if ((old & ~now) >> (8 * l) & 1U) forget(list_.spring, list_.memory, list_.roll, u(c[u(l)]));
+      return;
     }
     for (int l = 0; l < 4; ++l) {
       if ((here >> l & 1) == 0) continue;
@@ -223,14 +239,16 @@ class Gatherer {
   /// Gathers records into rows, four contacts at a time.
   [[gnu::always_inline]] void gather() {
     const auto& p = s_.particles;
-    const Slot* const first = list_.i.data();
-    const Slot* const second = list_.j.data();
+    const Slot* const first = first_bodies().data();
+    const Slot* const second = second_bodies().data();
     const Sphere<D>* const spheres = p.sphere.data();
     const MultiContactSum<D>* const sums = list_.particle_sum.data();
     const Stored<D>* const velocities = p.velocity.data();
     const StoredRot<D>* const spins = p.spin.data();
-    const Stored<D>* const springs = list_.spring.data();
-    const PairConstants* const all_constants = list_.constants.data();
+    const auto& history = histories();
+    const Stored<D>* const springs = history.spring.data();
+    [[maybe_unused]] const std::int32_t* const image = images();
+    const PairConstants* const all_constants = constants();
     for (int g = 0; g < block_.touching; g += 4) {
       std::array<Quad, 4> branch, motion, spin_i, spin_j, spring, normal, roll;
       [[maybe_unused]] std::array<const MultiContactSum<D>*, 4> sum_i, sum_j;
@@ -243,24 +261,24 @@ class Gatherer {
         if constexpr (kTraits.needs_velocity || kTraits.is_multi_contact) block_.b.v[u(g) + l] = all_constants[c].b;
         if constexpr (kTraits.needs_velocity) {
           motion[l] = quad_of(velocities[i]) - quad_of(velocities[j]);
-          if constexpr (kPeriodic) motion[l] -= images_.velocity[u(list_.image[c])];
+          if constexpr (kPeriodic) motion[l] -= images_.velocity[u(image[c])];
         }
         if constexpr (kTraits.has_tangential) {
           spin_i[l] = with_fourth(quad_of(spins[i]), place(spheres[i]));
           spin_j[l] = with_fourth(quad_of(spins[j]), place(spheres[j]));
           spring[l] = quad_of(springs[c]);
         }
-        if constexpr (kRolls) roll[l] = quad_of(list_.roll[c]);
+        if constexpr (kRolls) roll[l] = quad_of(history.roll[c]);
         if constexpr (kSumsUp) {
           block_.radius_i.v[u(g) + l] = spheres[i].r;
           block_.radius_j.v[u(g) + l] = spheres[j].r;
         }
-        if constexpr (kTraits.has_memory) block_.memory.v[u(g) + l] = list_.memory[c];
+        if constexpr (kTraits.has_memory) block_.memory.v[u(g) + l] = history.memory[c];
         if constexpr (kTraits.needs_particle_pass) {
           sum_i[l] = &sums[i];
           sum_j[l] = &sums[j];
-          if (kernel_.sums.i) block_.lost_i.v[u(g) + l] = list_.lost_i[c];
-          if (kernel_.sums.j) block_.lost_j.v[u(g) + l] = list_.lost_j[c];
+          if (kernel_.sums.i) block_.lost_i.v[u(g) + l] = list_.lost_i[place_of(c)];
+          if (kernel_.sums.j) block_.lost_j.v[u(g) + l] = list_.lost_j[place_of(c)];
         }
         if constexpr (kGeometry == Geometry::sphere_plane) normal[l] = block_.upright_record[u(g) + l];
       }

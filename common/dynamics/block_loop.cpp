@@ -11,10 +11,10 @@ namespace {
 using namespace block;
 
 /// Forces of a range of pairs.
-template <int D, LawTraits kTraits, Geometry kGeometry, bool kPeriodic, PairSubset kSubset>
-class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kSubset> {
-  using Base = Gatherer<D, kTraits, kGeometry, kPeriodic, kSubset>;
-  using Base::block_, Base::list_, Base::pass_, Base::s_, Base::u, Base::kRolls;
+template <int D, LawTraits kTraits, Geometry kGeometry, bool kPeriodic, PairSource kSource>
+class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kSource> {
+  using Base = Gatherer<D, kTraits, kGeometry, kPeriodic, kSource>;
+  using Base::block_, Base::list_, Base::pass_, Base::s_, Base::u, Base::kRolls, Base::kForeign;
 
  public:
   using Base::Base;
@@ -25,9 +25,9 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kSubset> {
       this->find_touching(k, std::min(k + kBlock, range.end));
       if (block_.touching == 0) continue;
       this->gather();
-      this->kernel_(pass_.dt, pass_.stiffness != nullptr || pass_.stiffnesses != nullptr, block_);
-      if (pass_.loads != nullptr)
-        put_down();
+      this->kernel_(pass_.dt, pass_.stiffness != nullptr, block_);
+      if (kForeign && pass_.forces != nullptr)
+        store_forces();
       else if (pass_.stiffness != nullptr)
         scatter<true>();
       else
@@ -36,12 +36,22 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kSubset> {
   }
 
  private:
-  /// Rows become records again and go to the bodies in the order of the range. Of walls, which many contacts in a row
-  /// share, the sums stay at hand.
+  /// Rows become records again and go to the bodies of this thread in the order of the range. Of walls, which many
+  /// contacts in a row share, the sums stay at hand.
   template <bool kStiffness>
   void scatter() {
-    const Slot* const first = list_.i.data();
-    const Slot* const second = list_.j.data();
+    if (kForeign || pass_.part.owner == nullptr)
+      scatter_to<kStiffness, !kForeign>([](std::size_t) { return true; });
+    else
+      scatter_to<kStiffness, true>([split = pass_.part.split](std::size_t c) { return split[c] == 0; });
+    if (pass_.virial != nullptr) add_virial(*pass_.virial);
+  }
+
+  /// `mine`: whether the second body of the contact at a place is of this thread.
+  template <bool kStiffness, bool kFirst, class Mine>
+  void scatter_to(const Mine& mine) {
+    const Slot* const first = this->first_bodies().data();
+    const Slot* const second = this->second_bodies().data();
     Stored<D>* const forces = s_.particles.force.data();
     StoredRot<D>* const torques = s_.particles.torque.data();
     [[maybe_unused]] Slot wall = -1;
@@ -53,20 +63,19 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kSubset> {
       wall = -1;
     };
     for_records([&](int k, std::size_t c, Quad force, Quad moment) {
-      if constexpr (kSubset != PairSubset::all)
-        if (pass_.waiting != nullptr && pass_.waiting->next < static_cast<std::int32_t>(c)) {
-          if constexpr (kWalls) let_go();
-          pass_.waiting->add_before(static_cast<std::int32_t>(c));
-        }
       const std::size_t i = u(first[c]);
       const std::size_t j = u(second[c]);
+      const bool to_second = mine(c);
       if constexpr (kStiffness) {
-        const ContactStiffness stiffness = stiffness_of(k);
-        add_first(stiffness, i, *pass_.stiffness);
-        add_second(stiffness, j, *pass_.stiffness);
+        if constexpr (kFirst) add_stiffness_to_first(k, i);
+        if (to_second) add_stiffness_to_second(k, j);
       }
-      store(forces[i], quad_of(forces[i]) + force);
-      if constexpr (kTraits.has_tangential) store(torques[i], quad_of(torques[i]) - moment * block_.arm_i.v[k]);
+      if constexpr (kFirst) {
+        store(forces[i], quad_of(forces[i]) + force);
+        if constexpr (kTraits.has_tangential) store(torques[i], quad_of(torques[i]) - moment * block_.arm_i.v[k]);
+        if constexpr (kTraits.has_rolling) add_rolling(k, 1.0, torques[i]);
+      }
+      if (!to_second) return;
       if constexpr (kWalls) {
         if (wall != second[c]) {
           let_go();
@@ -82,33 +91,40 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kSubset> {
       }
       if constexpr (kTraits.has_rolling) {
         if constexpr (kWalls) let_go();
-        if constexpr (kRolls) {
-          for (std::size_t a = 0; a < D; ++a) {
-            torques[i][static_cast<int>(a)] += block_.roll_moment[a].v[k];
-            torques[j][static_cast<int>(a)] -= block_.roll_moment[a].v[k];
-          }
-        } else {
-          torques[i][0] += block_.rolling.v[k];
-          torques[j][0] -= block_.rolling.v[k];
-        }
+        add_rolling(k, -1.0, torques[j]);
       }
     });
     if constexpr (kWalls) let_go();
-    if (pass_.virial != nullptr) add_virial(*pass_.virial);
   }
 
-  /// Stiffness of contact number k of the block.
-  [[nodiscard]] ContactStiffness stiffness_of(int k) const {
-    ContactStiffness out{block_.stiffness.v[k], 0.0, 0.0, std::abs(block_.normal_force.v[k])};
-    if constexpr (kTraits.has_tangential) {
-      out.rotation_i = block_.tangential_stiffness.v[k] * block_.arm_i.v[k] * block_.arm_i.v[k];
-      out.rotation_j = block_.tangential_stiffness.v[k] * block_.arm_j.v[k] * block_.arm_j.v[k];
-    }
+  /// The moment of rolling resistance of contact number k of the block, with its sign on the body.
+  void add_rolling(int k, double sign, StoredRot<D>& torque) const {
     if constexpr (kRolls) {
-      out.rotation_i += block_.rolling_stiffness.v[k];
-      out.rotation_j += block_.rolling_stiffness.v[k];
+      for (std::size_t a = 0; a < D; ++a) torque[static_cast<int>(a)] += sign * block_.roll_moment[a].v[k];
+    } else if constexpr (kTraits.has_rolling) {
+      torque[0] += sign * block_.rolling.v[k];
     }
-    return out;
+  }
+
+  /// Rotational stiffness of contact number k of the block for a body with this arm.
+  [[nodiscard]] double rotation_of(int k, [[maybe_unused]] double arm) const {
+    double rotation = 0.0;
+    if constexpr (kTraits.has_tangential) rotation = block_.tangential_stiffness.v[k] * arm * arm;
+    if constexpr (kRolls) rotation += block_.rolling_stiffness.v[k];
+    return rotation;
+  }
+  void add_stiffness_to_first(int k, std::size_t body) const {
+    BodyStiffness& to = *pass_.stiffness;
+    const double force = std::abs(block_.normal_force.v[k]);
+    to.translation[body] += block_.stiffness.v[k];
+    to.rotation[body] += rotation_of(k, block_.arm_i.v[k]);
+    to.force[body] += force;
+    to.contacts[body] += force != 0.0 ? 1 : 0;
+  }
+  void add_stiffness_to_second(int k, std::size_t body) const {
+    BodyStiffness& to = *pass_.stiffness;
+    to.translation[body] += block_.stiffness.v[k];
+    to.rotation[body] += rotation_of(k, block_.arm_j.v[k]);
   }
 
   void add_virial(Vec<D>& out) {
@@ -117,33 +133,15 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kSubset> {
         out[a] += block_.force[static_cast<std::size_t>(a)].v[k] * block_.branch[static_cast<std::size_t>(a)].v[k];
   }
 
-  /// Stores the loads of the contacts, for bodies of other threads.
-  void put_down() {
-    for_records([&](int k, std::size_t, Quad force, Quad moment) {
-      ContactLoad& load = pass_.loads[block_.number[u(k)]];
-      if (pass_.stiffnesses != nullptr) pass_.stiffnesses[block_.number[u(k)]] = stiffness_of(k);
-      if constexpr (kTraits.has_tangential) {
-        force[3] = block_.arm_i.v[k];
-        moment[3] = block_.arm_j.v[k];
-      } else {
-        force[3] = 0.0;
-      }
-      if constexpr (kRolls) {
-        ContactRoll& roll = pass_.rolls[block_.number[u(k)]];
-        for (std::size_t a = 0; a < D; ++a) roll.moment[a] = block_.roll_moment[a].v[k];
-      } else if constexpr (kTraits.has_rolling) {
-        moment[1] = block_.rolling.v[k];
-      }
-      store_quad(load.force, force);
-      store_quad(load.moment, moment);
-    });
+  void store_forces() {
+    for_records([&](int, std::size_t c, Quad force, Quad) { store(pass_.forces[c], force); });
   }
 
-  /// work(number in the block, place in the list, force, moment) for every touching pair; keeps the new history.
+  /// work(number in the block, place of the pair, force, moment) for every touching pair; keeps the new history.
   template <class Work>
   void for_records(Work&& work) {
     const bool next = pass_.history == History::next;
-    const bool keep = pass_.history != History::none;
+    const bool keep = !kForeign && pass_.history != History::none;
     Stored<D>* const springs = next ? list_.spring_next.data() : list_.spring.data();
     double* const memories = next ? list_.memory_next.data() : list_.memory.data();
     [[maybe_unused]] Stored<D>* const rolls = next ? list_.roll_next.data() : list_.roll.data();
@@ -180,23 +178,61 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kSubset> {
 };
 template <int D, LawTraits kTraits, Geometry kGeometry>
 void run_loop(System<D>& s, const Kernel<D>& kernel, const PairRange& range, const BlockPass<D>& pass) {
-  const auto run = [&]<PairSubset kSubset>(auto periodic) {
-    Loop<D, kTraits, kGeometry, decltype(periodic)::value, kSubset>(s, kernel, range, pass).run();
+  const auto run = [&]<PairSource kSource>(auto periodic) {
+    Loop<D, kTraits, kGeometry, decltype(periodic)::value, kSource>(s, kernel, range, pass).run();
   };
-  const auto with_order = [&](auto periodic) {
-    if (range.order != nullptr)
-      run.template operator()<PairSubset::ordered>(periodic);
-    else if (pass.lent != nullptr)
-      run.template operator()<PairSubset::own>(periodic);
+  const auto from_source = [&](auto periodic) {
+    if (pass.foreign != nullptr)
+      run.template operator()<PairSource::foreign>(periodic);
     else
-      run.template operator()<PairSubset::all>(periodic);
+      run.template operator()<PairSource::list>(periodic);
   };
   if constexpr (kGeometry != Geometry::sphere_plane)
-    if (s.cell.any_periodic()) return with_order(std::true_type{});
-  with_order(std::false_type{});
+    if (s.cell.any_periodic()) return from_source(std::true_type{});
+  from_source(std::false_type{});
 }
 
 }  // namespace
+
+template <int D>
+void ForeignPairs<D>::clear() {
+  place.clear();
+  i.clear();
+  j.clear();
+  image.clear();
+  constants.clear();
+}
+
+template <int D>
+void ForeignPairs<D>::add(const ContactList<D>& list, std::int32_t at) {
+  const auto c = static_cast<std::size_t>(at);
+  place.push_back(at);
+  i.push_back(list.i[c]);
+  j.push_back(list.j[c]);
+  image.push_back(list.image[c]);
+  constants.push_back(list.constants[c]);
+}
+
+template <int D>
+void ForeignPairs<D>::copy_histories(const ContactList<D>& list) {
+  const auto copy = [&](const auto& from, auto& to) {
+    if (from.empty()) return;
+    to.resize(place.size());
+    for (std::size_t n = 0; n < place.size(); ++n) {
+      const auto c = static_cast<std::size_t>(place[n]);
+      if (list.touched[c] != 0)  // else known to be empty
+        to[n] = from[c];
+      else
+        to[n] = {};
+    }
+  };
+  copy(list.spring, spring);
+  copy(list.memory, memory);
+  copy(list.roll, roll);
+}
+
+template struct ForeignPairs<2>;
+template struct ForeignPairs<3>;
 
 void BodyStiffness::clear(std::size_t bodies) {
   translation.assign(bodies, 0.0);
@@ -213,18 +249,6 @@ double BodyStiffness::mean_force() const {
     many += contacts[u];
   }
   return many > 0 ? sum / static_cast<double>(many) : 0.0;
-}
-
-void add_first(const ContactStiffness& of, std::size_t body, BodyStiffness& to) {
-  to.translation[body] += of.translation;
-  to.rotation[body] += of.rotation_i;
-  to.force[body] += of.force;
-  to.contacts[body] += of.force != 0.0 ? 1 : 0;
-}
-
-void add_second(const ContactStiffness& of, std::size_t body, BodyStiffness& to) {
-  to.translation[body] += of.translation;
-  to.rotation[body] += of.rotation_j;
 }
 
 template <int D>

@@ -10,30 +10,6 @@
 
 namespace softgrain {
 
-/// Force and moment of a contact, stored for bodies that another thread owns.
-struct alignas(64) ContactLoad {
-  double force[3];   ///< force on i [N]
-  double arm_i;      ///< [m]
-  double moment[3];  ///< moment for a unit arm along the normal [N]; in 2D moment[0] alone, and moment[1] is that of
-                     ///< rolling [N m]
-  double arm_j;      ///< [m]
-};
-
-/// Moment of rolling resistance of a contact in space, stored for bodies that another thread owns.
-struct ContactRoll {
-  double moment[3];  ///< moment on i [N m]
-};
-
-/// Loads that wait to be added to bodies, in list order.
-class WaitingLoads {
- public:
-  virtual ~WaitingLoads() = default;
-  /// Place in the list of the next one; beyond every place when there is none.
-  std::int32_t next = 0;
-  /// Adds all that stand before place `c`.
-  virtual void add_before(std::int32_t c) = 0;
-};
-
 /// Sums of contact stiffness per body, for mass scaling and step control, and the mean contact force of the same pass.
 struct BodyStiffness {
   std::vector<double> translation;  ///< sum of kn + kt over the contacts of a body [N/m]
@@ -46,36 +22,49 @@ struct BodyStiffness {
   [[nodiscard]] double mean_force() const;
 };
 
-/// What a contact adds to the sums of BodyStiffness, stored for bodies that another thread owns.
-struct ContactStiffness {
-  double translation;  ///< kn + kt [N/m]
-  double rotation_i;   ///< [N m]
-  double rotation_j;   ///< [N m]
-  double force;        ///< |normal force| [N]
+/// The part of a pass that one of several threads does: it evaluates every pair with a body of its own, and adds to
+/// that body alone.
+struct ThreadPart {
+  const std::uint8_t* owner = nullptr;  ///< thread of every body; null: all bodies are of this thread
+  const std::uint8_t* split = nullptr;  ///< flag per place in the list, 1: the bodies of the pair have two owners
+  std::uint8_t thread = 0;
 };
 
-/// Adds what a contact has to its first and second body.
-void add_first(const ContactStiffness& of, std::size_t body, BodyStiffness& to);
-void add_second(const ContactStiffness& of, std::size_t body, BodyStiffness& to);
+/// Pairs of a section whose first bodies and histories are not this thread's: copies of what a pass asks for, one
+/// beside the other, so that the lists of other threads are left alone.
+template <int D>
+struct ForeignPairs {
+  std::vector<std::int32_t> place;  ///< in the list
+  std::vector<Slot> i;
+  std::vector<Slot> j;
+  std::vector<std::int32_t> image;
+  std::vector<PairConstants> constants;
+  std::vector<Stored<D>> spring;  ///< committed histories
+  std::vector<double> memory;
+  std::vector<Stored<D>> roll;
+
+  void clear();
+  void add(const ContactList<D>& list, std::int32_t at);
+  /// Takes over the committed histories.
+  void copy_histories(const ContactList<D>& list);
+};
 
 /// What a pass over contacts does beside the forces.
 template <int D>
 struct BlockPass {
   double dt = 0.0;  ///< since the history was committed [s]
   History history = History::next;
-  ContactLoad* loads =
-      nullptr;  ///< when there, bodies are left alone: the load of pair k of the range goes to loads[k]
-  ContactRoll* rolls = nullptr;  ///< gets the moment of pair k at rolls[k], for laws with rolling resistance in space
-  std::uint8_t* touches = nullptr;          ///< gets at touches[k] whether pair k touches
-  WaitingLoads* waiting = nullptr;          ///< added in between, in list order
-  const std::uint8_t* lent = nullptr;       ///< one flag per place in the list, 1: pairs of the range that are left out
-  BodyStiffness* stiffness = nullptr;       ///< gets the sums of what goes to the bodies
-  ContactStiffness* stiffnesses = nullptr;  ///< stored with the loads
-  Vec<D>* virial = nullptr;                 ///< sum over contacts of force times branch, per axis [N m]
+  ThreadPart part{};
+  const ForeignPairs<D>* foreign = nullptr;  ///< when there, ranges go over these pairs: second bodies alone get loads
+  Stored<D>* forces = nullptr;  ///< goes with `foreign`: bodies are left alone, and the force on the first body of pair
+                                ///< k goes to forces[k] if the pair touches
+  BodyStiffness* stiffness = nullptr;  ///< gets the sums of what goes to the bodies
+  Vec<D>* virial = nullptr;            ///< sum over contacts of force times branch, per axis [N m]
 };
 
 /// Adds the forces and torques of some pairs of a section to their bodies, in the order of the range, and treats their
-/// history as asked. Pairs that do not touch lose theirs.
+/// history as asked. Pairs that do not touch lose theirs. First bodies must be of the thread, but those of foreign
+/// pairs.
 template <int D>
 void block_loop(System<D>& system, const ContactSection& section, const PairRange& range, const BlockPass<D>& pass);
 

@@ -129,13 +129,11 @@ void ContactVirial<D>::find_across(const System<D>& s) {
   for (std::size_t k = 0; k < s.contacts.sections.size(); ++k) {
     Across across{k, {}};
     for (std::int32_t c = s.contacts.sections[k].begin; c < s.contacts.sections[k].end; ++c)
-      if (s.contacts.image[static_cast<std::size_t>(c)] != home_image<D>()) across.places.push_back(c);
-    most = std::max(most, across.places.size());
-    if (!across.places.empty()) across_.push_back(std::move(across));
+      if (s.contacts.image[static_cast<std::size_t>(c)] != home_image<D>()) across.pairs.add(s.contacts, c);
+    most = std::max(most, across.pairs.place.size());
+    if (!across.pairs.place.empty()) across_.push_back(std::move(across));
   }
-  loads_.resize(most);
-  rolls_.resize(most);
-  touches_.resize(most);
+  forces_.resize(most);
   build_ = s.contacts.build;
 }
 
@@ -147,20 +145,17 @@ Vec<D> ContactVirial<D>::of(System<D>& s) {
     for (int k = 0; k < D; ++k) sum[k] += p.force[u][k] * p.sphere[u].x[k];
   if (!s.cell.any_periodic()) return sum;
   if (build_ != s.contacts.build) find_across(s);
-  for (const Across& a : across_) {
-    const PairRange range{0, static_cast<std::int32_t>(a.places.size()), a.places.data()};
-    block_loop<D>(s, s.contacts.sections[a.section], range,
-                  {.dt = 0.0,
-                   .history = History::none,
-                   .loads = loads_.data(),
-                   .rolls = rolls_.data(),
-                   .touches = touches_.data()});
-    for (std::size_t n = 0; n < a.places.size(); ++n) {
-      if (touches_[n] == 0) continue;
-      const Vec<D> shift = s.cell.image_shift(s.contacts.image[static_cast<std::size_t>(a.places[n])]);
-      for (int k = 0; k < D; ++k) sum[k] -= loads_[n].force[k] * shift[k];
+  for (Across& a : across_) {
+    const std::size_t many = a.pairs.place.size();
+    a.pairs.copy_histories(s.contacts);
+    std::fill_n(forces_.begin(), many, Stored<D>{});
+    block_loop<D>(s, s.contacts.sections[a.section], {0, static_cast<std::int32_t>(many)},
+                  {.dt = 0.0, .history = History::none, .foreign = &a.pairs, .forces = forces_.data()});
+    for (std::size_t n = 0; n < many; ++n) {
+      const Vec<D> shift = s.cell.image_shift(a.pairs.image[n]);
+      for (int k = 0; k < D; ++k) sum[k] -= forces_[n][k] * shift[k];
     }
-    s.cost.contact_evaluations += static_cast<std::int64_t>(a.places.size());
+    s.cost.contact_evaluations += static_cast<std::int64_t>(many);
   }
   return sum;
 }

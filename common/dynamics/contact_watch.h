@@ -45,15 +45,13 @@ class ContactVirial {
  private:
   struct Across {
     std::size_t section = 0;
-    std::vector<std::int32_t> places;  ///< places of the contacts in the list
+    ForeignPairs<D> pairs;
   };
   void find_across(const System<D>& system);
 
   std::uint64_t build_ = 0;
   std::vector<Across> across_;
-  std::vector<ContactLoad> loads_;
-  std::vector<ContactRoll> rolls_;
-  std::vector<std::uint8_t> touches_;
+  std::vector<Stored<D>> forces_;  ///< forces on first bodies
 };
 
 }  // namespace softgrain

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
+#include <numeric>
 #include <vector>
 
 #include "common/dynamics/block_loop.h"
@@ -16,238 +16,208 @@ namespace softgrain {
 
 namespace {
 
-/// A pair whose load another thread, or this one, has stored, and one of its bodies here.
-struct Waiting {
-  std::int32_t place = 0;  ///< place of the pair in the list
-  std::int32_t thread = 0;
-  std::int32_t number = 0;
-  bool first = false;  ///< the body here is the first of the pair
+/// Consecutive pairs of one section that concern a thread.
+struct Segment {
+  std::int32_t begin = 0;  ///< places in the list; with `foreign` numbers among the foreign pairs
+  std::int32_t end = 0;
+  bool foreign = false;  ///< the second body alone is the thread's
 };
 
-/// Pairs of one section that concern one thread.
+/// What a thread does in one section.
+template <int D>
 struct Share {
-  std::vector<std::int32_t> inner;   ///< places in the list of pairs whose bodies are both the thread's
-  std::vector<PairRange> touching;   ///< stretches of the list that hold all pairs with a body of the thread
-  std::vector<PairRange> stretches;  ///< stretches that hold all of inner, else only pairs of two threads
-  std::vector<std::int32_t> outer;   ///< places of the pairs with bodies of two threads that this thread evaluates
-  std::vector<ContactLoad> loads;    ///< loads of the outer pairs
-  std::vector<ContactRoll> rolls;    ///< rolling moments of the outer pairs, in space where a law has them
-  std::vector<ContactStiffness> stiffnesses;  ///< stiffnesses of the outer pairs, where they have been asked for
-  std::vector<std::uint8_t> touches;          ///< whether each outer pair touches
-  std::vector<Waiting> waiting;               ///< bodies here of all pairs whose loads were stored, in list order
-
-  void clear() {
-    inner.clear();
-    touching.clear();
-    stretches.clear();
-    outer.clear();
-    waiting.clear();
-  }
+  std::vector<Segment> segments;  ///< in list order
+  ForeignPairs<D> foreign;        ///< pairs whose second body alone is the thread's
 };
 
 /// Who does what, good for one list and number of threads.
+template <int D>
 struct Plan {
   ThreadPace pace;
   std::uint64_t build = 0;
-  bool rolls = false;               ///< some law of the scene has rolling resistance
-  bool shares_sums = false;         ///< the particle pass goes by threads: they find their pairs in long stretches
   std::vector<std::uint8_t> owner;  ///< thread of every body
+  std::vector<std::uint8_t> split;  ///< flag per place in the list, 1: the bodies of the pair have two owners
   std::vector<std::vector<BodyRange>> bodies;  ///< bodies of each thread, as stretches
-  std::vector<std::uint8_t> lent;              ///< flag per place in the list, 1: the pair has bodies of two threads
-  std::vector<std::vector<Share>> shares;      ///< [thread][section]
+  std::vector<std::vector<Share<D>>> shares;   ///< [thread][section]
+  std::vector<std::vector<Slot>> neighbours;   ///< bodies of other threads that pairs of each thread reach
 };
 
-/// Stretches of the space-filling curve with the given shares of all pairs. Grains of a large scene lie along it, size
-/// class by size class: what a thread owns is a few ranges of slots, and its pairs are neighbours in the list. Walls
-/// belong to the first thread.
-template <int D>
-std::vector<std::uint8_t> owners_of(const System<D>& s, const std::vector<double>& share) {
-  const std::vector<std::uint16_t> part = curve_parts(s);
-  std::vector<std::int64_t> pairs(kCurveParts, 0);
-  for (const Slot i : s.contacts.i) ++pairs[part[at(i)]];
-  std::vector<std::uint8_t> thread_of(kCurveParts, 0);
-  double left = share.front() * static_cast<double>(s.contacts.i.size());
+/// Threads of consecutive parts of the pairs, for numbers of pairs in a row of groups.
+std::vector<std::uint8_t> threads_of(const std::vector<std::int64_t>& pairs, const std::vector<double>& share) {
+  double all = 0.0;
+  for (const std::int64_t here : pairs) all += static_cast<double>(here);
+  std::vector<std::uint8_t> thread_of(pairs.size(), 0);
+  double left = share.front() * all;
   std::size_t thread = 0;
-  for (std::size_t b = 0; b < kCurveParts; ++b) {
-    const auto here = static_cast<double>(pairs[b]);
-    while (thread + 1 < share.size() && left < 0.5 * here)
-      left += share[++thread] * static_cast<double>(s.contacts.i.size());
-    thread_of[b] = static_cast<std::uint8_t>(thread);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const auto here = static_cast<double>(pairs[k]);
+    while (thread + 1 < share.size() && left < 0.5 * here) left += share[++thread] * all;
+    thread_of[k] = static_cast<std::uint8_t>(thread);
     left -= here;
   }
-  std::vector<std::uint8_t> owner(s.particles.sphere.size(), 0);
-  for (std::size_t u = 0; u < part.size(); ++u) owner[u] = thread_of[part[u]];
+  return thread_of;
+}
+
+/// Threads of bodies in groups that lie in a row: each gets its share of all evaluations, those of pairs of two threads
+/// counted twice.
+template <int D, class Group>
+std::vector<std::uint8_t> owners_of(const System<D>& s, const std::vector<Group>& group, std::size_t groups,
+                                    const std::vector<double>& share) {
+  std::vector<std::uint8_t> thread_of;
+  constexpr int kRounds = 2;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<std::int64_t> pairs(groups, 0);
+    for (std::size_t c = 0; c < s.contacts.i.size(); ++c) {
+      const auto first = static_cast<std::size_t>(group[at(s.contacts.i[c])]);
+      const auto second = static_cast<std::size_t>(group[at(s.contacts.j[c])]);
+      ++pairs[first];
+      if (!thread_of.empty() && thread_of[first] != thread_of[second]) ++pairs[second];
+    }
+    thread_of = threads_of(pairs, share);
+  }
+  std::vector<std::uint8_t> owner(group.size());
+  for (std::size_t u = 0; u < owner.size(); ++u) owner[u] = thread_of[static_cast<std::size_t>(group[u])];
   return owner;
 }
 
-/// Stretches of bodies of each thread. Empty where bodies do not lie in spatial order, so that stretches are short.
+/// Grains of one size class lie along the curve as they were put in order; since then some have crossed the border
+/// between two threads. Every thread keeps its number of grains of each class, and gets them in a row: pairs of a
+/// thread lie in few stretches of the list.
+template <int D>
+void put_in_rows(const Particles<D>& p, std::size_t threads, std::vector<std::uint8_t>& owner) {
+  const auto grains = static_cast<std::size_t>(p.grains);
+  double smallest = p.sphere[0].r;
+  for (std::size_t u = 1; u < grains; ++u) smallest = std::min(smallest, p.sphere[u].r);
+  std::vector<std::size_t> many(threads);
+  for (std::size_t begin = 0, end = 0; begin < grains; begin = end) {
+    const int size = size_class(p.sphere[begin].r, smallest);
+    std::fill(many.begin(), many.end(), 0);
+    for (; end < grains && size_class(p.sphere[end].r, smallest) == size; ++end) ++many[owner[end]];
+    std::size_t u = begin;
+    for (std::size_t t = 0; t < threads; ++t)
+      for (std::size_t k = 0; k < many[t]; ++k) owner[u++] = static_cast<std::uint8_t>(t);
+  }
+}
+
+/// Shells per thread from which whole shells are dealt out, with all that is in them.
+constexpr std::size_t kManyShells = 8;
+
+/// Parts of the space-filling curve with the given shares of all pairs. Grains of a large scene lie along it, size
+/// class by size class: what a thread owns is a few ranges of slots, and its pairs are neighbours in the list. What is
+/// in one of many shells goes with the shell. Planes belong to the first thread.
+template <int D>
+std::vector<std::uint8_t> owners_by_place(const System<D>& s, const std::vector<double>& share) {
+  const auto& p = s.particles;
+  const std::vector<std::uint16_t> part = curve_parts(s);
+  const bool whole_shells = static_cast<std::size_t>(p.shells) >= kManyShells * share.size();
+  const auto part_of = [&](std::size_t body) {
+    while (whole_shells && p.shell[body] >= 0) body = at(p.shell[body]);
+    return part[body];
+  };
+  std::vector<std::uint16_t> group(p.sphere.size(), 0);
+  for (std::size_t u = 0; u < part.size(); ++u) group[u] = part_of(u);
+  std::vector<std::uint8_t> owner = owners_of(s, group, kCurveParts, share);
+  if (!whole_shells) put_in_rows(p, share.size(), owner);
+  return owner;
+}
+
+/// Ranges of slots with the given shares of all pairs: for bodies that do not lie in spatial order.
+template <int D>
+std::vector<std::uint8_t> owners_by_slot(const System<D>& s, const std::vector<double>& share) {
+  std::vector<Slot> group(s.particles.sphere.size());
+  std::iota(group.begin(), group.end(), 0);
+  return owners_of(s, group, group.size(), share);
+}
+
 std::vector<std::vector<BodyRange>> stretches_of(const std::vector<std::uint8_t>& owner, std::size_t threads) {
-  constexpr std::size_t kShort = 4;
-  std::size_t many = 0;
   std::vector<std::vector<BodyRange>> stretches(threads);
   for (std::size_t begin = 0, end = 0; begin < owner.size(); begin = end) {
     while (end < owner.size() && owner[end] == owner[begin]) ++end;
     stretches[owner[begin]].push_back({begin, end});
-    ++many;
   }
-  if (many * kShort > owner.size()) stretches.clear();
   return stretches;
 }
 
-/// Pairs of two threads in a row that a stretch goes over, and the pairs of a stretch, on average, from which it pays
-/// to go along stretches.
-constexpr std::int32_t kBridge = 16;
-constexpr std::size_t kLongStretch = 64;
+/// Bodies of a stretch, on average, below which bodies count as not in spatial order.
+constexpr std::size_t kShort = 16;
 
-/// Adds the pair at c, the next one whose bodies are both the thread's.
-void stretch_to(std::int32_t c, bool in_a_row, std::vector<PairRange>& stretches) {
-  if (in_a_row && !stretches.empty() && c - stretches.back().end <= kBridge)
-    stretches.back().end = c + 1;
-  else
-    stretches.push_back({c, c + 1});
+bool long_ones(const std::vector<std::vector<BodyRange>>& stretches, std::size_t bodies) {
+  std::size_t many = 0;
+  for (const auto& of_thread : stretches) many += of_thread.size();
+  return many * kShort <= bodies;
 }
 
-bool long_ones(const std::vector<PairRange>& stretches) {
-  std::size_t pairs = 0;
-  for (const PairRange& stretch : stretches) pairs += static_cast<std::size_t>(stretch.end - stretch.begin);
-  return pairs >= kLongStretch * stretches.size();
-}
-
-/// Who evaluates pairs of two threads: the one that has fewer of them for its share. All threads go along the list and
-/// count alike.
-class Lenders {
- public:
-  explicit Lenders(const std::vector<double>& share) : share_(share), lent_(share.size(), 0) {}
-
-  struct Lent {
-    std::uint8_t thread = 0;
-    std::int32_t number = 0;  ///< number of the pair among those of two threads that this thread evaluates
-  };
-  Lent next(std::uint8_t a, std::uint8_t b) {
-    const std::uint8_t thread = lent_[a] * share_[b] <= lent_[b] * share_[a] ? a : b;
-    return {thread, lent_[thread]++};
-  }
-
- private:
-  const std::vector<double>& share_;
-  std::vector<std::int32_t> lent_;
-};
-
-/// Bodies of a pair and who owns them.
-struct Owners {
-  std::uint8_t first = 0;
-  std::uint8_t second = 0;
-};
-
+/// The pairs of section k with a body of the thread.
 template <int D>
-Owners owners_at(const System<D>& s, const Plan& plan, std::int32_t c) {
-  return {plan.owner[at(s.contacts.i[at(c)])], plan.owner[at(s.contacts.j[at(c)])]};
-}
-
-/// What a thread does in section k. Marks those lent pairs whose first body it owns.
-template <int D>
-void fill_share(const System<D>& s, std::size_t k, std::uint8_t thread, Plan& plan) {
+void fill_share(const System<D>& s, std::size_t k, std::uint8_t thread, Plan<D>& plan) {
   const ContactSection& section = s.contacts.sections[k];
-  Share& share = plan.shares[thread][k];
-  share.clear();
-  Lenders lenders(plan.pace.share);
-  std::size_t inner = 0;
-  int last = -1;
+  Share<D>& share = plan.shares[thread][k];
+  share.segments.clear();
+  share.foreign.clear();
+  const auto extend = [&](std::int32_t at, bool foreign) {
+    if (!share.segments.empty() && share.segments.back().foreign == foreign && share.segments.back().end == at)
+      share.segments.back().end = at + 1;
+    else
+      share.segments.push_back({at, at + 1, foreign});
+  };
   for (std::int32_t c = section.begin; c < section.end; ++c) {
-    const auto [first, second] = owners_at(s, plan, c);
-    if (plan.shares_sums && (first == thread || second == thread)) stretch_to(c, true, share.touching);
-    if (first == second) {
-      if (first == thread) {
-        ++inner;
-        stretch_to(c, last == first, share.stretches);
-      }
-      last = first;
-      continue;
+    const std::uint8_t first = plan.owner[at(s.contacts.i[at(c)])];
+    const std::uint8_t second = plan.owner[at(s.contacts.j[at(c)])];
+    if (first == thread) {
+      plan.split[at(c)] = second != thread ? 1 : 0;
+      extend(c, false);
+    } else if (second == thread) {
+      extend(static_cast<std::int32_t>(share.foreign.place.size()), true);
+      share.foreign.add(s.contacts, c);
     }
-    const Lenders::Lent lent = lenders.next(first, second);
-    if (lent.thread == thread) share.outer.push_back(c);
-    if (first == thread) share.waiting.push_back({c, lent.thread, lent.number, true});
-    if (second == thread) share.waiting.push_back({c, lent.thread, lent.number, false});
-    if (first == thread) plan.lent[at(c)] = 1;
   }
-  share.loads.resize(share.outer.size());
-  if (D == 3 && plan.rolls) share.rolls.resize(share.outer.size());
-  share.touches.resize(share.outer.size());
-  if (inner >= kLongStretch * share.stretches.size()) return;
-  share.stretches.clear();
-  for (std::int32_t c = section.begin; c < section.end; ++c)
-    if (const Owners of = owners_at(s, plan, c); of.first == thread && of.second == thread) share.inner.push_back(c);
+}
+
+/// Every body of another thread once that is in a pair with one of this thread.
+template <int D>
+std::vector<Slot> neighbours_of(const System<D>& s, std::uint8_t thread, const Plan<D>& plan) {
+  std::vector<std::uint8_t> seen(plan.owner.size(), 0);
+  std::vector<Slot> out;
+  const auto see = [&](Slot body) {
+    if (plan.owner[at(body)] == thread || seen[at(body)] != 0) return;
+    seen[at(body)] = 1;
+    out.push_back(body);
+  };
+  for (const Share<D>& share : plan.shares[thread])
+    for (const Segment& segment : share.segments)
+      for (std::int32_t k = segment.begin; k < segment.end; ++k)
+        see(segment.foreign ? share.foreign.i[at(k)] : s.contacts.j[at(k)]);
+  std::sort(out.begin(), out.end());
+  return out;
 }
 
 template <int D>
-void make_plan(const System<D>& s, std::size_t threads, Plan& plan) {
+void make_plan(const System<D>& s, std::size_t threads, Plan<D>& plan) {
   plan.pace.share_out(threads);
-  plan.owner = owners_of(s, plan.pace.share);
+  plan.owner = owners_by_place(s, plan.pace.share);
   plan.bodies = stretches_of(plan.owner, threads);
+  if (!long_ones(plan.bodies, plan.owner.size())) {
+    plan.owner = owners_by_slot(s, plan.pace.share);
+    plan.bodies = stretches_of(plan.owner, threads);
+  }
   plan.build = s.contacts.build;
-  plan.rolls = false;
-  for (std::int32_t l = 0; l < s.laws.size(); ++l) plan.rolls = plan.rolls || traits_of(s.laws.law(l)).has_rolling;
-  plan.shares_sums = !s.contacts.particle_sum.empty();
-  plan.lent.assign(s.contacts.i.size() + 4, 0);  // the loop looks at four places at once
+  plan.split.resize(s.contacts.i.size());
   plan.shares.resize(threads);
+  plan.neighbours.resize(threads);
   for (auto& of_thread : plan.shares) of_thread.resize(s.contacts.sections.size());
   const int many = static_cast<int>(threads);
 #pragma omp parallel for schedule(static, 1) num_threads(many)
-  for (int t = 0; t < many; ++t)
-    for (std::size_t k = 0; k < s.contacts.sections.size(); ++k) fill_share(s, k, static_cast<std::uint8_t>(t), plan);
-  for (const auto& of_thread : plan.shares)
-    for (const Share& share : of_thread) plan.shares_sums = plan.shares_sums && long_ones(share.touching);
+  for (int t = 0; t < many; ++t) {
+    const auto thread = static_cast<std::uint8_t>(t);
+    for (std::size_t k = 0; k < s.contacts.sections.size(); ++k) fill_share(s, k, thread, plan);
+    plan.neighbours[thread] = neighbours_of(s, thread, plan);
+  }
 }
-
-/// The waiting loads of one thread and section.
-template <int D>
-class Waiters : public WaitingLoads {
- public:
-  Waiters(System<D>& s, const Plan& plan, std::size_t thread, std::size_t section, BodyStiffness* stiffness)
-      : s_(s), plan_(plan), section_(section), stiffness_(stiffness), waiting_(plan.shares[thread][section].waiting) {
-    find_next();
-  }
-
-  void add_before(std::int32_t c) override {
-    for (; at_ < waiting_.size() && waiting_[at_].place < c; ++at_) add(waiting_[at_]);
-    find_next();
-  }
-  void add_all() { add_before(std::numeric_limits<std::int32_t>::max()); }
-
- private:
-  void find_next() { next = at_ < waiting_.size() ? waiting_[at_].place : std::numeric_limits<std::int32_t>::max(); }
-
-  void add(const Waiting& w) {
-    const Share& from = plan_.shares[static_cast<std::size_t>(w.thread)][section_];
-    const auto n = static_cast<std::size_t>(w.number);
-    const auto c = static_cast<std::size_t>(w.place);
-    const auto body = static_cast<std::size_t>(w.first ? s_.contacts.i[c] : s_.contacts.j[c]);
-    if (from.touches[n] == 0) return;
-    if (stiffness_ != nullptr) (w.first ? add_first : add_second)(from.stiffnesses[n], body, *stiffness_);
-    const ContactLoad& load = from.loads[n];
-    const double sign = w.first ? 1.0 : -1.0;
-    const double arm = w.first ? load.arm_i : load.arm_j;
-    for (int k = 0; k < D; ++k) s_.particles.force[body][k] += sign * load.force[k];
-    for (int k = 0; k < (D == 3 ? 3 : 1); ++k) s_.particles.torque[body][k] -= load.moment[k] * arm;
-    if (!plan_.rolls) return;
-    if constexpr (D == 2)
-      s_.particles.torque[body][0] += sign * load.moment[1];
-    else
-      for (int k = 0; k < 3; ++k) s_.particles.torque[body][k] += sign * from.rolls[n].moment[k];
-  }
-
-  System<D>& s_;
-  const Plan& plan_;
-  std::size_t section_;
-  BodyStiffness* stiffness_;
-  const std::vector<Waiting>& waiting_;
-  std::size_t at_ = 0;
-};
 
 template <int D>
 class Pass {
  public:
-  Pass(System<D>& s, double dt, History history, Plan& plan, BodyStiffness* stiffness)
+  Pass(System<D>& s, double dt, History history, Plan<D>& plan, BodyStiffness* stiffness)
       : s_(s), dt_(dt), history_(history), plan_(plan), stiffness_(stiffness) {}
 
   /// What it takes a thread decides on its later share, never on a sum.
@@ -257,51 +227,51 @@ class Pass {
     plan_.pace.seconds[thread] += omp_get_wtime() - begin;
   }
 
-  /// The two halves of the particle pass.
-  void add_shares(std::size_t thread) {
-    const OwnBodies own{plan_.owner.data(), static_cast<std::uint8_t>(thread)};
-    clear_particle_sums(s_, own);
-    for (std::size_t k = 0; k < s_.contacts.sections.size(); ++k)
-      for (const PairRange& stretch : plan_.shares[thread][k].touching)
-        add_particle_shares<D>(s_, s_.contacts.sections[k], stretch, own);
-    close_particle_sums<D>(s_, own);
-  }
-
-  void put_down(std::size_t thread) {
-    for (std::size_t k = 0; k < s_.contacts.sections.size(); ++k) {
-      Share& share = plan_.shares[thread][k];
-      const ContactSection& section = s_.contacts.sections[k];
-      const PairRange range{0, static_cast<std::int32_t>(share.outer.size()), share.outer.data()};
-      if (stiffness_ != nullptr) share.stiffnesses.resize(share.outer.size());
-      block_loop<D>(s_, section, range,
-                    {.dt = dt_,
-                     .history = history_,
-                     .loads = share.loads.data(),
-                     .rolls = share.rolls.data(),
-                     .touches = share.touches.data(),
-                     .stiffnesses = stiffness_ != nullptr ? share.stiffnesses.data() : nullptr});
+  /// Copies what other threads change in the pass, and calls what they have written since the last one into the cache.
+  void fetch(std::size_t thread) {
+    const auto& p = s_.particles;
+    for (const Slot body : plan_.neighbours[thread]) {
+      __builtin_prefetch(&p.sphere[at(body)]);
+      __builtin_prefetch(&p.velocity[at(body)]);
+      __builtin_prefetch(&p.spin[at(body)]);
     }
+    for (Share<D>& share : plan_.shares[thread]) share.foreign.copy_histories(s_.contacts);
   }
 
-  void add(std::size_t thread) {
+  /// The particle pass.
+  void add_shares(std::size_t thread) {
+    clear_particle_sums(s_, part(thread));
     for (std::size_t k = 0; k < s_.contacts.sections.size(); ++k) {
-      const Share& share = plan_.shares[thread][k];
-      const ContactSection& section = s_.contacts.sections[k];
-      const PairRange range{0, static_cast<std::int32_t>(share.inner.size()), share.inner.data()};
-      Waiters<D> waiting(s_, plan_, thread, k, stiffness_);
-      const BlockPass<D> pass{
-          .dt = dt_, .history = history_, .waiting = &waiting, .lent = plan_.lent.data(), .stiffness = stiffness_};
-      if (range.end > 0) block_loop<D>(s_, section, range, pass);
-      for (const PairRange& stretch : share.stretches) block_loop<D>(s_, section, stretch, pass);
-      waiting.add_all();
+      const Share<D>& share = plan_.shares[thread][k];
+      for (const Segment& segment : share.segments)
+        add_particle_shares<D>(s_, s_.contacts.sections[k], {segment.begin, segment.end},
+                               {.part = part(thread), .foreign = segment.foreign ? &share.foreign : nullptr});
+    }
+    close_particle_sums<D>(s_, part(thread));
+  }
+
+  void add_forces(std::size_t thread) {
+    for (std::size_t k = 0; k < s_.contacts.sections.size(); ++k) {
+      const Share<D>& share = plan_.shares[thread][k];
+      for (const Segment& segment : share.segments)
+        block_loop<D>(s_, s_.contacts.sections[k], {segment.begin, segment.end},
+                      {.dt = dt_,
+                       .history = history_,
+                       .part = part(thread),
+                       .foreign = segment.foreign ? &share.foreign : nullptr,
+                       .stiffness = stiffness_});
     }
   }
 
  private:
+  [[nodiscard]] ThreadPart part(std::size_t thread) const {
+    return {plan_.owner.data(), plan_.split.data(), static_cast<std::uint8_t>(thread)};
+  }
+
   System<D>& s_;
   double dt_;
   History history_;
-  Plan& plan_;
+  Plan<D>& plan_;
   BodyStiffness* stiffness_;
 };
 
@@ -309,22 +279,21 @@ class Pass {
 
 template <int D>
 void parallel_pass(System<D>& s, double dt, History history, int threads, BodyStiffness* stiffness) {
-  Plan& plan = s.contacts.plan.template get<Plan>();
+  auto& plan = s.contacts.plan.template get<Plan<D>>();
   const int many = std::min(threads, 255);
   if (plan.build != s.contacts.build || plan.shares.size() != static_cast<std::size_t>(many) || plan.pace.uneven())
     make_plan(s, static_cast<std::size_t>(many), plan);
-  if (!plan.shares_sums) particle_pass(s);
   Pass<D> pass(s, dt, history, plan, stiffness);
+  const bool sums = !s.contacts.particle_sum.empty();
 #pragma omp parallel num_threads(many)
   {
-    if (plan.shares_sums) {
 #pragma omp for schedule(static, 1)
-      for (int t = 0; t < many; ++t) pass.timed(static_cast<std::size_t>(t), &Pass<D>::add_shares);
+    for (int t = 0; t < many; ++t) {
+      pass.timed(static_cast<std::size_t>(t), &Pass<D>::fetch);
+      if (sums) pass.timed(static_cast<std::size_t>(t), &Pass<D>::add_shares);
     }
 #pragma omp for schedule(static, 1)
-    for (int t = 0; t < many; ++t) pass.timed(static_cast<std::size_t>(t), &Pass<D>::put_down);
-#pragma omp for schedule(static, 1)
-    for (int t = 0; t < many; ++t) pass.timed(static_cast<std::size_t>(t), &Pass<D>::add);
+    for (int t = 0; t < many; ++t) pass.timed(static_cast<std::size_t>(t), &Pass<D>::add_forces);
   }
   ++plan.pace.passes;
 }
@@ -333,7 +302,7 @@ template <int D>
 const std::vector<std::vector<BodyRange>>* owned_bodies(System<D>& s) {
   const auto threads = static_cast<std::size_t>(std::min(omp_get_max_threads(), 255));
   if (threads < 2 || omp_in_parallel() != 0) return nullptr;
-  const Plan& plan = s.contacts.plan.template get<Plan>();
+  const auto& plan = s.contacts.plan.template get<Plan<D>>();
   const bool good = plan.build == s.contacts.build && plan.bodies.size() == threads;
   return good && plan.owner.size() == s.particles.sphere.size() ? &plan.bodies : nullptr;
 }

@@ -1,20 +1,24 @@
 // The parts of a force pass: sums on several threads, bit for bit those of one, and the particle pass before them.
 #pragma once
 
+#include <omp.h>
+
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "common/contact/contact_loop.h"
+#include "common/core/in_pieces.h"
 #include "common/dynamics/block_loop.h"
 #include "common/system.h"
 
 namespace softgrain {
 
-/// Adds all contact forces to their bodies, whose forces must be zero. Every thread owns the bodies of a stretch of
-/// the space-filling curve, longer for a faster thread. Pairs with bodies of two threads are evaluated first, by one of
-/// the two, and put down. Then each thread goes through the list in order: pairs of its own are evaluated and added,
-/// its share of those put down is added when their turn comes. So every body gets its sums in list order, whatever the
-/// number of threads and whoever owns it. `stiffness`, where it is there, gets the stiffness sums; it must be clear.
+/// Adds all contact forces to their bodies, whose forces must be zero. Every thread owns the bodies of a part of the
+/// space-filling curve, larger for a faster thread. It goes through all pairs that have a body of its own, in list
+/// order, and adds their loads to that body. A pair of two threads is evaluated by both, from the same numbers. So
+/// every body gets its sums in list order, whatever the number of threads and whoever owns it, and no thread writes
+/// what another one reads in the same phase. `stiffness`, where it is there, gets the stiffness sums; it must be clear.
 template <int D>
 void parallel_pass(System<D>& system, double dt, History history, int threads, BodyStiffness* stiffness = nullptr);
 
@@ -25,10 +29,27 @@ struct BodyRange {
 };
 
 /// What each thread owned in the last pass: who moves its own bodies finds in its cache what it wrote there. None when
-/// that pass went over another list or ran on another number of threads than may run now, and where bodies do not lie
-/// in spatial order.
+/// that pass went over another list or ran on another number of threads than may run now.
 template <int D>
 const std::vector<std::vector<BodyRange>>* owned_bodies(System<D>& system);
+
+/// The largest of what work(body) returns for all bodies (at least 0), on the threads that own them.
+template <int D, class Work>
+double max_over_bodies(System<D>& s, const Work& work) {
+  double most = 0.0;
+  if (const auto* const own = owned_bodies(s)) {
+    const int threads = static_cast<int>(own->size());
+#pragma omp parallel for schedule(static, 1) reduction(max : most) num_threads(threads)
+    for (int t = 0; t < threads; ++t)
+      for (const BodyRange& part : (*own)[static_cast<std::size_t>(t)])
+        for (std::size_t u = part.begin; u < part.end; ++u) most = std::max(most, work(u));
+    return most;
+  }
+  const std::size_t bodies = s.particles.sphere.size();
+#pragma omp parallel for schedule(static) reduction(max : most) if (bodies >= kParallelLength)
+  for (std::size_t u = 0; u < bodies; ++u) most = std::max(most, work(u));
+  return most;
+}
 
 // Laws of soft particles that know of all their contacts: what every contact takes from its bodies, and the closing of
 // the sums, before the loop over forces.
@@ -37,21 +58,14 @@ const std::vector<std::vector<BodyRange>>* owned_bodies(System<D>& system);
 template <int D>
 void particle_pass(System<D>& system);
 
-/// The bodies of one thread; by default all of them.
-struct OwnBodies {
-  const std::uint8_t* owner = nullptr;  ///< per body
-  std::uint8_t thread = 0;
-
-  bool operator()(Slot body) const { return owner == nullptr || owner[at(body)] == thread; }
-};
-
-/// Its parts for own bodies: sums become empty; contacts of a range take their shares; and sums are closed once all
-/// sections were seen. Nothing in the plane.
+/// Its parts for the bodies of a thread: sums become empty; contacts of a range, as block_loop() takes them with part
+/// and foreign pairs, add their shares; and sums are closed once all sections were seen. Nothing in the plane.
 template <int D>
-void clear_particle_sums(System<D>& system, OwnBodies own);
+void clear_particle_sums(System<D>& system, ThreadPart part);
 template <int D>
-void add_particle_shares(System<D>& system, const ContactSection& section, const PairRange& range, OwnBodies own);
+void add_particle_shares(System<D>& system, const ContactSection& section, const PairRange& range,
+                         const BlockPass<D>& pass);
 template <int D>
-void close_particle_sums(System<D>& system, OwnBodies own);
+void close_particle_sums(System<D>& system, ThreadPart part);
 
 }  // namespace softgrain

@@ -8,20 +8,22 @@ namespace {
 
 using namespace block;
 
+bool is_own(ThreadPart part, Slot body) { return part.owner == nullptr || part.owner[at(body)] == part.thread; }
+
 template <class Law>
 constexpr LawTraits kAskedOfShares{.has_memory = Law::traits.memory_in_sums,
                                    .directions_in_sums = Law::traits.directions_in_sums,
                                    .is_multi_contact = true};
 
 /// The first half of the particle pass: what every contact takes from its bodies.
-template <class Law, Geometry kGeometry, bool kPeriodic>
-class Shares : Gatherer<3, kAskedOfShares<Law>, kGeometry, kPeriodic, PairSubset::all> {
-  using Base = Gatherer<3, kAskedOfShares<Law>, kGeometry, kPeriodic, PairSubset::all>;
-  using Base::block_, Base::list_, Base::u;
+template <class Law, Geometry kGeometry, bool kPeriodic, PairSource kSource>
+class Shares : Gatherer<3, kAskedOfShares<Law>, kGeometry, kPeriodic, kSource> {
+  using Base = Gatherer<3, kAskedOfShares<Law>, kGeometry, kPeriodic, kSource>;
+  using Base::block_, Base::list_, Base::u, Base::kForeign;
 
  public:
-  Shares(System<3>& s, const Law& law, const PairRange& range, OwnBodies own)
-      : Base(s, {&law, &take<3, kGeometry, Law>, 0.0, law.soft_sides()}, range, {}), law_(law), own_(own) {}
+  Shares(System<3>& s, const Law& law, const PairRange& range, const BlockPass<3>& pass)
+      : Base(s, {&law, &take<3, kGeometry, Law>, 0.0, law.soft_sides()}, range, pass), law_(law) {}
 
   void run() {
     for (std::int32_t k = this->range_.begin; k < this->range_.end; k += kBlock) {
@@ -37,14 +39,16 @@ class Shares : Gatherer<3, kAskedOfShares<Law>, kGeometry, kPeriodic, PairSubset
   void add(int n) {
     const std::size_t c = u(block_.pair[u(n)]);
     const Quad normal{block_.normal[0].v[n], block_.normal[1].v[n], block_.normal[2].v[n], 0.0};
-    const Slot i = list_.i[c];
-    const Slot j = list_.j[c];
-    if (own_(i)) {  // one of the threads that see the pair
+    const Slot i = this->first_bodies()[c];
+    const Slot j = this->second_bodies()[c];
+    if constexpr (!kForeign) {
       if (law_.i_is_soft) list_.lost_i[c] = block_.lost_i.v[n];
       if (law_.j_is_soft) list_.lost_j[c] = block_.lost_j.v[n];
+      if (law_.i_is_soft) add(block_.lost_i.v[n], -normal, list_.particle_sum[u(i)]);
     }
-    if (law_.i_is_soft && own_(i)) add(block_.lost_i.v[n], -normal, list_.particle_sum[u(i)]);
-    if (law_.j_is_soft && own_(j)) add(block_.lost_j.v[n], normal, list_.particle_sum[u(j)]);
+    const std::uint8_t* const split = this->pass_.part.split;
+    if (law_.j_is_soft && (kForeign || split == nullptr || split[c] == 0))
+      add(block_.lost_j.v[n], normal, list_.particle_sum[u(j)]);
   }
 
   /// Law::add, four numbers at once.
@@ -63,7 +67,6 @@ class Shares : Gatherer<3, kAskedOfShares<Law>, kGeometry, kPeriodic, PairSubset
   }
 
   const Law& law_;
-  OwnBodies own_;
 };
 
 /// Closes sums, several at a time.
@@ -99,32 +102,39 @@ class Closing {
 }  // namespace
 
 template <>
-void add_particle_shares(System<2>&, const ContactSection&, const PairRange&, OwnBodies) {}
+void add_particle_shares(System<2>&, const ContactSection&, const PairRange&, const BlockPass<2>&) {}
 
 template <>
-void add_particle_shares(System<3>& s, const ContactSection& section, const PairRange& range, OwnBodies own) {
+void add_particle_shares(System<3>& s, const ContactSection& section, const PairRange& range,
+                         const BlockPass<3>& pass) {
   open(s, section, [&]<class Law>(const Law& law, auto geometry) {
     constexpr Geometry kGeometry = decltype(geometry)::value;
     if constexpr (Law::traits.needs_particle_pass) {
+      const auto run = [&]<bool kPeriodic>() {
+        if (pass.foreign != nullptr)
+          Shares<Law, kGeometry, kPeriodic, PairSource::foreign>(s, law, range, pass).run();
+        else
+          Shares<Law, kGeometry, kPeriodic, PairSource::list>(s, law, range, pass).run();
+      };
       if (kGeometry == Geometry::sphere_sphere && s.cell.any_periodic())
-        Shares<Law, kGeometry, true>(s, law, range, own).run();
+        run.template operator()<true>();
       else
-        Shares<Law, kGeometry, false>(s, law, range, own).run();
+        run.template operator()<false>();
     }
   });
 }
 
 template <int D>
-void clear_particle_sums(System<D>& s, OwnBodies own) {
+void clear_particle_sums(System<D>& s, ThreadPart part) {
   for (const MultiContactBody& multi_contact : s.contacts.multi_contact_bodies)
-    if (own(multi_contact.body)) s.contacts.particle_sum[at(multi_contact.body)] = {};
+    if (is_own(part, multi_contact.body)) s.contacts.particle_sum[at(multi_contact.body)] = {};
 }
 
 template <>
-void close_particle_sums(System<2>&, OwnBodies) {}
+void close_particle_sums(System<2>&, ThreadPart) {}
 
 template <>
-void close_particle_sums(System<3>& s, OwnBodies own) {
+void close_particle_sums(System<3>& s, ThreadPart part) {
   const auto& bodies = s.contacts.multi_contact_bodies;
   for (std::size_t begin = 0, end = 0; begin < bodies.size(); begin = end) {
     while (end < bodies.size() && bodies[end].law == bodies[begin].law) ++end;
@@ -133,7 +143,7 @@ void close_particle_sums(System<3>& s, OwnBodies own) {
           if constexpr (Law::traits.needs_particle_pass) {
             Closing<Law> closing(law);
             for (std::size_t k = begin; k < end; ++k)
-              if (own(bodies[k].body)) closing.add(s.contacts.particle_sum[at(bodies[k].body)]);
+              if (is_own(part, bodies[k].body)) closing.add(s.contacts.particle_sum[at(bodies[k].body)]);
             closing.close();
           }
         },
@@ -150,8 +160,8 @@ void particle_pass(System<D>& s) {
   close_particle_sums<D>(s, {});
 }
 
-template void clear_particle_sums<2>(System<2>&, OwnBodies);
-template void clear_particle_sums<3>(System<3>&, OwnBodies);
+template void clear_particle_sums<2>(System<2>&, ThreadPart);
+template void clear_particle_sums<3>(System<3>&, ThreadPart);
 template void particle_pass<2>(System<2>&);
 template void particle_pass<3>(System<3>&);
 

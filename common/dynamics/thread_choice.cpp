@@ -25,11 +25,22 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-ThreadChoice& choice_of(int threads) {
-  thread_local ThreadChoice choice(threads);
-  if (choice.all() != threads) choice = ThreadChoice(threads);
-  return choice;
+/// The choice, and the block that is under way: it may go on from one use of the threads to the next.
+struct Meter {
+  explicit Meter(int threads) : choice(threads) {}
+
+  ThreadChoice choice;
+  ThreadChoice::Block block{};
+};
+
+Meter& meter_of(int threads) {
+  thread_local Meter meter(threads);
+  if (meter.choice.all() != threads) meter = Meter(threads);
+  return meter;
 }
+
+/// Whether the thread is within a use of its threads.
+thread_local bool in_use = false;
 
 /// Passes that make a measurement, and the most between two looks.
 constexpr int kEnough = 16;
@@ -68,29 +79,40 @@ void ThreadChoice::took(const Block& block) {
 
 PassThreads::PassThreads() {
   const int threads = omp_get_max_threads();
-  if (threads < 2 || omp_in_parallel() != 0) return;
+  if (in_use || threads < 2 || omp_in_parallel() != 0) return;
+  in_use = true;
   before_ = threads;
-  begin_block();
+  begin();
 }
 
 PassThreads::~PassThreads() {
-  if (before_ > 0) omp_set_num_threads(before_);
+  if (before_ == 0) return;
+  measure();
+  omp_set_num_threads(before_);
+  in_use = false;
 }
 
-void PassThreads::begin_block() {
-  omp_set_num_threads(choice_of(before_).threads());
+void PassThreads::begin() {
+  omp_set_num_threads(meter_of(before_).choice.threads());
   clock_ = {};
   cpu_begin_ = cpu_seconds();
-  work_ = 0.0;
+}
+
+void PassThreads::measure() {
+  ThreadChoice::Block& block = meter_of(before_).block;
+  block.seconds += clock_.seconds();
+  block.cpu_seconds += cpu_seconds() - cpu_begin_;
 }
 
 void PassThreads::passed(std::int64_t passes, std::int64_t pairs) {
   if (before_ == 0) return;
-  work_ += static_cast<double>(passes) * static_cast<double>(pairs + 1);
-  const double seconds = clock_.seconds();
-  if (seconds < kBlockSeconds) return;
-  choice_of(before_).took({seconds, cpu_seconds() - cpu_begin_, work_});
-  begin_block();
+  Meter& meter = meter_of(before_);
+  meter.block.work += static_cast<double>(passes) * static_cast<double>(pairs + 1);
+  if (meter.block.seconds + clock_.seconds() < kBlockSeconds) return;
+  measure();
+  meter.choice.took(meter.block);
+  meter.block = {};
+  begin();
 }
 
 void ThreadPace::share_out(std::size_t threads) {

@@ -42,8 +42,8 @@ class ThreadChoice {
   int left_ = 0;           ///< blocks left before the next trial
 };
 
-/// Takes the threads of the program for passes, by the choice that all relaxations of a thread share, and gives them
-/// back at its end. Does nothing inside of parallel work, and with one thread.
+/// Takes the threads of the program for passes, by the choice that all relaxations and integrations of a thread share,
+/// and gives them back at its end. Does nothing inside of parallel work, within another one, and with one thread.
 class PassThreads {
  public:
   PassThreads();
@@ -55,12 +55,12 @@ class PassThreads {
   void passed(std::int64_t passes, std::int64_t pairs);
 
  private:
-  void begin_block();
+  void begin();
+  void measure();
 
   int before_ = 0;  ///< threads; 0: nothing is chosen
   Stopwatch clock_;
   double cpu_begin_ = 0.0;
-  double work_ = 0.0;
 };
 
 // Which share of the work each thread gets: cores differ, and other programs use them.

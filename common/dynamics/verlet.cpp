@@ -7,6 +7,7 @@
 #include "common/core/quad.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/parallel_pass.h"
+#include "common/dynamics/thread_choice.h"
 
 namespace softgrain {
 
@@ -29,8 +30,11 @@ void add_gravity(System<D>& s) {
   auto& p = s.particles;
   load_planes(p);
   if (s.gravity == Vec<D>{}) return;
-  for (auto u = std::size_t{0}; u < static_cast<std::size_t>(p.first_plane()); ++u)
-    if (p.inverse_mass[u] > 0.0) p.force[u] += s.gravity * (1.0 / p.inverse_mass[u]);
+  const auto planes = static_cast<std::size_t>(p.first_plane());
+  (void)max_over_bodies(s, [&](std::size_t u) {
+    if (u < planes && p.inverse_mass[u] > 0.0) p.force[u] += s.gravity * (1.0 / p.inverse_mass[u]);
+    return 0.0;
+  });
 }
 
 template <int D>
@@ -74,21 +78,10 @@ void VelocityVerlet<D>::move(System<D>& s, bool correct_first) {
   kick_.resize(bodies);
   turn_.resize(bodies);
   const SkinUse<D> use(s);
-  double fastest2 = 0.0;
-  const auto move_one = [&](std::size_t u) {
+  const double fastest2 = max_over_bodies(s, [&](std::size_t u) {
     if (correct_first) correct(s, u);
     return drift(s, u, use);
-  };
-  if (const auto* const own = owned_bodies(s)) {
-    const int threads = static_cast<int>(own->size());
-#pragma omp parallel for schedule(static, 1) reduction(max : fastest2) num_threads(threads)
-    for (int t = 0; t < threads; ++t)
-      for (const BodyRange& part : (*own)[static_cast<std::size_t>(t)])
-        for (std::size_t u = part.begin; u < part.end; ++u) fastest2 = std::max(fastest2, move_one(u));
-  } else {
-#pragma omp parallel for schedule(static) reduction(max : fastest2) if (bodies >= kParallelLength)
-    for (std::size_t u = 0; u < bodies; ++u) fastest2 = std::max(fastest2, move_one(u));
-  }
+  });
   if (s.cell.any_periodic()) s.cell.advance(dt_);
   watch_.moved(dt_ * (std::sqrt(fastest2) + use.strain_rate()));
 }
@@ -102,16 +95,19 @@ void VelocityVerlet<D>::sum_forces(System<D>& s) {
 
 template <int D>
 void VelocityVerlet<D>::advance(System<D>& s, std::int64_t steps) {
+  PassThreads threads;
   for (std::int64_t k = 0; k < steps; ++k) {
     move(s, k > 0);
     sum_forces(s);
+    threads.passed(1, s.contacts.size());
     s.time += dt_;
     ++s.step;
   }
   if (steps <= 0) return;
-  const std::size_t bodies = s.particles.force.size();
-#pragma omp parallel for schedule(static) if (bodies >= kParallelLength)
-  for (std::size_t u = 0; u < bodies; ++u) correct(s, u);
+  (void)max_over_bodies(s, [&](std::size_t u) {
+    correct(s, u);
+    return 0.0;
+  });
 }
 
 template <int D>

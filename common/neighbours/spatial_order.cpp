@@ -42,10 +42,10 @@ std::uint64_t morton(const Vec<D>& unit) {
   return code;
 }
 
-/// Coordinates in the cell (periodic axes) or in the box around all grains (open ones), 0 to 1.
+/// Coordinates of the first bodies in the cell (periodic axes) or in the box around them (open ones), 0 to 1.
 template <int D>
-std::vector<Vec<D>> unit_places(const System<D>& s) {
-  std::vector<Vec<D>> unit(at(s.particles.grains));
+std::vector<Vec<D>> unit_places(const System<D>& s, Slot bodies) {
+  std::vector<Vec<D>> unit(at(bodies));
   in_pieces(unit.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t u = begin; u < end; ++u) unit[u] = s.cell.fractional(s.particles.sphere[u].x);
   });
@@ -166,11 +166,11 @@ std::vector<Slot> spatial_order(const System<D>& s) {
   if (p.grains == 0) return order;
   double smallest = p.sphere[0].r;
   for (Slot i = 1; i < p.grains; ++i) smallest = std::min(smallest, p.sphere[static_cast<std::size_t>(i)].r);
-  const std::vector<Vec<D>> unit = unit_places(s);
+  const std::vector<Vec<D>> unit = unit_places(s, p.grains);
   std::vector<Place> places;
   for (Slot i = 0; i < p.grains; ++i) {
     const auto u = static_cast<std::size_t>(i);
-    places.push_back({std::ilogb(p.sphere[u].r / smallest), morton<D>(unit[u]), i});
+    places.push_back({size_class(p.sphere[u].r, smallest), morton<D>(unit[u]), i});
   }
   std::sort(places.begin(), places.end());
   for (const Place& place : places) order.push_back(place.slot);
@@ -181,9 +181,9 @@ template <int D>
 std::vector<std::uint16_t> curve_parts(const System<D>& s) {
   constexpr int kPartBits = 12;
   static_assert(kCurveParts == std::size_t{1} << kPartBits && kPartBits % D == 0);
-  std::vector<std::uint16_t> parts(at(s.particles.grains));
+  std::vector<std::uint16_t> parts(at(s.particles.first_plane()));
   if (parts.empty()) return parts;
-  const std::vector<Vec<D>> unit = unit_places(s);
+  const std::vector<Vec<D>> unit = unit_places(s, s.particles.first_plane());
   in_pieces(unit.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t u = begin; u < end; ++u)
       parts[u] = static_cast<std::uint16_t>(morton<D>(unit[u]) >> (kBits * D - kPartBits));
