@@ -1,7 +1,11 @@
 // The same bits for any number of threads, where the parallel path is really taken.
 #include <omp.h>
 
+#include <numeric>
+
 #include "common/dynamics/damped_relaxation.h"
+#include "common/dynamics/force_pass.h"
+#include "common/dynamics/parallel_pass.h"
 #include "common/dynamics/verlet.h"
 #include "common/io/hdf5_file.h"
 #include "common/neighbours/spatial_order.h"
@@ -37,10 +41,45 @@ System3 large_packing() {
   return s;
 }
 
-System3 run_with(int threads, int steps) {
+/// The same with grains in no order: threads take ranges of slots, and most pairs have two owners.
+System3 shuffled_packing() {
+  System3 s = large_packing();
+  RandomStream random(9, RandomPurpose::test, 2);
+  std::vector<Slot> order(static_cast<std::size_t>(s.particles.grains));
+  std::iota(order.begin(), order.end(), 0);
+  for (std::size_t k = order.size(); k > 1; --k) std::swap(order[k - 1], order[random.below(k)]);
+  reorder_grains(s, order);
+  s.particles.id.clear();
+  return s;
+}
+
+/// Shells side by side, so many that each belongs to one thread with all that is in it; grains of neighbours touch.
+System3 many_shells() {
+  System3 s = hertz_system<3>(0.4, 0.8, true);
+  RandomStream random(9, RandomPurpose::test, 3);
+  constexpr int kAcross = 3;
+  constexpr double kApart = 1.35;
+  constexpr int kGrains = 6;
+  const auto shells = shaken_lattice<3>({}, kApart, kAcross, 8);
+  const auto first = static_cast<Slot>(shells.size() * kGrains * kGrains * kGrains);
+  for (std::size_t n = 0; n < shells.size(); ++n)
+    for (const Vec3& x : shaken_lattice<3>(shells[n], 0.2, kGrains, 10 + n)) {
+      NewBody<3> grain = test_sphere<3>(x, 0.1 + 0.01 * random.uniform(), 2500.0, first + static_cast<Slot>(n));
+      for (int d = 0; d < 3; ++d) grain.velocity[d] = 2.0 * random.uniform() - 1.0;
+      add_grain(s.particles, grain);
+    }
+  for (const Vec3& x : shells) {
+    NewBody<3> shell;
+    shell.x = x;
+    shell.r = 1.05;
+    add_shell(s.particles, shell);
+  }
+  return s;
+}
+
+System3 run_with(int threads, int steps, System3 s = large_packing()) {
   const int before = omp_get_max_threads();
   omp_set_num_threads(threads);
-  System3 s = large_packing();
   VelocityVerlet<3> integrator(1e-4);
   integrator.initialise(s);
   for (int k = 0; k < steps; ++k) integrator.step(s);
@@ -56,6 +95,48 @@ TEST(Threads, AnyNumberGivesTheSameBits) {
   for (const int threads : {2, 3, 8}) {
     SCOPED_TRACE(threads);
     expect_same_state(one, run_with(threads, 60));
+  }
+}
+
+TEST(Threads, GrainsInNoOrderGiveTheSameBits) {
+  const System3 one = run_with(1, 60, shuffled_packing());
+  EXPECT_GT(one.neighbours.rebuilds, 1);
+  for (const int threads : {2, 5}) expect_same_state(one, run_with(threads, 60, shuffled_packing()));
+}
+
+TEST(Threads, WholeShellsGiveTheSameBits) {
+  const System3 one = run_with(1, 60, many_shells());
+  ASSERT_GT(one.contacts.size(), 8000) << "too small for the parallel path";
+  for (const int threads : {2, 3}) expect_same_state(one, run_with(threads, 60, many_shells()));
+}
+
+/// What each thread owns after a pass: everything once, in few stretches, and about as many pairs as the others.
+TEST(Threads, EveryBodyHasOneOwner) {
+  for (System3 s : {large_packing(), shuffled_packing(), many_shells()}) {
+    reorder_grains(s, spatial_order(s));
+    const int before = omp_get_max_threads();
+    omp_set_num_threads(4);
+    force_pass(s, 0.0);
+    const auto* const own = owned_bodies(s);
+    omp_set_num_threads(before);
+    ASSERT_NE(own, nullptr);
+    ASSERT_EQ(own->size(), 4U);
+    std::vector<int> owners(s.particles.sphere.size(), 0);
+    std::vector<std::int64_t> pairs(4, 0);
+    std::vector<std::size_t> owner(owners.size());
+    std::size_t stretches = 0;
+    for (std::size_t t = 0; t < own->size(); ++t)
+      for (const BodyRange& range : (*own)[t]) {
+        ++stretches;
+        for (std::size_t u = range.begin; u < range.end; ++u) ++owners[u], owner[u] = t;
+      }
+    for (const int many : owners) ASSERT_EQ(many, 1);
+    EXPECT_LT(stretches, owners.size() / 16);
+    for (std::size_t c = 0; c < s.contacts.i.size(); ++c) ++pairs[owner[at(s.contacts.i[c])]];
+    for (const std::int64_t here : pairs) {
+      EXPECT_GT(here, s.contacts.size() / 7);
+      EXPECT_LT(here, s.contacts.size() / 3);
+    }
   }
 }
 
