@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/core/in_pieces.h"
+#include "common/dynamics/parallel_pass.h"
 
 namespace softgrain {
 
@@ -35,11 +36,12 @@ const Vec3& PressedBox::resisted(System3& s) {
   if (box_.periodic) return resisted_ = virial_.of(s);
   const auto& p = s.particles;
   const Vec3 centre = box_centre(s, box_);
-  return resisted_ = sum_in_pieces<Vec3>(at(p.size()), [&](std::size_t begin, std::size_t end) {
-           Vec3 sum{};
-           for (std::size_t u = begin; u < end; ++u) sum += by_axis(p.force[u], carried_place(s, u) - centre);
-           return sum;
-         });
+  const auto resistance = [&](std::size_t begin, std::size_t end) {
+    Vec3 sum{};
+    for (std::size_t u = begin; u < end; ++u) sum += by_axis(p.force[u], carried_place(s, u) - centre);
+    return sum;
+  };
+  return resisted_ = sum_in_pieces<Vec3>(at(p.size()), resistance, piece_threads(s));
 }
 
 PressedBox::Sums PressedBox::feel(System3& s) {
@@ -69,15 +71,17 @@ void PressedBox::carry(System3& s, double step) {
   strained_ += velocity_ * step;
   const Vec3 centre = box_centre(s, box_);
   carried_.resize(at(p.size()));
+  if (box_.periodic) placed_.resize(carried_.size());
   const auto carry = [&](std::size_t begin, std::size_t end) {
     for (std::size_t u = begin; u < end; ++u) {
       carried_[u] = by_axis(velocity_, centre - carried_place(s, u));
       p.sphere[u].x += carried_[u] * step;
       p.velocity[u] += carried_[u];
+      if (box_.periodic) placed_[u] = p.sphere[u].x;
     }
   };
   // Shells come after the grains in them: all are still where they were.
-  in_pieces(at(p.grains), carry);
+  in_pieces(at(p.grains), carry, piece_threads(s));
   carry(at(p.grains), carried_.size());
   if (!box_.periodic) return;
   for (int k = 0; k < 3; ++k) {
@@ -85,20 +89,19 @@ void PressedBox::carry(System3& s, double step) {
     s.cell.edges[k][k] *= 1.0 - shrink;
     s.cell.velocity_gradient[k][k] = -velocity_[k] / (1.0 - shrink);
   }
-  placed_.resize(carried_.size());
-  for (std::size_t u = 0; u < carried_.size(); ++u) placed_[u] = p.sphere[u].x;
 }
 
 void PressedBox::release(System3& s) {
   auto& p = s.particles;
-  // A body that went home through a face since has the velocity of the image that it is now.
-  if (box_.periodic)
-    for (std::size_t u = 0; u < carried_.size(); ++u)
-      if (const Vec3 way = placed_[u] - p.sphere[u].x; way != Vec3{}) carried_[u] -= s.cell.velocity_gradient * way;
-  in_pieces(carried_.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t u = begin; u < end; ++u)
+  const auto take_off = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t u = begin; u < end; ++u) {
+      // A body that went home through a face since has the velocity of the image that it is now.
+      if (box_.periodic)
+        if (const Vec3 way = placed_[u] - p.sphere[u].x; way != Vec3{}) carried_[u] -= s.cell.velocity_gradient * way;
       p.velocity[u] = p.force[u] == Stored<3>{} ? Vec3{} : Vec3(p.velocity[u]) - carried_[u];
-  });
+    }
+  };
+  in_pieces(carried_.size(), take_off, piece_threads(s));
   if (box_.periodic) s.cell.velocity_gradient = {};
 }
 

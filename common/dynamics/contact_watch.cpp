@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/core/in_pieces.h"
 #include "common/dynamics/pair_loop.h"
 
 namespace softgrain {
@@ -149,8 +150,11 @@ Vec<D> ContactVirial<D>::of(System<D>& s) {
     const std::size_t many = a.pairs.place.size();
     a.pairs.copy_histories(s.contacts);
     std::fill_n(forces_.begin(), many, Stored<D>{});
-    block_loop<D>(s, s.contacts.sections[a.section], {0, static_cast<std::int32_t>(many)},
-                  {.dt = 0.0, .history = History::none, .foreign = &a.pairs, .forces = forces_.data()});
+    in_pieces(many, [&](std::size_t begin, std::size_t end) {
+      block_loop<D>(s, s.contacts.sections[a.section],
+                    {static_cast<std::int32_t>(begin), static_cast<std::int32_t>(end)},
+                    {.dt = 0.0, .history = History::none, .foreign = &a.pairs, .forces = forces_.data()});
+    });
     for (std::size_t n = 0; n < many; ++n) {
       const Vec<D> shift = s.cell.image_shift(a.pairs.image[n]);
       for (int k = 0; k < D; ++k) sum[k] -= forces_[n][k] * shift[k];

@@ -5,6 +5,7 @@
 
 #include "common/core/in_pieces.h"
 #include "common/core/quad.h"
+#include "common/dynamics/parallel_pass.h"
 #include "common/dynamics/residual.h"
 #include "common/dynamics/thread_choice.h"
 #include "common/dynamics/verlet.h"
@@ -45,11 +46,13 @@ void DampedRelaxation<D>::scale_masses(System<D>& s, RelaxingFrame<D>* frame) {
 }
 
 template <int D>
-typename RelaxingFrame<D>::Sums DampedRelaxation<D>::sums_of(const Particles<D>& p, std::size_t begin,
-                                                             std::size_t end) const {
-  typename RelaxingFrame<D>::Sums sums;
+typename DampedRelaxation<D>::BodySums DampedRelaxation<D>::sums_of(const Particles<D>& p, std::size_t begin,
+                                                                    std::size_t end) const {
+  BodySums sums;
+  const bool limits = std::isfinite(options_.max_lead);
   for (std::size_t u = begin; u < end; ++u) {
     if (inverse_mass_[u] > 0.0) {
+      if (limits) sums.relative2 += norm2(p.velocity[u]) / (p.sphere[u].r * p.sphere[u].r);
       sums.power += dot(p.velocity[u], p.force[u]);
       sums.speed2 += norm2(p.velocity[u]) / inverse_mass_[u];
       sums.pull2 += norm2(p.force[u]) * inverse_mass_[u];
@@ -65,25 +68,20 @@ typename RelaxingFrame<D>::Sums DampedRelaxation<D>::sums_of(const Particles<D>&
 
 template <int D>
 Fire::Steering DampedRelaxation<D>::steer(System<D>& s, RelaxingFrame<D>* frame) {
-  auto sums = sum_in_pieces<typename RelaxingFrame<D>::Sums>(
-      inverse_mass_.size(), [&](std::size_t begin, std::size_t end) { return sums_of(s.particles, begin, end); });
-  if (frame != nullptr) sums += frame->feel(s);
+  BodySums sums = sum_in_pieces<BodySums>(
+      inverse_mass_.size(), [&](std::size_t begin, std::size_t end) { return sums_of(s.particles, begin, end); },
+      piece_threads(s));
+  typical_speed_ = std::sqrt(sums.relative2 / static_cast<double>(inverse_mass_.size()));
+  if (frame != nullptr) static_cast<typename RelaxingFrame<D>::Sums&>(sums) += frame->feel(s);
   const Fire::Steering steering = fire_.steer(sums.power, sums.speed2, sums.pull2);
   if (frame != nullptr) frame->steer(steering.keep, steering.pull);
   return steering;
 }
 
 template <int D>
-double DampedRelaxation<D>::longest_move(const Particles<D>& p, std::int64_t pass) const {
+double DampedRelaxation<D>::longest_move(std::int64_t pass) const {
   if (!std::isfinite(options_.max_lead)) return options_.max_move;
-  const double speed2 = sum_in_pieces<double>(inverse_mass_.size(), [&](std::size_t begin, std::size_t end) {
-    double sum = 0.0;
-    for (std::size_t u = begin; u < end; ++u)
-      if (inverse_mass_[u] > 0.0) sum += norm2(p.velocity[u]) / (p.sphere[u].r * p.sphere[u].r);
-    return sum;
-  });
-  const double typical = fire_.step * std::sqrt(speed2 / static_cast<double>(inverse_mass_.size()));
-  return MoveLimit{options_.max_move, options_.max_lead}.at(typical, pass);
+  return MoveLimit{options_.max_move, options_.max_lead}.at(fire_.step * typical_speed_, pass);
 }
 
 template <int D>
@@ -132,10 +130,10 @@ void DampedRelaxation<D>::turn(Particles<D>& p, const Fire::Steering& steering, 
 
 template <int D>
 void DampedRelaxation<D>::move_all(System<D>& s, const Fire::Steering& steering, std::int64_t pass) {
-  const double longest = longest_move(s.particles, pass);
+  const double longest = longest_move(pass);
   const double used2 = joined_in_pieces<double>(
       inverse_mass_.size(), [&](std::size_t begin, std::size_t end) { return move(s, steering, longest, begin, end); },
-      [](double& most, double piece) { most = std::max(most, piece); });
+      [](double& most, double piece) { most = std::max(most, piece); }, piece_threads(s));
   watch_.moved(fire_.step * std::sqrt(used2));
 }
 

@@ -79,12 +79,21 @@ class DampedRelaxation {
  private:
   RelaxationResult relax(System<D>& system, RelaxingFrame<D>* frame);
   void scale_masses(System<D>& system, RelaxingFrame<D>* frame);
-  /// What Fire asks for, of bodies begin to end - 1.
-  [[nodiscard]] typename RelaxingFrame<D>::Sums sums_of(const Particles<D>& p, std::size_t begin,
-                                                        std::size_t end) const;
+  /// What Fire asks for, and the sum of squares of speeds in radii.
+  struct BodySums : RelaxingFrame<D>::Sums {
+    double relative2 = 0.0;
+
+    BodySums& operator+=(const BodySums& o) {
+      RelaxingFrame<D>::Sums::operator+=(o);
+      relative2 += o.relative2;
+      return *this;
+    }
+  };
+  /// Those of bodies begin to end - 1.
+  [[nodiscard]] BodySums sums_of(const Particles<D>& p, std::size_t begin, std::size_t end) const;
   Fire::Steering steer(System<D>& system, RelaxingFrame<D>* frame);
   /// The largest move in the next pass, the first being 0 [radii].
-  [[nodiscard]] double longest_move(const Particles<D>& p, std::int64_t pass) const;
+  [[nodiscard]] double longest_move(std::int64_t pass) const;
   /// Velocities take the steering and the forces, which go to zero; places take the velocities. Returns the square of
   /// the largest share of its margin in the neighbour list that a body uses up per time.
   double move(System<D>& system, const Fire::Steering& steering, double longest, std::size_t begin, std::size_t end);
@@ -95,7 +104,8 @@ class DampedRelaxation {
   BodyStiffness stiffness_;
   std::vector<double> inverse_mass_;  ///< pseudo, per body
   std::vector<double> inverse_inertia_;
-  bool turns_ = true;  ///< some body can
+  bool turns_ = true;           ///< some body can
+  double typical_speed_ = 0.0;  ///< root mean square speed in radii, where moves are limited by it [1/s]
   Fire fire_;
   ListWatch<D> watch_;
 };

@@ -38,6 +38,7 @@ struct Plan {
   std::vector<std::uint8_t> owner;  ///< thread of every body
   std::vector<std::uint8_t> split;  ///< flag per place in the list, 1: the bodies of the pair have two owners
   std::vector<std::vector<BodyRange>> bodies;  ///< bodies of each thread, as stretches
+  PieceThreads pieces;                         ///< owner of the middle of every piece of all bodies
   std::vector<std::vector<Share<D>>> shares;   ///< [thread][section]
   std::vector<std::vector<Slot>> neighbours;   ///< bodies of other threads that pairs of each thread reach
 };
@@ -200,6 +201,9 @@ void make_plan(const System<D>& s, std::size_t threads, Plan<D>& plan) {
     plan.owner = owners_by_slot(s, plan.pace.share);
     plan.bodies = stretches_of(plan.owner, threads);
   }
+  plan.pieces.clear();
+  for (std::size_t begin = 0; begin < plan.owner.size(); begin += kPieceLength)
+    plan.pieces.push_back(plan.owner[(begin + std::min(begin + kPieceLength, plan.owner.size())) / 2]);
   plan.build = s.contacts.build;
   plan.split.resize(s.contacts.i.size());
   plan.shares.resize(threads);
@@ -298,17 +302,36 @@ void parallel_pass(System<D>& s, double dt, History history, int threads, BodySt
   ++plan.pace.passes;
 }
 
+namespace {
+
+/// The plan of the last pass, if bodies may be dealt out by it.
 template <int D>
-const std::vector<std::vector<BodyRange>>* owned_bodies(System<D>& s) {
+const Plan<D>* valid_plan(System<D>& s) {
   const auto threads = static_cast<std::size_t>(std::min(omp_get_max_threads(), 255));
   if (threads < 2 || omp_in_parallel() != 0) return nullptr;
   const auto& plan = s.contacts.plan.template get<Plan<D>>();
   const bool good = plan.build == s.contacts.build && plan.bodies.size() == threads;
-  return good && plan.owner.size() == s.particles.sphere.size() ? &plan.bodies : nullptr;
+  return good && plan.owner.size() == s.particles.sphere.size() ? &plan : nullptr;
+}
+
+}  // namespace
+
+template <int D>
+const std::vector<std::vector<BodyRange>>* owned_bodies(System<D>& s) {
+  const Plan<D>* const plan = valid_plan(s);
+  return plan != nullptr ? &plan->bodies : nullptr;
+}
+
+template <int D>
+const PieceThreads* piece_threads(System<D>& s) {
+  const Plan<D>* const plan = valid_plan(s);
+  return plan != nullptr ? &plan->pieces : nullptr;
 }
 
 template const std::vector<std::vector<BodyRange>>* owned_bodies(System<2>&);
 template const std::vector<std::vector<BodyRange>>* owned_bodies(System<3>&);
+template const PieceThreads* piece_threads(System<2>&);
+template const PieceThreads* piece_threads(System<3>&);
 template void parallel_pass<2>(System<2>&, double, History, int, BodyStiffness*);
 template void parallel_pass<3>(System<3>&, double, History, int, BodyStiffness*);
 

@@ -33,6 +33,10 @@ struct BodyRange {
 template <int D>
 const std::vector<std::vector<BodyRange>>* owned_bodies(System<D>& system);
 
+/// Who owned most of every piece of all bodies (in_pieces); null as above.
+template <int D>
+const PieceThreads* piece_threads(System<D>& system);
+
 /// The largest of what work(body) returns for all bodies (at least 0), on the threads that own them.
 template <int D, class Work>
 double max_over_bodies(System<D>& s, const Work& work) {
