@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -55,7 +56,24 @@ def run(command, cores, environment=None, directory=None):
     return output, 1024 * usage.ru_maxrss
 
 
+class BusyCore:
+    """A program that keeps a core busy while others are measured."""
+
+    def __init__(self, core):
+        command = [sys.executable, "-c", "while True: pass"]
+        self.process = subprocess.Popen((["taskset", "-c", str(core)] if shutil.which("taskset") else []) + command)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.wait()
+
+
 class Softgrain:
+    law = "tsuji"  # Hertz with the damping of Tsuji et al.
+
     def __init__(self, program, threads=1):
         self.name = "softgrain" if threads == 1 else f"softgrain, {threads} threads"
         self.program, self.threads = str(program), threads
@@ -81,22 +99,36 @@ class Softgrain:
 
 
 class Lammps:
-    def __init__(self, law, threads=1):
-        self.name = f"LAMMPS {law}" + ("" if threads == 1 else f", {threads} ranks")
-        self.law, self.threads = law, threads
+    """On ranks, each of so many threads of its OPENMP package (0: without the package)."""
+
+    def __init__(self, style, ranks=1, omp=0):
+        self.ranks, self.omp = ranks, omp
+        self.style, self.threads = style, ranks * max(omp, 1)
+        parts = ([f"{ranks} ranks"] if ranks > 1 else []) + ([f"{omp} OpenMP threads"] if omp > 0 else [])
+        self.name = ", ".join([f"LAMMPS {style}", *parts])
+        self.law = "tsuji" if style == "granular" else "classic"  # the classic law damps otherwise
 
     def missing(self):
         if not shutil.which("lmp"):
             return "LAMMPS is not installed (package lammps)"
-        return "" if self.threads == 1 or shutil.which("mpirun") else "mpirun is not installed (package openmpi-bin)"
+        if self.omp > 0 and not self.has_openmp():
+            return "this LAMMPS was built without its OPENMP package"
+        return "" if self.ranks == 1 or shutil.which("mpirun") else "mpirun is not installed (package openmpi-bin)"
+
+    @staticmethod
+    def has_openmp():
+        listed = subprocess.run(["lmp", "-h"], capture_output=True, text=True, stdin=subprocess.DEVNULL).stdout
+        return bool(re.search(r"\b(OPENMP|USER-OMP)\b", listed))
 
     def launcher(self):
         """Ranks share the cores that the whole command is given."""
-        if self.threads == 1:
+        if self.ranks == 1:
             return []
-        return ["mpirun", "-np", str(self.threads), "--bind-to", "none", "--oversubscribe"]
+        return ["mpirun", "-np", str(self.ranks), "--bind-to", "none", "--oversubscribe"]
 
-    ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+    def environment(self):
+        return {"OMP_NUM_THREADS": str(max(self.omp, 1)), "OMPI_ALLOW_RUN_AS_ROOT": "1",
+                "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
     @staticmethod
     def write_data(scene, path):
@@ -114,13 +146,15 @@ class Lammps:
         data = directory / f"{scene.name}.data"
         if not data.exists():
             self.write_data(scene, data)
-        values = {"data": data, "law": self.law, "rate": scene.rate, "step": scene.step, "warm_up": scene.warm_up,
+        values = {"data": data, "law": self.style, "rate": scene.rate, "step": scene.step, "warm_up": scene.warm_up,
                   "steps": scene.steps, "skin": scene.skin, "search": scene.search, "classes": scene.classes or "0"}
         command = self.launcher() + ["lmp", "-in", str(HERE / "compare_engines_lammps.in"), "-log", "none"]
+        if self.omp > 0:
+            command += ["-sf", "omp", "-pk", "omp", str(self.omp)]
         for key, value in values.items():
             command += ["-var", key, str(value)]
-        output, memory = run(command, cores, self.ENVIRONMENT, directory)
-        return {**self.read(output), "peak_memory": memory * self.threads}  # of the largest rank, times ranks
+        output, memory = run(command, cores, self.environment(), directory)
+        return {**self.read(output), "peak_memory": memory * self.ranks}  # of the largest rank, times ranks
 
     @staticmethod
     def read(output):
@@ -139,6 +173,7 @@ class Lammps:
 
 class Yade:
     name = "YADE"
+    law = "tsuji"
 
     def missing(self):
         return "" if shutil.which("yade") else "YADE is not installed (package yade)"
