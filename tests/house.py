@@ -12,7 +12,7 @@ SHORT = 40  # lines of a file
 LONG = 60  # lines of a function
 PAGE = 15  # lines of a README of a folder
 # The edge, where words come from texts and go to them.
-EDGE = re.compile(r"/(scene\w*|program|law_file|multi_contact_law_io|law_card_read|card_text|run_data|section\w*|xdmf|run_files|text\w*)\.(cpp|h)$|/lammps\w*/")
+EDGE = re.compile(r"/(scene\w*|kinds/\w+/report\w*|program|law_file|multi_contact_law_io|law_card_read|card_text|run_data|section\w*|xdmf|run_files|text\w*)\.(cpp|h)$|/lammps\w*/")
 COMPARED = re.compile(r'[=!]=\s*"[^"]*"|"[^"]*"\s*[=!]=')
 
 

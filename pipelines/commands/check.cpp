@@ -12,7 +12,7 @@
 #include "pipelines/commands/result_check.h"
 #include "pipelines/commands/table_check.h"
 #include "pipelines/kinds/kinds.h"
-#include "pipelines/kinds/law_table/law_check.h"
+#include "pipelines/kinds/law_table/scene.h"
 #include "pipelines/run/run_context.h"
 
 namespace softgrain {

@@ -10,7 +10,7 @@
 #include "common/data/force_scale.h"
 #include "common/io/csv_file.h"
 #include "common/packing/grading_scene.h"
-#include "pipelines/kinds/macro/packing_source.h"
+#include "pipelines/kinds/macro/scene.h"
 
 namespace softgrain {
 

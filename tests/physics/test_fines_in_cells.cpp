@@ -3,8 +3,10 @@
 
 #include <cmath>
 
+#include "calibrate/face_friction_fit.h"
 #include "macrosim/cell_matter/cell_packing.h"
-#include "pipelines/kinds/material_law/fines_in_cells.h"
+#include "macrosim/cell_matter/face_springs.h"
+#include "pipelines/kinds/material_law/fit.h"
 
 namespace softgrain {
 namespace {

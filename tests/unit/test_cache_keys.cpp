@@ -11,9 +11,8 @@
 #include "macrosim/constructed_packing.h"
 #include "macrosim/preparation.h"
 #include "microsim/shell_packing.h"
-#include "pipelines/kinds/law_table/kept_multi_contact.h"
-#include "pipelines/kinds/law_table/multi_contact_members.h"
-#include "pipelines/kinds/macro/packing_source.h"
+#include "pipelines/kinds/law_table/multi_contact_stage.h"
+#include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/macro/twin_cache.h"
 #include "tests/support/multi_contact.h"
 

@@ -5,7 +5,7 @@
 
 #include "common/data/force_scale.h"
 #include "common/data/macro_result.h"
-#include "pipelines/kinds/macro/values.h"
+#include "pipelines/kinds/macro/summary.h"
 
 namespace softgrain {
 namespace {

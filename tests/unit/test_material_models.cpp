@@ -7,7 +7,6 @@
 #include "common/core/particles.h"
 #include "macrosim/body_contacts.h"
 #include "pipelines/kinds/material_models/models.h"
-#include "pipelines/kinds/material_models/scores.h"
 
 namespace softgrain {
 namespace {

@@ -5,9 +5,8 @@
 
 #include "common/core/error.h"
 #include "common/io/text_file.h"
-#include "pipelines/kinds/law_table/kept_multi_contact.h"
-#include "pipelines/kinds/law_table/multi_contact_plan.h"
 #include "pipelines/kinds/law_table/multi_contact_scene.h"
+#include "pipelines/kinds/law_table/multi_contact_stage.h"
 #include "tests/support/multi_contact.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/tiny_law_table.h"

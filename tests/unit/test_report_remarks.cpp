@@ -6,9 +6,9 @@
 #include <functional>
 
 #include "common/data/law_remarks.h"
-#include "pipelines/kinds/law_table/results.h"
+#include "pipelines/kinds/law_table/scene.h"
 #include "pipelines/kinds/macro/scene.h"
-#include "pipelines/kinds/soft_particle/results.h"
+#include "pipelines/kinds/soft_particle/scene.h"
 #include "pipelines/report/run_data.h"
 #include "pipelines/report/sections.h"
 #include "pipelines/results/summary.h"

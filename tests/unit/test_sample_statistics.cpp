@@ -1,5 +1,5 @@
 // Means over samples: nested numbers, undefined ones, one sample, none.
-#include "pipelines/kinds/cohesive_powder/output.h"
+#include "pipelines/kinds/cohesive_powder/summary.h"
 
 #include <gtest/gtest.h>
 

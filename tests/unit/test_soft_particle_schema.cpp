@@ -11,7 +11,7 @@
 #include "common/data/card_text.h"
 #include "common/data/soft_particle_schema.h"
 #include "common/data/spec_io.h"
-#include "pipelines/kinds/law_table/multi_contact_members.h"
+#include "pipelines/kinds/law_table/multi_contact_stage.h"
 #include "tests/support/temporary_directory.h"
 
 namespace {

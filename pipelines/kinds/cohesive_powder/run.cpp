@@ -11,8 +11,6 @@
 #include "common/io/progress.h"
 #include "common/io/text_file.h"
 #include "microsim/powder/powder_state_io.h"
-#include "pipelines/kinds/cohesive_powder/consolidation.h"
-#include "pipelines/kinds/cohesive_powder/output.h"
 #include "pipelines/kinds/cohesive_powder/summary.h"
 #include "pipelines/kinds/cohesive_powder/variants.h"
 #include "pipelines/run/run.h"

@@ -1,8 +1,14 @@
 // What powders came to: summary.json of their runs, which the report and the tables of variants read back.
 #pragma once
 
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "calibrate/consolidation_fit.h"
 #include "common/data/fields.h"
+#include "common/io/hdf5_file.h"
 #include "microsim/powder/powder_analysis.h"
 #include "microsim/powder/powder_assembly.h"
 #include "pipelines/kinds/cohesive_powder/structure.h"
@@ -296,5 +302,35 @@ void fields(auto&& visit, Of<PowderVariantsSummary> auto& s) {
   fields(visit, s.head);
   visit("variants", s.variants);
 }
+
+// What was measured on a powder, for files and summaries, and the mean and scatter of the scalars of several samples.
+
+/// Histograms of several samples, their counts added up.
+nlohmann::json histograms_json(const std::vector<const PowderForces*>& samples);
+
+/// Data set "pairs", one row per contact or attracting pair (its columns are named in the attribute), the group
+/// "histograms" and the scalars as text.
+void write_analysis(const h5::Group& group, const PowderAnalysis& analysis);
+
+/// Statistics of every number in the objects, nested ones by their path ("rigidity.fixed.h"): {"mean", "deviation",
+/// "samples"}, the deviation with n - 1. Samples where it is missing or null (undefined) do not count; without any, the
+/// mean is null, with one the deviation. Flags, texts and lists are passed over.
+nlohmann::json sample_statistics(const std::vector<nlohmann::json>& samples);
+
+// Powders under several pressures: what their consolidation came to, in words and pictures.
+
+using PowderStages = std::vector<PowderStage>;  ///< stages of one sample
+
+/// Consolidation fit over the rising pressures, for samples that reached all pressures. Empty where fewer than two
+/// pressures rise.
+std::optional<ConsolidationFit> consolidation_of(const std::vector<PowderStages>& samples);
+
+/// "lambda = 0.118(4) for P* from 0.05 to 1.6, ..."; one line.
+std::string consolidation_text(const ConsolidationFit& fit);
+
+namespace report {
+/// 1/Phi, z and moduli over P*: a row of figures with the fit; empty without several pressures.
+std::string consolidation_figures(const std::vector<PowderStages>& samples);
+}  // namespace report
 
 }  // namespace softgrain

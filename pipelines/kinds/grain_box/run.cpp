@@ -7,6 +7,7 @@
 #include "common/core/parallel_tasks.h"
 #include "common/io/progress.h"
 #include "microsim/grain_box/grain_box_run.h"
+#include "pipelines/kinds/grain_box/report.h"
 #include "pipelines/results/summary.h"
 #include "pipelines/run/typed_kind.h"
 

@@ -9,7 +9,6 @@
 #include "common/io/scene.h"
 #include "microsim/grain_box/record.h"
 #include "microsim/grain_box/spec.h"
-#include "pipelines/results/kind_results.h"
 #include "pipelines/run/findings.h"
 #include "pipelines/run/scene_kind.h"
 #include "pipelines/run/size_summary.h"
@@ -34,17 +33,6 @@ SceneKind grain_box_kind();
 
 /// Facts per pack: counts, solid fraction, overlap at the end of the loading, memory, time; and what to mind.
 void check_grain_box(const GrainBoxSetup& setup, Findings& out);
-
-// What runs of grain boxes leave behind.
-
-KindResults grain_box_results();
-
-/// grain_box.h5: the last state of every pack, one series each, whatever the choice. Throws IoError.
-void visit_grain_boxes(const std::string& path, SnapshotChoice choice, const VisitSnapshot& visit);
-
-namespace report {
-std::string grain_box_section(const RunData& run);  ///< stresses, moduli, contacts
-}
 
 /// One object per pack: states at the ends of the phases, moduli at round stresses, growth exponents, effort.
 nlohmann::json grain_boxes_json(const std::vector<GrainBoxResult>& results);

@@ -7,7 +7,7 @@
 #include "common/core/parallel_tasks.h"
 #include "common/io/progress.h"
 #include "microsim/shell_packing.h"
-#include "pipelines/kinds/law_table/kept_multi_contact.h"
+#include "pipelines/kinds/law_table/multi_contact_stage.h"
 
 namespace softgrain {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/data/fields.h"
-#include "pipelines/kinds/inverse/stage.h"
+#include "pipelines/kinds/inverse/scene.h"
 #include "pipelines/results/summary.h"
 
 namespace softgrain {

@@ -1,8 +1,7 @@
-#include "pipelines/kinds/law_table/kept_multi_contact.h"
+#include "pipelines/kinds/law_table/multi_contact_stage.h"
 
 #include "common/core/error.h"
 #include "common/state/system_io.h"
-#include "pipelines/kinds/law_table/multi_contact_members.h"
 
 namespace softgrain {
 

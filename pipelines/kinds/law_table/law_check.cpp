@@ -1,5 +1,5 @@
 // softgrain check of law cards and law tables.
-#include "pipelines/kinds/law_table/law_check.h"
+#include "pipelines/kinds/law_table/scene.h"
 
 #include <fmt/format.h>
 

@@ -11,9 +11,9 @@
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
 #include "common/data/card_text.h"
-#include "pipelines/kinds/law_table/multi_contact_check.h"
-#include "pipelines/kinds/law_table/multi_contact_plan.h"
-#include "pipelines/kinds/soft_particle/cost.h"
+#include "pipelines/kinds/law_table/multi_contact_stage.h"
+#include "pipelines/kinds/law_table/multi_contact_summary.h"
+#include "pipelines/kinds/soft_particle/check.h"
 #include "pipelines/law/law_draws.h"
 
 namespace softgrain {

@@ -1,4 +1,4 @@
-#include "pipelines/kinds/law_table/multi_contact_check.h"
+#include "pipelines/kinds/law_table/multi_contact_summary.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "pipelines/kinds/law_table/multi_contact_plan.h"
+#include "pipelines/kinds/law_table/multi_contact_stage.h"
 
 #include <algorithm>
 #include <cmath>

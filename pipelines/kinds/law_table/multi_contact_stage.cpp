@@ -11,8 +11,6 @@
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
 #include "microsim/shell_packing.h"
-#include "pipelines/kinds/law_table/kept_multi_contact.h"
-#include "pipelines/kinds/law_table/multi_contact_plan.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
 
 namespace softgrain {

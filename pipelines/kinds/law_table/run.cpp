@@ -7,10 +7,8 @@
 #include <filesystem>
 
 #include "common/contact/multi_contact_table_file.h"
-#include "pipelines/kinds/law_table/multi_contact_plan.h"
 #include "pipelines/kinds/law_table/multi_contact_stage.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
-#include "pipelines/kinds/law_table/results.h"
 #include "pipelines/results/summary.h"
 #include "pipelines/run/size_summary.h"
 #include "pipelines/run/typed_kind.h"

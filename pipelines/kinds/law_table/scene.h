@@ -8,6 +8,8 @@
 #include "common/io/scene.h"
 #include "pipelines/kinds/law_table/multi_contact_law_fit.h"
 #include "pipelines/kinds/law_table/multi_contact_scene.h"
+#include "pipelines/results/kind_results.h"
+#include "pipelines/run/findings.h"
 #include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
@@ -37,5 +39,16 @@ SceneKind law_table_kind();
 
 /// Counts, overlaps, memory, time, and what the table will lack. Throws InputError.
 void check_law_table(const LawTableSetup& setup, Findings& out);
+
+/// What a card or a table holds, and what to mind when it is used. Throws InputError, IoError.
+void check_laws(const std::string& path, Findings& out);
+
+// What multi-contact measurements leave behind, and the tables fitted to them.
+
+KindResults law_table_results();
+
+namespace report {
+std::string law_table_section(const RunData& run);  ///< several neighbours at once: measured and fitted
+}
 
 }  // namespace softgrain

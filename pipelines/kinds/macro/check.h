@@ -8,7 +8,7 @@
 
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/macro/stage.h"
-#include "pipelines/kinds/soft_particle/cost.h"
+#include "pipelines/kinds/soft_particle/check.h"
 #include "pipelines/law/named_laws.h"
 #include "pipelines/run/findings.h"
 

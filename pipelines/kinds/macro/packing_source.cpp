@@ -1,4 +1,5 @@
-#include "pipelines/kinds/macro/packing_source.h"
+// Starting states that are not prepared: kept by another run, or given as a file.
+#include "pipelines/kinds/macro/scene.h"
 
 #include <fmt/format.h>
 

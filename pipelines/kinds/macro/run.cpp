@@ -12,7 +12,6 @@
 #include "pipelines/kinds/macro/lammps_stage.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/macro/summary.h"
-#include "pipelines/kinds/macro/values.h"
 #include "pipelines/run/run.h"
 
 namespace softgrain {

@@ -18,7 +18,7 @@
 #include "macrosim/twin_places.h"
 #include "microsim/shell_packing.h"
 #include "pipelines/kinds/macro/bands.h"
-#include "pipelines/kinds/macro/packing_source.h"
+#include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/macro/twin_cache.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 #include "pipelines/run/result_cache.h"

@@ -10,7 +10,6 @@
 #include "pipelines/compare/compare.h"
 #include "pipelines/kinds/macro/bands.h"
 #include "pipelines/kinds/macro/stage.h"
-#include "pipelines/kinds/macro_comparison/results.h"
 #include "pipelines/kinds/macro_comparison/summary.h"
 #include "pipelines/run/text_table.h"
 #include "pipelines/run/typed_kind.h"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipelines/kinds/macro/scene.h"
+#include "pipelines/results/kind_results.h"
 #include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
@@ -43,5 +44,13 @@ SceneKind macro_comparison_kind();
 
 /// What every scene asks of its laws, and the time of all. Throws InputError, IoError.
 void check_macro_comparison(const MacroComparisonSetup& setup, Findings& out);
+
+// What comparisons of laws with twins leave behind.
+
+KindResults macro_comparison_results();
+
+namespace report {
+std::string macro_scenes_section(const RunData& run);  ///< every law and both twins on every scene: error and cost
+}
 
 }  // namespace softgrain

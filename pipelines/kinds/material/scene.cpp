@@ -1,3 +1,5 @@
+// Reads scenes of kind "material", and says what follows from them: softgrain check. Then which variants differ in the
+// span of their sizes alone.
 #include "pipelines/kinds/material/scene.h"
 
 #include <fmt/format.h>
@@ -5,12 +7,15 @@
 #include <algorithm>
 #include <numeric>
 #include <set>
+#include <sstream>
 
 #include "common/core/cost.h"
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/io/scene.h"
 #include "common/packing/grading_scene.h"
 #include "macrosim/preparation.h"
+#include "macrosim/test_protocol.h"
 #include "microsim/particles/scene_memory.h"
 #include "pipelines/kinds/macro/check.h"
 #include "pipelines/kinds/macro/room.h"
@@ -350,6 +355,88 @@ void check_variants(const MaterialScene& material, Findings& out, bool timed) {
   }
   out.facts["variants"] = variants;
   if (timed && untried > 0.0 && bodies > 0.0) out.spend("variants that were not tried", out.spent() * untried / bodies);
+}
+
+namespace {
+
+/// "nu", "0.3".
+struct Property {
+  std::string name;
+  std::string value;
+};
+
+/// The law of the sizes without its ends; those of sieve curves, classes and lists are the law.
+std::string law_of_sizes(const MacroSpec& spec) {
+  if (!spec.solid_sizes) return fmt::format("b = {:g}", spec.exponent);
+  const GradingForm form = spec.solid_sizes->form();
+  std::string text = to_string(form);
+  if (form == GradingForm::classes || form == GradingForm::sieve_curve || form == GradingForm::list) return text;
+  std::istringstream lines(spec.solid_sizes->text());
+  for (std::string line; std::getline(lines, line);)
+    if (!line.starts_with("form") && !line.starts_with("radius_min") && !line.starts_with("radius_max"))
+      text += ", " + line;
+  return text;
+}
+
+/// Sizes that no law with two ends describes.
+std::string whole_sizes(const MacroSpec& spec) {
+  if (!spec.solid_sizes) return "";
+  const GradingForm form = spec.solid_sizes->form();
+  const bool whole = form == GradingForm::classes || form == GradingForm::sieve_curve || form == GradingForm::list;
+  return whole ? spec.solid_sizes->text() : "";
+}
+
+std::string stage_text(const MacroStage& stage) {
+  std::string text = stage.record.name;
+  for (const AxisDrive& axis : stage.axis)
+    text += fmt::format(" {}{:g}", axis.by_stress ? "stress " : "", axis.as_at >= 0 ? 0.0 : axis.value);
+  return text + fmt::format(" in {} x {}, tolerance {:g}", stage.steps, stage.increments_per_step, stage.tolerance);
+}
+
+std::string test_text(const MacroSpec& spec) { return join_text(stages_of(spec), "; ", stage_text); }
+
+std::string number(double value) { return fmt::format("{:g}", value); }
+
+/// All that may differ beside what always stands in the name of a family.
+std::vector<Property> properties_of(const MaterialVariant& v) {
+  const MacroSpec& s = v.setup.spec;
+  const PreparationProtocol& p = s.protocol;
+  return {{"E [Pa]", number(s.youngs_modulus)},
+          {"nu", number(s.poisson_ratio)},
+          {"density", number(s.density)},
+          {"start_pressure", number(s.start_pressure)},
+          {"start_fraction", number(p.start_fraction)},
+          {"inertial_number", number(p.inertial_number)},
+          {"compaction_mu", number(p.friction)},
+          {"compaction_restitution", number(p.restitution)},
+          {"coarse_share", number(p.coarse_share)},
+          {"first_pressure", number(p.first_pressure)},
+          {"preparation_tolerance", number(p.tolerance)},
+          {"preparation_passes", std::to_string(p.max_passes)},
+          {"force_floor", v.loading.empty() ? number(s.force_floor) : ""},
+          {"test", v.loading.empty() ? test_text(s) : ""},
+          {"sizes of", whole_sizes(s)}};
+}
+
+}  // namespace
+
+std::string material_family(const MaterialVariant& variant, const std::vector<MaterialVariant>& all) {
+  const MacroSpec& spec = variant.setup.spec;
+  std::string text = fmt::format("{}, mu = {:g}, {}", to_string(spec.preparation), spec.friction, law_of_sizes(spec));
+  const std::vector<Property> own = properties_of(variant);
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    const auto differs = [&](const MaterialVariant& v) { return properties_of(v)[k].value != own[k].value; };
+    if (std::ranges::none_of(all, differs)) continue;
+    if (own[k].name == "sizes of")  // their text is long
+      text += own[k].value.empty() ? "" : ", sizes of " + (variant.packings.empty() ? variant.name : variant.packings);
+    else
+      text += ", " + own[k].name + " = " + own[k].value;
+  }
+  return text;
+}
+
+std::string family_of(const MaterialVariant& variant, const std::vector<MaterialVariant>& all) {
+  return material_family(variant, all) + (variant.loading.empty() ? "" : ", " + variant.loading);
 }
 
 }  // namespace softgrain

@@ -7,7 +7,6 @@
 #include "common/io/text_file.h"
 #include "pipelines/kinds/material/run.h"
 #include "pipelines/kinds/material_law/fit.h"
-#include "pipelines/kinds/material_law/results.h"
 #include "pipelines/kinds/material_law/scene.h"
 #include "pipelines/run/typed_kind.h"
 

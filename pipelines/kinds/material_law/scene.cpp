@@ -9,7 +9,7 @@
 #include "common/core/particles.h"
 #include "common/packing/grading.h"
 #include "pipelines/kinds/macro/room.h"
-#include "pipelines/kinds/material_law/fines_in_cells.h"
+#include "pipelines/kinds/material_law/fit.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 
 namespace softgrain {

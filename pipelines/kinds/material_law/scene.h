@@ -7,6 +7,7 @@
 
 #include "common/packing/grading.h"
 #include "pipelines/kinds/material/scene.h"
+#include "pipelines/results/kind_results.h"
 #include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
@@ -46,5 +47,15 @@ void check_material_law(const MaterialLawScene& law, Findings& out);
 /// Measures all variants, fits the cell law; writes cell_law.toml beside what a scene of kind "material" leaves. Status
 /// not_usable, and no card, where a part of the law could not be determined.
 SceneKind material_law_kind();
+
+// What runs of kind "material-law" leave behind, beside the files of kind "material".
+
+inline constexpr const char* kCellLawFile = "cell_law.toml";
+
+KindResults material_law_results();
+
+namespace report {
+std::string cell_law_section(const RunData& run);  ///< numbers of the law, excess pores, friction of the fines
+}
 
 }  // namespace softgrain

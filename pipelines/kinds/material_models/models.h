@@ -8,6 +8,8 @@
 
 #include "pipelines/kinds/material/run.h"
 #include "pipelines/kinds/material_models/scene.h"
+#include "pipelines/kinds/material_models/summary.h"
+#include "pipelines/run/text_table.h"
 
 namespace softgrain {
 
@@ -58,5 +60,17 @@ void map_by_state(const CellCard& card, const MacroCurve& truth, double pressure
 
 /// phi_J of the mixture by the card: 1/(1 + e), e the pores of fines and coarse grains over their solid volume.
 double onset_by_card(const CellCard& card, double share);
+
+// Curves of models beside the truth.
+
+/// Samples that truth and model came through to the end are compared, pair by pair, by their mean curves, point by
+/// point; those that a model did not are named. Strain and stress of z are axial.
+ModelScore score(const ModelRun& run, bool blind);
+
+/// Square root of sum (model - truth)^2 over sum truth^2 of the points from `first` on. NaN where there is none.
+double relative_difference(const std::vector<double>& model, const std::vector<double>& truth, std::size_t first);
+
+TextTable table_of(const std::vector<ModelScore>& scores);
+std::string console_summary(const std::vector<ModelScore>& scores);
 
 }  // namespace softgrain

@@ -3,8 +3,7 @@
 #include "common/io/text_file.h"
 #include "pipelines/kinds/material/run.h"
 #include "pipelines/kinds/material_models/models.h"
-#include "pipelines/kinds/material_models/results.h"
-#include "pipelines/kinds/material_models/scores.h"
+#include "pipelines/kinds/material_models/scene.h"
 #include "pipelines/run/typed_kind.h"
 
 namespace softgrain {

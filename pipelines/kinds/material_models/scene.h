@@ -8,6 +8,7 @@
 #include "common/core/enum_names.h"
 #include "pipelines/kinds/material/scene.h"
 #include "pipelines/law/named_laws.h"
+#include "pipelines/results/kind_results.h"
 
 namespace softgrain {
 
@@ -73,5 +74,13 @@ MaterialModelsScene read_material_models_scene(const Scene& scene);
 
 /// Runs materials and models; writes models.csv, models_NAME.h5 and what kind material does.
 SceneKind material_models_kind();
+
+// What runs of kind "material-models" leave behind, beside the files of kind "material".
+
+KindResults material_models_results();
+
+namespace report {
+std::string material_models_section(const RunData& run);  ///< stress of truth and models, errors, error against cost
+}
 
 }  // namespace softgrain

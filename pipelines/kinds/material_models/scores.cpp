@@ -1,4 +1,5 @@
-#include "pipelines/kinds/material_models/scores.h"
+// Curves of models beside the truth.
+#include "pipelines/kinds/material_models/models.h"
 
 #include <fmt/format.h>
 

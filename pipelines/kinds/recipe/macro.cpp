@@ -9,7 +9,7 @@
 #include "common/core/particles.h"
 #include "common/core/statistics.h"
 #include "common/data/estimate_words.h"
-#include "pipelines/kinds/macro/packing_source.h"
+#include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/material_models/models.h"
 #include "pipelines/law/named_laws.h"

@@ -11,7 +11,7 @@
 #include "common/data/estimate_words.h"
 #include "common/io/text_file.h"
 #include "pipelines/kinds/macro/stage.h"
-#include "pipelines/kinds/material_law/results.h"
+#include "pipelines/kinds/material_law/scene.h"
 #include "pipelines/kinds/recipe/law.h"
 #include "pipelines/run/typed_kind.h"
 

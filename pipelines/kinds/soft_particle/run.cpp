@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include "pipelines/kinds/soft_particle/check.h"
-#include "pipelines/kinds/soft_particle/results.h"
-#include "pipelines/kinds/soft_particle/stage.h"
 #include "pipelines/results/summary.h"
 #include "pipelines/run/size_summary.h"
 #include "pipelines/run/typed_kind.h"

@@ -5,9 +5,11 @@
 #include <vector>
 
 #include "common/data/measurements.h"
+#include "common/data/shell_packing.h"
 #include "common/io/scene.h"
 #include "microsim/measure.h"
 #include "microsim/protocol.h"
+#include "pipelines/results/kind_results.h"
 #include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
@@ -79,5 +81,38 @@ std::unique_ptr<Protocol> make_protocol(const MeasureSetup& setup, Relaxation re
 /// Runs a scene of kind "soft-particle"; writes measurements.h5, summary.json and report.html.
 /// Status not_usable when a recorded point did not converge under its own criterion.
 SceneKind soft_particle_kind();
+
+// The measuring part of a pipeline: packings and runs in parallel, each saved as it goes, so that a stopped run goes
+// on.
+
+class Run;
+
+struct MeasureResult {
+  Measurements data;
+  std::vector<ShellPacking> packings;  ///< first bodies, to fill resolved twins with
+  /// One sentence for each packing whose measurement broke off (a grain squeezed out of its shell...). It is left out
+  /// of `data` as a whole: a mean over those that got further is a mean over the soft ones.
+  std::vector<std::string> left_out;
+  bool enough_left = true;  ///< whether at least half of the packings of every relaxation and kind of pair are left
+  double wall_seconds = 0.0;
+  double packing_seconds = 0.0;  ///< part of it that went into generating packings
+};
+
+/// Packing index of the second body of a soft-soft pair: a stream of its own.
+std::uint64_t second_body_index(std::int64_t packing);
+
+/// Generates, measures and saves DIR/measurements.h5. Results do not depend on the number of threads.
+MeasureResult run_measure_stage(const MeasureSetup& setup, const Run& run);
+
+// What measurements of soft particles leave behind, and laws fitted to them.
+
+KindResults soft_particle_results();
+
+namespace report {
+std::string normal_section(const RunData& run);       ///< Fn(Delta)
+std::string tangential_section(const RunData& run);   ///< Ft(ht)
+std::string stiffness_section(const RunData& run);    ///< kt(Delta)
+std::string relaxations_section(const RunData& run);  ///< published against damped relaxation
+}  // namespace report
 
 }  // namespace softgrain

@@ -1,4 +1,5 @@
-#include "pipelines/kinds/soft_particle/stage.h"
+// The measuring part: packings and runs in parallel, each saved as it goes, so that a stopped run goes on.
+#include "pipelines/kinds/soft_particle/scene.h"
 
 #include <fmt/format.h>
 
@@ -17,6 +18,7 @@
 #include "microsim/shell_packing.h"
 #include "microsim/soft_experiment.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
+#include "pipelines/run/run.h"
 
 namespace softgrain {
 

@@ -1,0 +1,135 @@
+// What the stages of macro tests came to: moduli, strength, change of volume.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/core/few_samples.h"
+#include "pipelines/compare/stage_results.h"
+#include "pipelines/kinds/macro/scene.h"
+#include "pipelines/report/engine_style.h"
+#include "pipelines/report/html.h"
+#include "pipelines/report/number_format.h"
+
+namespace softgrain::report {
+
+namespace {
+
+/// A quantity that curves do not hold, in the place of one that they do.
+template <class Quantity>
+std::vector<MacroCurve> with_column(std::vector<MacroCurve> curves, Stress member, Quantity&& of) {
+  for (MacroCurve& c : curves) c.*member = of(c);
+  return curves;
+}
+
+std::vector<double> volumetric_strains(const MacroCurve& c) {
+  std::vector<double> out;
+  for (std::size_t k = 0; k < c.strain_x.size(); ++k)
+    out.push_back(100.0 * (1.0 - (1.0 - c.strain_x[k]) * (1.0 - c.strain_y[k]) * (1.0 - c.strain_z[k])));
+  return out;
+}
+
+template <class Quantity>
+std::string over_strain(const std::vector<MacroCurve>& curves, const char* id, const char* title, const char* label,
+                        const char* caption, Quantity&& of) {
+  Plot plot({.id = id, .title = title, .x = {.label = "axial strain [%]"}, .y = {.label = label}, .height = 310.0});
+  constexpr Stress kPlace = &MacroCurve::stress_deviator;
+  add_curves(plot, with_column(curves, kPlace, of), kPlace, 1.0);
+  return plot.empty() ? "" : figure(plot.svg(), caption);
+}
+
+std::string cell(const std::optional<MeanError>& m, double unit = 1.0) {
+  return m ? format_with_error(m->mean / unit, m->n > 1 ? m->error / unit : 0.0) : "–";
+}
+
+/// The stresses that a secant modulus was taken between, or those that the stage did not go through.
+std::string between(const StageMeans& s, double unit) {
+  const std::string words = modulus_interval(s);
+  if (!s.modulus) return "not met: " + words;
+  return format_number(s.modulus_from->mean / unit, 3) + " and " + format_number(s.modulus_to->mean / unit, 3) +
+         (s.record.modulus_stress[1] > 0.0 ? "" : " (" + words + ")");
+}
+
+/// A slope whose error is as large as itself is none.
+std::string slope_cell(const std::optional<MeanError>& m, double unit = 1.0) {
+  return !m || is_told_from_zero(m->n, m->mean, m->error) ? cell(m, unit) : "not determined (" + cell(m, unit) + ")";
+}
+
+/// Columns with their prefixes, and what a stage has in them.
+struct StageTable {
+  std::vector<std::string> header;
+  std::function<std::vector<std::string>(const StageMeans&)> cells;
+};
+
+std::string table_of(const std::vector<MacroCurve>& curves, const StageTable& wanted) {
+  std::vector<std::string> header{"stage", "engine"};
+  header.insert(header.end(), wanted.header.begin(), wanted.header.end());
+  HtmlTable table(header, 2);
+  std::vector<std::string> engines;
+  for (const MacroCurve& c : curves)
+    if (std::find(engines.begin(), engines.end(), c.engine) == engines.end()) engines.push_back(c.engine);
+  for (const std::string& engine : engines)
+    for (const StageMeans& s : stage_means(curves, engine)) {
+      std::vector<std::string> row{s.record.name, engine_name(engine)};
+      for (std::string& one : wanted.cells(s)) row.push_back(std::move(one));
+      table.row(row);
+    }
+  return table.empty() ? "" : table.html();
+}
+
+std::string tables_of_stages(const std::vector<MacroCurve>& curves) {
+  double largest = 0.0;
+  for (const MacroCurve& c : curves)
+    for (const double s : c.stress_axial) largest = std::max(largest, std::abs(s));
+  const SiPrefix stress = si_prefix(largest);
+  const SiPrefix modulus = si_prefix(10.0 * largest);
+  const std::string stress_unit = " [" + stress.symbol + "Pa]";
+  const std::string modulus_unit = " [" + modulus.symbol + "Pa]";
+  const StageTable moduli{{"modulus", "secant" + modulus_unit, "between stresses" + stress_unit,
+                           "tangent at its begin" + modulus_unit, "Poisson's ratio at its begin"},
+                          [&](const StageMeans& s) -> std::vector<std::string> {
+                            const bool holds = s.record.kind == StageKind::hold;
+                            return {holds ? "–" : to_string(modulus_of(s.record.way)),
+                                    slope_cell(s.modulus, modulus.factor), holds ? "–" : between(s, stress.factor),
+                                    slope_cell(s.modulus_begin, modulus.factor), slope_cell(s.poisson_begin)};
+                          }};
+  const StageTable ends{{"axial strain [%]", "volume lost [%]", "axial stress" + stress_unit,
+                         "lateral stress" + stress_unit, "q/p", "largest q/p"},
+                        [&](const StageMeans& s) -> std::vector<std::string> {
+                          const std::string where =
+                              s.ratio_peak_strain ? " at " + format_number(100.0 * s.ratio_peak_strain->mean, 3) + " %"
+                                                  : "";
+                          return {cell(s.strain_end, 0.01),
+                                  cell(s.volumetric_end, 0.01),
+                                  cell(s.axial_end, stress.factor),
+                                  cell(s.lateral_end, stress.factor),
+                                  cell(s.ratio_end),
+                                  cell(s.ratio_peak) + where};
+                        }};
+  const std::string text = table_of(curves, moduli) + table_of(curves, ends);
+  if (text.empty()) return "";
+  return text +
+         paragraph(
+             "Moduli are over logarithmic strains: constrained Δσz/Δεz, Young Δσz/Δεz at constant lateral stress, bulk "
+             "Δp/Δεv, shear Δ(σz − σx)/2Δ(εz − εx). The secant is taken between two values of that stress (p of bulk, "
+             "(σz − σx)/2 of shear), which modulus_stress of the scene chooses. The tangent is that of a parabola "
+             "through the first points; of an unloading it is the unloading modulus. The second table has what there "
+             "is at the end of each stage, and the largest q/p with the axial strain where it is; q = √(3J₂), p the "
+             "mean stress. Mean over usable samples ± standard error; one sample has none.");
+}
+
+}  // namespace
+
+std::string stage_parts(const std::vector<MacroCurve>& curves, MacroTest test) {
+  std::string out;
+  if (test == MacroTest::stages)
+    out += figure_row(
+        {over_strain(curves, "macro-stages-ratio", "Stress ratio, stages", "q/p",
+                     "q/p, the strength that is mobilised.", stress_ratios),
+         over_strain(curves, "macro-stages-volume", "Volume, stages", "volume lost [%]",
+                     "Loss of volume since the start; where it falls, the packing dilates.", volumetric_strains)});
+  return out + tables_of_stages(curves);
+}
+
+}  // namespace softgrain::report

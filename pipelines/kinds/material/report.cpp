@@ -1,0 +1,394 @@
+// Resolved packings in the report: pressure over solid fraction, stresses and their ratio over strain, who bears them.
+// Then what runs leave behind.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "common/data/estimate_words.h"
+#include "macrosim/body_contacts.h"
+#include "pipelines/kinds/macro/scene.h"
+#include "pipelines/kinds/macro/summary.h"
+#include "pipelines/kinds/material/scene.h"
+#include "pipelines/kinds/material/summary.h"
+#include "pipelines/report/html.h"
+#include "pipelines/report/number_format.h"
+#include "pipelines/report/run_data.h"
+#include "pipelines/report/svg_plot.h"
+
+namespace softgrain::report {
+
+namespace {
+
+struct Variant {
+  std::string name;
+  std::vector<MacroCurve> curves;
+};
+
+std::vector<Variant> variants_of(const RunData& run) {
+  std::vector<Variant> out;
+  for (const MaterialVariantSummary& v : run.summary_as<MaterialSummary>().variants) {
+    if (v.file.empty()) continue;  // summaries of other kinds have variants too
+    if (const auto* curves = run.file(v.file, load_macro)) out.push_back({v.name, *curves});
+  }
+  return out;
+}
+
+const std::vector<double>& more_of(const MacroCurve& c, const std::string& name) {
+  static const std::vector<double> kNone;
+  const auto found = c.more.find(name);
+  return found == c.more.end() ? kNone : found->second;
+}
+
+using Column = std::function<std::vector<double>(const MacroCurve&)>;
+
+/// One line per sample, one colour per variant.
+void add_lines(Plot& plot, const std::vector<Variant>& variants, const Column& x, const Column& y) {
+  for (std::size_t v = 0; v < variants.size(); ++v) {
+    bool named = false;
+    for (const MacroCurve& c : variants[v].curves) {
+      Series s{.label = named ? "" : variants[v].name, .hover = "", .x = x(c), .y = y(c)};
+      if (s.x.size() != s.y.size() || s.x.empty()) continue;
+      named = true;
+      s.hover = fmt::format("{}, sample {}{}", variants[v].name, c.sample, c.usable ? "" : " (not usable)");
+      s.style = {.color = palette::cycle(v), .width = 1.4, .marker = Marker::circle, .marker_size = 2.2};
+      if (!c.usable) s.style.opacity = 0.4;
+      s.group = variants[v].name;
+      plot.add(std::move(s));
+    }
+  }
+}
+
+std::vector<double> scaled(std::vector<double> values, double by) {
+  for (double& v : values) v *= by;
+  return values;
+}
+
+std::string line_figure(const std::vector<Variant>& variants, PlotOptions options, const char* caption, const Column& x,
+                        const Column& y) {
+  Plot plot(std::move(options));
+  add_lines(plot, variants, x, y);
+  return plot.empty() ? "" : figure(plot.svg(), caption);
+}
+
+std::vector<double> axial_strain(const MacroCurve& c) { return scaled(c.strain_z, 100.0); }
+
+std::string state_figure(const std::vector<Variant>& variants) {
+  return line_figure(
+      variants,
+      {.id = "material-state",
+       .title = "Mean stress over solid fraction",
+       .x = {.label = "solid fraction"},
+       .y = {.label = "p/E", .scale = Scale::logarithmic}},
+      "Full volume of all grains over that of the cell; p the mean stress from the contacts. One line per sample.",
+      [](const MacroCurve& c) { return more_of(c, kSolidFraction); },
+      [](const MacroCurve& c) { return scaled(mean_stresses(c), 1.0 / c.start.youngs_modulus); });
+}
+
+std::string stress_figure(const std::vector<Variant>& variants) {
+  return line_figure(variants,
+                     {.id = "material-axial",
+                      .title = "Axial stress",
+                      .x = {.label = "axial strain [%]"},
+                      .y = {.label = "axial stress over E"}},
+                     "Nominal strain from the start of the test.", axial_strain,
+                     [](const MacroCurve& c) { return scaled(c.stress_axial, 1.0 / c.start.youngs_modulus); });
+}
+
+std::string ratio_figure(const std::vector<Variant>& variants) {
+  return line_figure(
+      variants,
+      {.id = "material-ratio", .title = "Stress ratio", .x = {.label = "axial strain [%]"}, .y = {.label = "q/p"}},
+      "q = √(3J₂), p the mean stress.", axial_strain, [](const MacroCurve& c) { return stress_ratios(c); });
+}
+
+std::string rattler_figure(const std::vector<Variant>& variants) {
+  return line_figure(variants,
+                     {.id = "material-rattlers",
+                      .title = "Rattlers",
+                      .x = {.label = "axial strain [%]"},
+                      .y = {.label = "share of the grains [%]"}},
+                     "Grains with fewer than four contacts (with friction: two) to grains that do not rattle.",
+                     axial_strain, [](const MacroCurve& c) { return scaled(more_of(c, kRattlers), 100.0); });
+}
+
+/// Shares at start and end, mean over samples.
+std::string share_table(const std::vector<Variant>& variants) {
+  HtmlTable table({"variant", "contacts", "share of p at the start [%]", "share of p at the end [%]"}, 2);
+  for (const Variant& v : variants) {
+    if (v.curves.empty()) continue;
+    for (const auto& [name, ignored] : v.curves.front().more) {
+      if (name == kSolidFraction || name == kRattlers) continue;
+      std::vector<double> first;
+      std::vector<double> last;
+      for (const MacroCurve& c : v.curves) {
+        const auto& values = more_of(c, name);
+        if (!c.usable || values.empty()) continue;
+        first.push_back(100.0 * values.front());
+        last.push_back(100.0 * values.back());
+      }
+      const MeanError a = mean_error(first);
+      const MeanError b = mean_error(last);
+      table.row({v.name, name, format_with_error(a.mean, a.error), format_with_error(b.mean, b.error)});
+    }
+  }
+  if (table.empty()) return "";
+  return table.html() +
+         paragraph(
+             "Shares of the mean stress by the virial of the contacts; a grain is coarse above the named "
+             "share of the largest radius. Mean over samples ± standard error.");
+}
+
+std::string interval(const Estimate& e, int digits = 4) {
+  return fmt::format("{} ({})", format_number(e.value, digits),
+                     ends_text(e.low, e.high, {format_number, digits, " to ", "interval not determined", true}));
+}
+
+/// p/E over x, every sample with the onset of its variant, and the curve that all share.
+std::string collapse_figure(const std::vector<Variant>& variants, const EquationSummary& s) {
+  const bool porosity = s.form == StateForm::porosity;
+  const auto loss = [&](double phi, double onset) {
+    return porosity ? (phi - onset) / (1.0 - onset) : 1.0 - (1.0 - phi) / phi * onset / (1.0 - onset);
+  };
+  Plot plot({.id = "material-collapse",
+             .title = "Equation of state",
+             .x = {.label = porosity ? "x = (φ − φ_J)/(1 − φ_J)" : "x = 1 − Vp/Vp_J", .scale = Scale::logarithmic},
+             .y = {.label = "p/E", .scale = Scale::logarithmic}});
+  std::vector<Variant> fitted;
+  double largest = 0.0;
+  for (const Variant& v : variants)
+    for (const OnsetSummary& o : s.onsets)
+      if (o.name == v.name) {
+        fitted.push_back({v.name, {}});
+        for (const MacroCurve& c : v.curves) {
+          const StateCurve part = state_curve(c, v.name, o.span);
+          MacroCurve reduced;
+          reduced.sample = c.sample;
+          for (std::size_t k = 0; k < part.phi.size(); ++k) {
+            reduced.strain.push_back(loss(part.phi[k], o.onset.value));
+            reduced.stress_axial.push_back(part.pressure[k]);
+            largest = std::max(largest, reduced.strain.back());
+          }
+          fitted.back().curves.push_back(std::move(reduced));
+        }
+      }
+  add_lines(
+      plot, fitted, [](const MacroCurve& c) { return c.strain; }, [](const MacroCurve& c) { return c.stress_axial; });
+  if (plot.empty() || !(largest > 0.0)) return "";
+  Series fit{.label = "K xⁿ", .hover = "", .x = {}, .y = {}};
+  for (const double share : spread(-0.9, 0.0, 40)) {
+    fit.x.push_back(largest * std::pow(10.0, share));
+    fit.y.push_back(s.modulus.value * std::pow(fit.x.back(), s.exponent.value));
+  }
+  fit.style = {.color = palette::black, .width = 1.2, .dash = "6 3"};
+  plot.add(std::move(fit));
+  return figure(plot.svg(), "All samples over their relative loss of pores, and what is fitted to all.");
+}
+
+std::string equation_part(const std::vector<Variant>& variants, const RunData& run) {
+  const auto summary = run.summary_as<MaterialSummary>();
+  if (!summary.equation) return "";
+  const EquationSummary& s = *summary.equation;
+  if (!s.usable) return paragraph("Equation of state: not usable: " + s.message + ".");
+  std::string out = figure_row({collapse_figure(variants, s)});
+  out += paragraph(fmt::format(
+      "Equation of state, {} form: K = {}, n = {}; pressures follow it to {} % (95 % intervals in brackets).",
+      to_string(s.form), interval(s.modulus), interval(s.exponent), format_number(100.0 * s.pressure_deviation, 2)));
+  if (s.message != "fitted") out += paragraph(s.message + ".");
+  HtmlTable onsets({"variant", "span", "samples", "φ_J", "K by itself"});
+  for (const OnsetSummary& o : s.onsets)
+    onsets.row({o.name, format_number(o.span, 3), std::to_string(o.samples), interval(o.onset),
+                format_number(o.own_modulus, 3)});
+  out += onsets.html();
+  if (s.onsets.size() > 1)
+    out += paragraph(fmt::format(
+        "K of the variants scatters by {} %; as much or more comes with a probability of {} if there is one K.",
+        format_number(100.0 * s.modulus_scatter, 2), format_number(s.collapse_probability, 2)));
+  HtmlTable beyond({"materials", "span", "fitted up to", "φ_J extrapolated", "φ_J measured"});
+  for (const ExtrapolationSummary& e : s.extrapolations)
+    beyond.row({e.family, format_number(e.span, 5), format_number(e.largest_fitted, 3),
+                e.onset ? interval(*e.onset) : e.message, e.measured ? interval(*e.measured) : "–"});
+  return out + (beyond.empty() ? "" : beyond.html());
+}
+
+PredictedValue value_of(const PredictedPoint& p, StageKind kind) {
+  return kind == StageKind::shear ? p.deviator : kind == StageKind::isotropic ? p.pressure : p.axial;
+}
+
+std::string quantity(StageKind kind) {
+  return kind == StageKind::shear ? "q/p" : kind == StageKind::isotropic ? "p/E" : "axial stress over E";
+}
+
+/// Bands of all spans under one loading, and dots where there is a variant of that span.
+std::string prediction_figure(const std::vector<const PredictionSummary*>& spans, std::size_t number) {
+  const PredictionSummary& first = *spans.front();
+  const bool shear = first.kind == StageKind::shear;
+  Plot plot({.id = fmt::format("material-predicted-{}", number),
+             .title = "Predicted from smaller spans" + (first.loading.empty() ? "" : ", " + first.loading),
+             .x = {.label = "axial strain [%]"},
+             .y = {.label = quantity(first.kind), .scale = shear ? Scale::linear : Scale::logarithmic}});
+  for (std::size_t k = 0; k < spans.size(); ++k) {
+    Series band{.label = fmt::format("span {:g}", spans[k]->span), .hover = "", .x = {}, .y = {}};
+    Series dots{.label = "", .hover = fmt::format("span {:g}, measured", spans[k]->span), .x = {}, .y = {}};
+    for (const PredictedPoint& p : spans[k]->points) {
+      const PredictedValue v = value_of(p, first.kind);
+      band.x.push_back(100.0 * p.strain);
+      band.y.push_back(v.predicted.value);
+      band.band_low.push_back(v.predicted.low);
+      band.band_high.push_back(v.predicted.high);
+      if (!v.measured) continue;
+      dots.x.push_back(100.0 * p.strain);
+      dots.y.push_back(v.measured->mean);
+      dots.y_error.push_back(v.measured->error_or_zero());
+    }
+    band.style = {.color = palette::cycle(k), .width = 1.4};
+    dots.style = {.color = palette::cycle(k), .width = 0.0, .marker = Marker::circle, .marker_size = 2.6};
+    dots.group = band.label;
+    plot.add(std::move(band));
+    if (!dots.x.empty()) plot.add(std::move(dots));
+  }
+  return figure(plot.svg(), escape(first.family) + ": 95 % intervals; dots: what variants of that span measured.");
+}
+
+std::string interval_cell(const PredictedValue& v) {
+  return fmt::format("{} ({:.0f} % wide)", interval(v.predicted, 3), 100.0 * v.width());
+}
+
+std::string prediction_part(const RunData& run) {
+  const auto summary = run.summary_as<MaterialSummary>();
+  if (summary.predictions.empty()) return "";
+  std::map<std::pair<std::string, std::string>, std::vector<const PredictionSummary*>> groups;
+  HtmlTable table({"materials", "loading", "span", "strain [%]", "quantity", "predicted", "measured", "inside"});
+  std::string refused;
+  for (const PredictionSummary& s : summary.predictions) {
+    if (!s.usable || s.points.empty()) {
+      refused += paragraph(
+          escape(fmt::format("{} {}, span {:g}: not predicted: {}.", s.family, s.loading, s.span, s.message)));
+      continue;
+    }
+    groups[{s.family, s.loading}].push_back(&s);
+    const PredictedPoint& p = point_near(s, 0.05);
+    const PredictedValue v = value_of(p, s.kind);
+    table.row({s.family, s.loading, format_number(s.span, 5), format_number(100.0 * p.strain, 3), quantity(s.kind),
+               interval_cell(v) + (p.beyond ? ", beyond the pressures that were fitted" : ""),
+               v.measured ? format_with_error(v.measured->mean, v.measured->error_or_zero()) : "–",
+               !v.measured  ? "–"
+               : v.inside() ? "yes"
+                            : "no"});
+  }
+  std::vector<std::string> figures;
+  for (const auto& [key, spans] : groups) figures.push_back(prediction_figure(spans, figures.size()));
+  std::string out = "<h3>Larger spans, predicted</h3>\n";
+  for (const std::string& f : figures) out += figure_row({f});
+  return out + (table.empty() ? "" : table.html()) + refused;
+}
+
+}  // namespace
+
+std::string material_section(const RunData& run) {
+  const std::vector<Variant> variants = variants_of(run);
+  if (variants.empty()) return "";
+  std::string body = figure_row({state_figure(variants), stress_figure(variants)});
+  body += figure_row({ratio_figure(variants), rattler_figure(variants)});
+  body += equation_part(variants, run);
+  body += prediction_part(run);
+  for (const Variant& v : variants) {
+    if (v.curves.empty()) continue;
+    if (variants.size() > 1) body += "<h3>" + escape(v.name) + "</h3>\n";
+    body += stage_parts(v.curves, MacroTest::oedometric);
+  }
+  return section("material", "Material",
+                 "Stress against strain of the material with every grain resolved, for each variant.",
+                 body + share_table(variants));
+}
+
+}  // namespace softgrain::report
+
+namespace softgrain {
+
+namespace {
+
+using namespace report;
+
+std::vector<HeadLine> lines_of(const RunData& run) {
+  std::vector<HeadLine> lines;
+  const auto summary = run.summary_as<MaterialSummary>();
+  for (const MaterialVariantSummary& v : summary.variants) {
+    if (v.runs.stages.empty() || !v.solid_fraction_start) continue;
+    const StageMeans& last = v.runs.stages.back();
+    const double modulus = modulus_of(summary, v);
+    std::string text =
+        fmt::format("{} grains with E = {} MPa, mu = {:g}, largest over smallest {}; solid fraction {} at the start",
+                    format_count(v.grains), format_number(1e-6 * modulus), v.friction, format_number(v.size_ratio, 3),
+                    format_with_error(v.solid_fraction_start->mean, v.solid_fraction_start->error));
+    if (last.axial_end)
+      text += fmt::format(", axial stress {} E at the end of {}",
+                          format_with_error(last.axial_end->mean / modulus, last.axial_end->error / modulus),
+                          last.record.name);
+    lines.emplace_back(v.name == "material" ? "Material" : "Material " + v.name, text + ".");
+  }
+  if (lines.size() > 4) return {{"Material", fmt::format("{} variants.", lines.size())}};
+  return lines;
+}
+
+/// Curves of the tests of materials. Summaries of other kinds have variants too, which are left out.
+std::vector<NamedCurves> tests_of(const RunData& run) {
+  std::vector<NamedCurves> out;
+  for (const MaterialVariantSummary& v : run.summary_as<MaterialSummary>().variants) {
+    if (v.file.empty()) continue;
+    if (const auto* curves = run.file(v.file, load_macro)) out.push_back({v.name, *curves});
+  }
+  if (out.size() == 1) out.front().name.clear();
+  return out;
+}
+
+std::vector<RunValue> values_of(const RunData& run) {
+  const std::vector<NamedCurves> tests = tests_of(run);
+  std::vector<RunValue> out;
+  if (tests.empty()) return out;
+  for (const MaterialVariantSummary& v : run.summary_as<MaterialSummary>().variants) {
+    const std::string of = tests.size() > 1 ? " (" + v.name + ")" : "";
+    const auto add = [&](const char* what, const std::optional<MeanError>& m) {
+      if (m) out.push_back({what + of, "", m->mean, m->error});
+    };
+    add("solid fraction at the start", v.solid_fraction_start);
+    add("coordination number at the start", v.coordination_start);
+  }
+  const std::vector<RunValue> stresses = stress_values(tests);
+  out.insert(out.begin(), stresses.begin(), stresses.end());
+  return out;
+}
+
+std::vector<RunCurve> curves_of_run(const RunData& run) { return stress_curves(tests_of(run)); }
+
+NextSteps next_of(const RunData&) {
+  return {
+      "How far from converged: `softgrain run SCENE.toml --seeds 1..8` for the scatter, `softgrain sweep SCENE.toml "
+      "--over grains.count=1000,2000,4000` for the size.",
+      "A law of this material for larger spans: `softgrain run pipelines/material_law.toml` with the same [material] "
+      "and [grains]; models beside it: `softgrain run pipelines/material_vs_models.toml`."};
+}
+
+}  // namespace
+
+std::vector<double> mean_stresses(const MacroCurve& c) {
+  std::vector<double> p;
+  for (std::size_t k = 0; k < c.strain.size(); ++k)
+    p.push_back((c.stress_x[k] + c.stress_y[k] + c.stress_axial[k]) / 3.0);
+  return p;
+}
+
+KindResults material_results() {
+  return {.files = {{.names = "material\\.csv"},
+                    {.names = "(material|states_material)(_.+)?\\.h5", .says_so = true},
+                    {.names = "lammps-(.+-)?[0-9]+"}},
+          .sections = {{Part::tests, material_section}},
+          .lines = lines_of,
+          .values = values_of,
+          .curves = curves_of_run,
+          .next = next_of};
+}
+
+}  // namespace softgrain
