@@ -30,8 +30,7 @@ E = -1
 [impacts]
 speeds = []
 """
-MESSAGE = """s:2: missing key 'radius' in [grain]
-s:3: unknown key 'raduis' in [grain]; nearest known key is 'radius'
+MESSAGE = """s:2: missing key 'radius' in [grain]; did 'raduis' at s:3 mean it?
 s:4: E = -1: must be above 0
 s:6: speeds = []: at least one is needed"""
 PAGE = """# Scenes of kind "NAME"

@@ -35,8 +35,9 @@ template <int D>
 struct Plan {
   ThreadPace pace;
   std::uint64_t build = 0;
-  std::vector<std::uint8_t> owner;  ///< thread of every body
-  std::vector<std::uint8_t> split;  ///< flag per place in the list, 1: the bodies of the pair have two owners
+  std::vector<std::uint8_t> thread_of;  ///< thread of every group of bodies (owners_of)
+  std::vector<std::uint8_t> owner;      ///< thread of every body
+  std::vector<std::uint8_t> split;      ///< flag per place in the list, 1: the bodies of the pair have two owners
   std::vector<std::vector<BodyRange>> bodies;  ///< bodies of each thread, as stretches
   PieceThreads pieces;                         ///< owner of the middle of every piece of all bodies
   std::vector<std::vector<Share<D>>> shares;   ///< [thread][section]
@@ -59,14 +60,12 @@ std::vector<std::uint8_t> threads_of(const std::vector<std::int64_t>& pairs, con
   return thread_of;
 }
 
-/// Threads of bodies in groups that lie in a row: each gets its share of all evaluations, those of pairs of two threads
-/// counted twice.
+/// Threads of bodies in groups that lie in a row: each gets its share of all evaluations. Pairs that had two threads by
+/// the last plan, `thread_of`, count twice.
 template <int D, class Group>
 std::vector<std::uint8_t> owners_of(const System<D>& s, const std::vector<Group>& group, std::size_t groups,
-                                    const std::vector<double>& share) {
-  std::vector<std::uint8_t> thread_of;
-  constexpr int kRounds = 2;
-  for (int round = 0; round < kRounds; ++round) {
+                                    const std::vector<double>& share, std::vector<std::uint8_t>& thread_of) {
+  const auto counted = [&] {
     std::vector<std::int64_t> pairs(groups, 0);
     for (std::size_t c = 0; c < s.contacts.i.size(); ++c) {
       const auto first = static_cast<std::size_t>(group[at(s.contacts.i[c])]);
@@ -74,8 +73,13 @@ std::vector<std::uint8_t> owners_of(const System<D>& s, const std::vector<Group>
       ++pairs[first];
       if (!thread_of.empty() && thread_of[first] != thread_of[second]) ++pairs[second];
     }
-    thread_of = threads_of(pairs, share);
+    return pairs;
+  };
+  if (thread_of.size() != groups || *std::max_element(thread_of.begin(), thread_of.end()) + 1U != share.size()) {
+    thread_of.clear();
+    thread_of = threads_of(counted(), share);
   }
+  thread_of = threads_of(counted(), share);
   std::vector<std::uint8_t> owner(group.size());
   for (std::size_t u = 0; u < owner.size(); ++u) owner[u] = thread_of[static_cast<std::size_t>(group[u])];
   return owner;
@@ -107,7 +111,8 @@ constexpr std::size_t kManyShells = 8;
 /// class by size class: what a thread owns is a few ranges of slots, and its pairs are neighbours in the list. What is
 /// in one of many shells goes with the shell. Planes belong to the first thread.
 template <int D>
-std::vector<std::uint8_t> owners_by_place(const System<D>& s, const std::vector<double>& share) {
+std::vector<std::uint8_t> owners_by_place(const System<D>& s, const std::vector<double>& share,
+                                          std::vector<std::uint8_t>& thread_of) {
   const auto& p = s.particles;
   const std::vector<std::uint16_t> part = curve_parts(s);
   const bool whole_shells = static_cast<std::size_t>(p.shells) >= kManyShells * share.size();
@@ -117,7 +122,7 @@ std::vector<std::uint8_t> owners_by_place(const System<D>& s, const std::vector<
   };
   std::vector<std::uint16_t> group(p.sphere.size(), 0);
   for (std::size_t u = 0; u < part.size(); ++u) group[u] = part_of(u);
-  std::vector<std::uint8_t> owner = owners_of(s, group, kCurveParts, share);
+  std::vector<std::uint8_t> owner = owners_of(s, group, kCurveParts, share, thread_of);
   if (!whole_shells) put_in_rows(p, share.size(), owner);
   return owner;
 }
@@ -127,7 +132,8 @@ template <int D>
 std::vector<std::uint8_t> owners_by_slot(const System<D>& s, const std::vector<double>& share) {
   std::vector<Slot> group(s.particles.sphere.size());
   std::iota(group.begin(), group.end(), 0);
-  return owners_of(s, group, group.size(), share);
+  std::vector<std::uint8_t> thread_of;
+  return owners_of(s, group, group.size(), share, thread_of);
 }
 
 std::vector<std::vector<BodyRange>> stretches_of(const std::vector<std::uint8_t>& owner, std::size_t threads) {
@@ -195,7 +201,7 @@ std::vector<Slot> neighbours_of(const System<D>& s, std::uint8_t thread, const P
 template <int D>
 void make_plan(const System<D>& s, std::size_t threads, Plan<D>& plan) {
   plan.pace.share_out(threads);
-  plan.owner = owners_by_place(s, plan.pace.share);
+  plan.owner = owners_by_place(s, plan.pace.share, plan.thread_of);
   plan.bodies = stretches_of(plan.owner, threads);
   if (!long_ones(plan.bodies, plan.owner.size())) {
     plan.owner = owners_by_slot(s, plan.pace.share);
@@ -323,6 +329,20 @@ const std::vector<std::vector<BodyRange>>* owned_bodies(System<D>& s) {
 }
 
 template <int D>
+std::vector<PartSize> part_sizes(System<D>& s) {
+  const Plan<D>* const plan = valid_plan(s);
+  std::vector<PartSize> out(plan != nullptr ? plan->shares.size() : 0);
+  for (std::size_t t = 0; t < out.size(); ++t) {
+    for (const Share<D>& share : plan->shares[t]) {
+      for (const Segment& segment : share.segments) out[t].pairs += segment.end - segment.begin;
+      out[t].foreign += std::ssize(share.foreign.place);
+    }
+    out[t].neighbours = std::ssize(plan->neighbours[t]);
+  }
+  return out;
+}
+
+template <int D>
 const PieceThreads* piece_threads(System<D>& s) {
   const Plan<D>* const plan = valid_plan(s);
   return plan != nullptr ? &plan->pieces : nullptr;
@@ -330,6 +350,8 @@ const PieceThreads* piece_threads(System<D>& s) {
 
 template const std::vector<std::vector<BodyRange>>* owned_bodies(System<2>&);
 template const std::vector<std::vector<BodyRange>>* owned_bodies(System<3>&);
+template std::vector<PartSize> part_sizes(System<2>&);
+template std::vector<PartSize> part_sizes(System<3>&);
 template const PieceThreads* piece_threads(System<2>&);
 template const PieceThreads* piece_threads(System<3>&);
 template void parallel_pass<2>(System<2>&, double, History, int, BodyStiffness*);

@@ -33,6 +33,17 @@ struct BodyRange {
 template <int D>
 const std::vector<std::vector<BodyRange>>* owned_bodies(System<D>& system);
 
+/// What one thread does in a pass.
+struct PartSize {
+  std::int64_t pairs = 0;       ///< listed pairs that it looks at
+  std::int64_t foreign = 0;     ///< those of them whose first body another thread owns
+  std::int64_t neighbours = 0;  ///< bodies of other threads that it reads
+};
+
+/// The parts of the last pass, for tests and benchmarks; empty as above.
+template <int D>
+std::vector<PartSize> part_sizes(System<D>& system);
+
 /// Who owned most of every piece of all bodies (in_pieces); null as above.
 template <int D>
 const PieceThreads* piece_threads(System<D>& system);

@@ -54,11 +54,10 @@ TEST_F(ExampleKind, RunsAndReportsWhatItsSummaryHolds) {
   EXPECT_NEAR(summary.impacts[1].closed_form, 2.6268e-5, 2e-9);
   for (const ExampleImpact& i : summary.impacts) EXPECT_NEAR(i.duration / i.closed_form, 1.0, 1e-3) << i.speed;
   EXPECT_NE(console_.find("1 m/s: contact of"), std::string::npos) << console_;
-  const std::string html = read_text(directory_.file("out") + "/report.html");
-  EXPECT_NE(html.find("<section id=\"example\""), std::string::npos);
   EXPECT_NE(read_text(directory_.file("out") + "/impacts.csv").find("speed [m/s]"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(directory_.file("out") + "/work")) << "kept tasks go at the end";
   const KindResults results = example_results();
+  EXPECT_NE(results.sections.front().html(data).find("<section id=\"example\""), std::string::npos);
   EXPECT_EQ(results.values(data).size(), 3U);
   EXPECT_EQ(results.lines(data).front().first, "Grains");
   EXPECT_EQ(results.next(data).size(), 2U);
@@ -83,8 +82,7 @@ TEST_F(ExampleKind, SaysAllMistakesAtOnce) {
     FAIL();
   } catch (const InputError& e) {
     EXPECT_STREQ(e.what(),
-                 "s:2: missing key 'radius' in [grain]\n"
-                 "s:3: unknown key 'raduis' in [grain]; nearest known key is 'radius'\n"
+                 "s:2: missing key 'radius' in [grain]; did 'raduis' at s:3 mean it?\n"
                  "s:4: E = -1: must be above 0\n"
                  "s:6: speeds = []: at least one is needed");
   }

@@ -13,6 +13,7 @@
 #include "common/core/error.h"
 #include "common/data/cell_card.h"
 #include "common/data/force_curves.h"
+#include "common/io/key_record.h"
 #include "microsim/grain_box/grain_box_run.h"
 #include "tests/support/every_kind.h"
 
@@ -43,16 +44,14 @@ std::string refused(const KindScene& kind, const std::string& key, const std::st
   return "";
 }
 
-/// Paths of the keys that take one Poisson's ratio, as the tiny scene has them.
-std::vector<std::string> keys_of_scene(const KindScene& scene) {
+/// Paths of the keys of a scene that take one Poisson's ratio.
+std::vector<std::string> keys_of_scene(const KindScene& kind) {
+  KeyRecord record;
+  const Scene scene = Scene::parse(kind.text, kind.name);
+  kind_of(scene).read(scene);
   std::vector<std::string> out;
-  for (const ExploredKey& key : keys_of(kind_of(Scene::parse(scene.text, scene.name)))) {
-    if (key.name != "nu" || key.asked.form != KeyForm::number) continue;
-    std::string path = key.path();
-    const std::size_t free = path.find(kFreeName);
-    if (free != std::string::npos) path.replace(free, std::string(kFreeName).size(), "glass");
-    if (free == std::string::npos || scene.text.find("[material.glass]") != std::string::npos) out.push_back(path);
-  }
+  for (const auto& [path, asked] : record.keys(kind.name))
+    if (path.ends_with(".nu") && asked.form == KeyForm::number) out.push_back(path);
   return out;
 }
 

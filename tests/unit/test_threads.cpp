@@ -110,19 +110,20 @@ TEST(Threads, WholeShellsGiveTheSameBits) {
   for (const int threads : {2, 3}) expect_same_state(one, run_with(threads, 60, many_shells()));
 }
 
-/// What each thread owns after a pass: everything once, in few stretches, and about as many pairs as the others.
-TEST(Threads, EveryBodyHasOneOwner) {
+/// What each thread does in a pass: every body has one owner and lies in a long stretch, every pair is looked at by the
+/// owners of its bodies, and all look at about as many.
+TEST(Threads, PartsCoverEverythingOnceAndAreAlike) {
   for (System3 s : {large_packing(), shuffled_packing(), many_shells()}) {
     reorder_grains(s, spatial_order(s));
     const int before = omp_get_max_threads();
     omp_set_num_threads(4);
     force_pass(s, 0.0);
     const auto* const own = owned_bodies(s);
+    const std::vector<PartSize> parts = part_sizes(s);
     omp_set_num_threads(before);
     ASSERT_NE(own, nullptr);
-    ASSERT_EQ(own->size(), 4U);
+    ASSERT_EQ(parts.size(), 4U);
     std::vector<int> owners(s.particles.sphere.size(), 0);
-    std::vector<std::int64_t> pairs(4, 0);
     std::vector<std::size_t> owner(owners.size());
     std::size_t stretches = 0;
     for (std::size_t t = 0; t < own->size(); ++t)
@@ -132,10 +133,22 @@ TEST(Threads, EveryBodyHasOneOwner) {
       }
     for (const int many : owners) ASSERT_EQ(many, 1);
     EXPECT_LT(stretches, owners.size() / 16);
-    for (std::size_t c = 0; c < s.contacts.i.size(); ++c) ++pairs[owner[at(s.contacts.i[c])]];
-    for (const std::int64_t here : pairs) {
-      EXPECT_GT(here, s.contacts.size() / 7);
-      EXPECT_LT(here, s.contacts.size() / 3);
+    std::vector<PartSize> expected(parts.size());
+    for (std::size_t c = 0; c < s.contacts.i.size(); ++c) {
+      const std::size_t first = owner[at(s.contacts.i[c])];
+      const std::size_t second = owner[at(s.contacts.j[c])];
+      ++expected[first].pairs;
+      if (first == second) continue;
+      ++expected[second].pairs;
+      ++expected[second].foreign;
+    }
+    std::int64_t all = 0;
+    for (const PartSize& part : expected) all += part.pairs;
+    for (std::size_t t = 0; t < parts.size(); ++t) {
+      EXPECT_EQ(parts[t].pairs, expected[t].pairs);
+      EXPECT_EQ(parts[t].foreign, expected[t].foreign);
+      EXPECT_GT(parts[t].neighbours, 0);
+      EXPECT_NEAR(static_cast<double>(4 * parts[t].pairs) / static_cast<double>(all), 1.0, 0.15) << t;
     }
   }
 }
