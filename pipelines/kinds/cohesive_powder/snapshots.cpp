@@ -1,7 +1,7 @@
 // The states that powder.h5 holds.
 #include <fmt/format.h>
 
-#include "common/dynamics/system_snapshot.h"
+#include "common/state/system_io.h"
 #include "microsim/powder/powder_state_io.h"
 #include "pipelines/kinds/cohesive_powder/scene.h"
 

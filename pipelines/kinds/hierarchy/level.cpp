@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/make_laws.h"
 #include "common/core/cost.h"
 #include "common/core/particles.h"
 #include "common/packing/void_filling.h"

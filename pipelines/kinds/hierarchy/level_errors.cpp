@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "calibrate/bootstrap.h"
-#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/make_laws.h"
 #include "common/data/multi_contact_replicates.h"
 #include "microsim/multi_contact_arrangements.h"
 

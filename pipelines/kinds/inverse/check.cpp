@@ -5,7 +5,7 @@
 #include <array>
 
 #include "common/core/error.h"
-#include "common/data/force_scale.h"
+#include "common/data/force_curves.h"
 #include "pipelines/kinds/inverse/scene.h"
 #include "pipelines/kinds/soft_particle/cost.h"
 

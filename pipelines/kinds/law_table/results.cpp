@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/data/multi_contact_choice.h"
+#include "common/data/law_words.h"
 #include "pipelines/kinds/law_table/law_check.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/run_data.h"

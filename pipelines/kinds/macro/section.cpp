@@ -10,9 +10,9 @@
 #include "pipelines/compare/compare.h"
 #include "pipelines/compare/stage_match.h"
 #include "pipelines/kinds/macro/scene.h"
-#include "pipelines/report/engine_style.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
+#include "pipelines/report/plot_helpers.h"
 #include "pipelines/report/run_data.h"
 #include "pipelines/report/svg_plot.h"
 

@@ -6,7 +6,7 @@
 
 #include "common/data/macro_result.h"
 #include "macrosim/macro_spec.h"
-#include "pipelines/results/run_values.h"
+#include "pipelines/results/kind_results.h"
 
 namespace softgrain {
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "pipelines/compare/macro_scores.h"
-#include "pipelines/report/engine_style.h"
 #include "pipelines/report/number_format.h"
+#include "pipelines/report/plot_helpers.h"
 #include "pipelines/report/run_data.h"
 
 namespace softgrain {

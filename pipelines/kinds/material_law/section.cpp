@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "common/data/estimate_words.h"
+#include "common/data/law_words.h"
 #include "pipelines/kinds/material_law/results.h"
 #include "pipelines/kinds/material_law/summary.h"
 #include "pipelines/report/html.h"

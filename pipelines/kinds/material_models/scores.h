@@ -1,9 +1,9 @@
 // Curves of models beside the truth.
 #pragma once
 
+#include "common/core/text.h"
 #include "pipelines/kinds/material_models/models.h"
 #include "pipelines/kinds/material_models/summary.h"
-#include "pipelines/run/text_table.h"
 
 namespace softgrain {
 

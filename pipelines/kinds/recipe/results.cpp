@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "common/data/estimate_words.h"
+#include "common/data/law_words.h"
 #include "pipelines/kinds/law_table/law_check.h"
 #include "pipelines/kinds/material_law/results.h"
 #include "pipelines/kinds/recipe/run.h"

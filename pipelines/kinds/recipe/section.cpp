@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/data/estimate_words.h"
+#include "common/data/law_words.h"
 #include "pipelines/kinds/recipe/run.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"

@@ -5,12 +5,12 @@
 #include <optional>
 
 #include "common/core/text.h"
-#include "pipelines/compare/differences.h"
+#include "pipelines/compare/compare_inputs.h"
 #include "pipelines/kinds/soft_particle/results.h"
 #include "pipelines/report/html.h"
+#include "pipelines/report/law_curves.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/plot_helpers.h"
-#include "pipelines/report/reference_curves.h"
 #include "pipelines/report/run_data.h"
 
 namespace softgrain::report {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "common/data/measurements.h"
-#include "common/data/shell_packing.h"
 #include "pipelines/kinds/soft_particle/scene.h"
 #include "pipelines/run/run.h"
 
