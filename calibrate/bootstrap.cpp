@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "calibrate/replicates.h"
+#include "calibrate/draws.h"
 #include "calibrate/threshold_model.h"
 #include "common/core/limits.h"
 #include "common/core/random.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/replicates.h"
+#include "calibrate/draws.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/core/limits.h"

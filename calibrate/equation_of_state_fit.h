@@ -7,7 +7,7 @@
 
 #include "calibrate/least_squares.h"
 #include "calibrate/state_curves.h"
-#include "common/core/estimate.h"
+#include "common/core/statistics.h"
 
 namespace softgrain {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "calibrate/bootstrap.h"
-#include "calibrate/replicates.h"
+#include "calibrate/draws.h"
 #include "calibrate/response_surface.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"

@@ -8,15 +8,13 @@
 #include <tuple>
 
 #include "calibrate/bootstrap.h"
-#include "calibrate/multi_contact_form_fit.h"
 #include "calibrate/multi_contact_side_fits.h"
-#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/parallel_tasks.h"
 #include "common/core/statistics.h"
-#include "common/data/multi_contact_interval.h"
 #include "common/data/multi_contact_replicates.h"
 
 namespace softgrain {

@@ -1,4 +1,4 @@
-#include "calibrate/multi_contact_form_fit.h"
+#include "calibrate/multi_contact_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <set>
 
 #include "calibrate/multi_contact_slopes.h"
-#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/make_laws.h"
 #include "common/core/parallel_tasks.h"
 #include "common/core/random.h"
 #include "common/io/interrupt.h"

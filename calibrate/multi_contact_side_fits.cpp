@@ -12,7 +12,7 @@
 #include "common/core/few_samples.h"
 #include "common/core/random.h"
 #include "common/core/statistics.h"
-#include "common/data/multi_contact_interval.h"
+#include "common/data/multi_contact_replicates.h"
 
 namespace softgrain {
 

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "common/core/statistics.h"
-#include "common/data/slide_direction.h"
+#include "common/data/multi_contact_measurements.h"
 
 namespace softgrain {
 

@@ -1,4 +1,4 @@
-#include "macrosim/cell_test.h"
+#include "macrosim/cell_specimen.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/data/shell_packing.h"
+#include "common/data/measurements.h"
 #include "common/packing/grading.h"
 #include "macrosim/macro_packing.h"
 

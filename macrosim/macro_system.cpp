@@ -7,8 +7,8 @@
 #include "common/core/error.h"
 #include "common/core/particles.h"
 #include "common/core/random.h"
-#include "common/dynamics/system_snapshot.h"
 #include "common/neighbours/verlet_list.h"
+#include "common/state/system_io.h"
 
 namespace softgrain {
 

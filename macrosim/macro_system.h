@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/contact/law_set.h"
-#include "common/data/shell_packing.h"
+#include "common/data/measurements.h"
 #include "common/data/snapshot.h"
 #include "common/dynamics/slow_dynamics.h"
 #include "macrosim/box.h"

@@ -8,7 +8,6 @@
 #include "common/core/random.h"
 #include "common/core/vec.h"
 #include "common/data/measurements.h"
-#include "common/data/shell_packing.h"
 
 namespace softgrain {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/data/slide_direction.h"
+#include "common/data/multi_contact_measurements.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/residual.h"
 #include "common/dynamics/slow_dynamics.h"

@@ -6,9 +6,8 @@
 #include <vector>
 
 #include "common/contact/law_set.h"
+#include "common/data/measurements.h"
 #include "common/data/multi_contact_measurements.h"
-#include "common/data/shell_packing.h"
-#include "common/data/slide_direction.h"
 #include "common/state/run_control.h"
 #include "common/system.h"
 #include "microsim/filled_shell.h"

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "common/core/error.h"
-#include "common/data/slide_direction.h"
+#include "common/data/multi_contact_measurements.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/residual.h"
 #include "common/dynamics/verlet.h"

@@ -5,7 +5,7 @@
 
 #include "common/core/particles.h"
 #include "common/dynamics/force_pass.h"
-#include "common/dynamics/system_snapshot.h"
+#include "common/state/system_io.h"
 
 namespace softgrain {
 

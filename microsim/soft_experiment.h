@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "common/data/measurements.h"
-#include "common/data/shell_packing.h"
 #include "common/data/snapshot.h"
 #include "common/dynamics/slow_dynamics.h"
 #include "common/system.h"

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "common/contact/contact_state.h"
-#include "common/contact/coulomb_spring.h"
 
 namespace softgrain {
 

@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "common/contact/contact_state.h"
-#include "common/contact/coulomb_spring.h"
 #include "common/core/material.h"
 
 namespace softgrain {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "common/contact/law_file.h"
+#include "common/contact/law_set.h"
 #include "common/core/error.h"
 #include "common/io/toml.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "common/contact/law_file.h"
+#include "common/contact/law_set.h"
 
 namespace softgrain {
 

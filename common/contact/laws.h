@@ -4,7 +4,7 @@
 //   law            normal force                                    files of the tree
 //   HertzMindlin   sqrt(R12) h^(3/2)/D - eta vn                    hertz_mindlin.h
 //   LinearSpring   kn h - eta vn                                   linear_spring.h
-//   SoftContact    E R^2 (a Delta^b + c), Delta = h/R > delta      soft_contact.h, threshold_term.h
+//   SoftContact    E R^2 (a Delta^b + c), Delta = h/R > delta      soft_contact.h
 //   CohesiveDisk   K_N h - F0 - eta vn, attraction at a distance   cohesive_disk.h
 //   SoftMultiContact      E R^2 dnu/dx p(S)/S B: several contacts         soft_multi_contact.h, multi_contact_form.h
 //
@@ -18,4 +18,3 @@
 #include "common/contact/multi_contact_form.h"
 #include "common/contact/soft_contact.h"
 #include "common/contact/soft_multi_contact.h"
-#include "common/contact/threshold_term.h"

@@ -1,14 +1,13 @@
-#include "common/contact/multi_contact_table_file.h"
+#include "common/contact/make_laws.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
 
-#include "common/contact/multi_contact_from_table.h"
 #include "common/data/law_card_format.h"
 #include "common/data/multi_contact_replicates.h"
-#include "common/data/spec_io.h"
+#include "common/data/soft_particle_schema.h"
 #include "common/io/text_file.h"
 
 namespace softgrain {

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "common/contact/contact_state.h"
-#include "common/contact/coulomb_spring.h"
 #include "common/core/law_range.h"
 #include "common/core/limits.h"
 
@@ -124,5 +123,10 @@ struct SoftContact {
     return i_is_soft ? bodies.radius_i : bodies.radius_j;
   }
 };
+
+/// F(Delta) = a (Delta^b - delta^b) above the threshold delta [SP 1.5], as a PowerTerm. The offset follows from a, b
+/// and delta, so that the law is zero at its threshold to the last bit; the card's own c is rounded. Dimensionless; a >
+/// 0, b > 0, 0 <= delta < 1 (not checked: whoever reads the card does).
+inline PowerTerm threshold_term(double a, double b, double delta) { return {a, b, -a * power(delta, b)}; }
 
 }  // namespace softgrain

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "common/contact/contact_state.h"
-#include "common/contact/coulomb_spring.h"
 #include "common/contact/multi_contact_form.h"
 #include "common/core/law_range.h"
 #include "common/core/limits.h"

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <utility>
 
-#include "common/core/estimate.h"
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
 

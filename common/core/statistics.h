@@ -1,4 +1,4 @@
-// Statistics of samples: mean, scatter, quantiles, ratios of means. GSL does the sums.
+// Statistics of samples: mean, scatter, quantiles, ratios of means, numbers with their errors. GSL does the sums.
 #pragma once
 
 #include <algorithm>
@@ -75,5 +75,14 @@ RatioError paired_ratio(std::span<const double> candidate, std::span<const doubl
 
 /// Ratio of two independent means, relative errors added in squares.
 RatioError independent_ratio(const MeanError& candidate, const MeanError& reference);
+
+/// A number with its standard error and 95 % interval, in the unit of the number. An error that is not known is
+/// infinite, and so are the ends.
+struct Estimate {
+  double value = 0.0;
+  double standard_error = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+};
 
 }  // namespace softgrain

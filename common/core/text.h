@@ -1,4 +1,5 @@
-// Texts made of parts, and numbers with their errors: one function for each, whose forms the callers choose.
+// Texts made of parts, and numbers with their errors: one function for each, whose forms the callers choose. Tables of
+// texts as CSV and Markdown.
 #pragma once
 
 #include <fmt/format.h>
@@ -67,5 +68,13 @@ std::string with_error(double value, std::optional<double> error, const ErrorFor
 
 /// "0.7105 +- 0.0011" of a mean; a single value has no error.
 std::string with_error(const MeanError& mean, const ErrorForm& form = {});
+
+struct TextTable {
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+};
+
+std::string as_csv(const TextTable& table);  ///< cells with commas, quotes or line ends are quoted
+std::string as_markdown(const TextTable& table);
 
 }  // namespace softgrain

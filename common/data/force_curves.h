@@ -1,4 +1,5 @@
 // Force-displacement measurements of an experiment, read from text: what a fit needs instead of simulated packings.
+// And whether measured forces can be those of a soft particle: wrong units and signs show.
 #pragma once
 
 #include <limits>
@@ -70,12 +71,22 @@ struct SaidByFile {
 };
 SaidByFile said_by_comments(const CsvFile& table);
 
-/// See force_scale.h; of all samples together.
+/// See below; of all samples together.
 std::vector<std::string> implausible_forces(const ForceCurves& curves);
 
 /// Files of one experiment, joined by pair kind (soft-solid first). A sample is named by its file when there are
 /// several. Throws InputError when files disagree about Rs, E, nu, mu or density.
 std::vector<ForceCurves> read_force_curve_files(const std::vector<std::string>& paths,
                                                 const ForceCurveOptions& options);
+
+/// What is not as it should be of forces Fn [N] at overlaps Delta = hn/Rs of a soft particle of radius Rs [m] and
+/// grains of Young's modulus E [Pa]; empty: nothing. One sentence each:
+/// - tension: most of the force is negative, while compression counts positive;
+/// - too stiff: the largest force is above that of a solid sphere of the same radius and modulus on a rigid plane,
+///   4/3 E Rs^2 Delta^1.5 (Hertz, nu = 0);
+/// - too soft: at Delta above 0.1 it is less than 2e-4 of it; published soft particles have 0.01 to 0.1.
+/// Both hint at the unit of force, E or Rs.
+std::vector<std::string> implausible_forces(const std::vector<double>& delta, const std::vector<double>& force,
+                                            double shell_radius, double youngs_modulus);
 
 }  // namespace softgrain

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "common/core/estimate.h"
 #include "common/core/law_range.h"
+#include "common/core/statistics.h"
 #include "common/data/measurements.h"
 #include "common/data/pair_kind.h"
 #include "common/io/provenance.h"

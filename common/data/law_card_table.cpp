@@ -9,7 +9,7 @@
 #include "common/core/error.h"
 #include "common/core/text.h"
 #include "common/data/law_card_format.h"
-#include "common/data/spec_io.h"
+#include "common/data/soft_particle_schema.h"
 
 namespace softgrain {
 

@@ -9,7 +9,6 @@
 #include "common/core/limits.h"
 #include "common/core/material.h"
 #include "common/data/columns.h"
-#include "common/data/spec_io.h"
 
 namespace softgrain {
 

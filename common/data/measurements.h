@@ -1,4 +1,5 @@
-// What the particle-scale experiments recorded: the data that microsim writes and calibrate reads.
+// Grains inside a shell, and what the particle-scale experiments recorded of them: the data that microsim writes and
+// calibrate reads.
 #pragma once
 
 #include <cmath>
@@ -8,11 +9,27 @@
 #include <vector>
 
 #include "common/core/cost.h"
+#include "common/core/vec.h"
 #include "common/data/pair_kind.h"
 #include "common/io/provenance.h"
 #include "common/packing/grading.h"
 
 namespace softgrain {
+
+/// Grains inside a unit shell: what the packing generator makes, measurements start from and resolved twins are filled
+/// with. Dimensionless: shell of radius 1 centred at the origin; grains largest first.
+struct ShellPacking {
+  std::uint64_t seed = 0;  ///< number of the packing in its run
+  std::vector<Vec3> position;
+  std::vector<double> radius;
+
+  /// Volume of grains over volume of the shell.
+  [[nodiscard]] double solid_fraction() const {
+    double sum = 0.0;
+    for (const double r : radius) sum += r * r * r;
+    return sum;
+  }
+};
 
 /// How grains are placed in a shell: the published trials, or the same law without the trials that must fail.
 enum class Placement { trials, voids };
@@ -124,5 +141,11 @@ void save(const Measurements& data, const std::string& path, const Provenance& p
 
 /// Reads what save() wrote. Throws IoError naming the file and what is missing or damaged.
 Measurements load_measurements(const std::string& path);
+
+/// Joins packings and runs; indices of packings are shifted. `names` (one per part) stand for the parts in messages.
+/// Throws InputError when there is nothing to merge, when a part was measured on another soft particle or by another
+/// protocol (first differing quantity named, with both values), or when the same packing was measured twice by the same
+/// relaxation.
+Measurements merge_measurements(const std::vector<Measurements>& parts, const std::vector<std::string>& names);
 
 }  // namespace softgrain

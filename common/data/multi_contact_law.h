@@ -155,7 +155,7 @@ struct LawTable {
   std::vector<std::string> notes{};    ///< remarks from reading: parts of the .h5 that do not match an edited table
 };
 
-/// The card as TOML; save_law_table() of common/contact/multi_contact_table_file.h writes it with the forces that it
+/// The card as TOML; save_law_table() of common/contact/make_laws.h writes it with the forces that it
 /// stands for. `table_id`: names the .h5 that belongs to it; empty: none.
 std::string law_table_text(const LawTable& table, const Provenance& provenance, const std::string& table_id);
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "common/data/fields.h"
-#include "common/data/spec_io.h"
+#include "common/data/soft_particle_schema.h"
 
 namespace softgrain {
 

@@ -1,7 +1,8 @@
-// What was recorded of a soft particle with several neighbours at once [SP 1.7, 1.7.1]: which bodies touch it, how deep
-// each one presses and what force each one feels. Dimensionless, so one record serves every E and Rs [SP 1.6].
+// What was recorded of a soft particle with several neighbours at once [SP 1.7, 1.7.1]: which bodies touch it, how
+// deep each one presses and what force each one feels. Dimensionless, so one record serves every E and Rs [SP 1.6].
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -129,5 +130,17 @@ MultiContactMeasurements load_multi_contact(const std::string& path);
 void write_multi_contact_runs(const h5::Group& group, const std::vector<MultiContactRun>& runs);
 /// Reads them back. Throws IoError when columns are missing or do not fit together.
 std::vector<MultiContactRun> read_multi_contact_runs(const h5::Group& group);
+
+/// The unit vector along which the first neighbour slides: the coordinate axis least aligned with `direction` (the
+/// first of equals), made perpendicular to it. +x slides along +y.
+inline Vec3 slide_direction(const Vec3& direction) {
+  int axis = 0;
+  for (int k = 1; k < 3; ++k)
+    if (std::abs(direction[k]) < std::abs(direction[axis])) axis = k;
+  Vec3 along{};
+  along[axis] = 1.0;
+  along -= direction * dot(along, direction);
+  return along * (1.0 / norm(along));
+}
 
 }  // namespace softgrain

@@ -1,3 +1,4 @@
+// The refits behind multi-contact laws, how sure these are by them, and up to where they were measured.
 #include "common/data/multi_contact_replicates.h"
 
 #include <fmt/format.h>
@@ -8,6 +9,9 @@
 #include <stdexcept>
 
 #include "common/core/error.h"
+#include "common/core/few_samples.h"
+#include "common/core/limits.h"
+#include "common/core/statistics.h"
 #include "common/data/law_card_format.h"
 #include "common/io/hdf5_file.h"
 
@@ -99,6 +103,25 @@ std::size_t replicate_count(const LawTable& table, LawForm form) {
     least = std::min(least, law == nullptr ? 0 : law->replicates.size());
   }
   return least;
+}
+
+double measured_overlap(const LawTableEntry& entry, LawForm form, PartnerKind partner, double ratio) {
+  if (partner == PartnerKind::plane) return entry.overlap_max;
+  const MultiContactLaw* law = entry.find(form);
+  const std::vector<PartnerRow> rows = law == nullptr ? std::vector<PartnerRow>{} : law->rows(partner);
+  if (rows.empty()) return 0.0;
+  const double wanted = partner == PartnerKind::soft ? std::max(ratio, 1.0 / ratio) : ratio;
+  const auto nearest = std::min_element(rows.begin(), rows.end(), [&](const PartnerRow& a, const PartnerRow& b) {
+    return std::abs(std::log(a.ratio / wanted)) < std::abs(std::log(b.ratio / wanted));
+  });
+  return nearest->overlap_max * std::min(1.0, ratio);
+}
+
+std::optional<LawInterval> refit_interval(double value, const std::vector<double>& refits, int packings) {
+  if (refits.size() < kEnoughReplicates) return std::nullopt;
+  const double factor = factor_of_several(packings);
+  const auto [low, high] = widened(value, quantile(refits, 0.025), quantile(refits, 0.975), factor, true);
+  return LawInterval{low, high, kFromPackings};
 }
 
 }  // namespace softgrain

@@ -1,3 +1,4 @@
+// The numbers of a soft particle, and the groups of HDF5 files that hold them and its packings.
 #include "common/data/soft_particle_schema.h"
 
 #include <algorithm>
@@ -6,8 +7,13 @@
 #include <limits>
 #include <stdexcept>
 
+#include "common/core/error.h"
 #include "common/core/limits.h"
+#include "common/data/columns.h"
+#include "common/data/fields.h"
+#include "common/io/provenance.h"
 #include "common/io/scene.h"
+#include "common/packing/grading_scene.h"
 
 namespace softgrain {
 
@@ -62,6 +68,65 @@ Limits limits_of(const Range& range) {
   const double next = range.low == 0.0 ? std::numeric_limits<double>::min() : std::nextafter(range.low, kInfinity);
   return {std::max(-kMost, range.low_open ? next : range.low),
           std::min(kMost, range.high_open ? std::nextafter(range.high, -kInfinity) : range.high)};
+}
+
+namespace {
+
+constexpr const char* kUnits = "shell_radius m, youngs_modulus Pa, density kg/m^3, all others 1";
+
+}  // namespace
+
+void write_spec(const h5::Group& root, const SoftParticleSpec& spec) {
+  const h5::Group group = root.create("spec");
+  group.attribute("units", kUnits);
+  for (const SoftParticleNumber& number : soft_particle_numbers())
+    if (is_known(spec.*number.value)) group.attribute(number.key, spec.*number.value);
+  if (spec.sizes) group.attribute("sizes", spec.sizes->text());
+  if (!packing_known(spec)) return;
+  group.attribute("trials", spec.trials);
+  group.attribute("placement", to_string(spec.placement));
+}
+
+SoftParticleSpec read_spec(const h5::Group& root) {
+  const h5::Group group = root.open("spec");
+  SoftParticleSpec spec;
+  if (group.text("units") != kUnits) throw IoError("spec: units '" + group.text("units") + "' are not known");
+  if (group.has_attribute("sizes")) {
+    spec.sizes = stored_grading(group.text("sizes"));
+    spec.exponent = std::numeric_limits<double>::quiet_NaN();
+  }
+  for (const SoftParticleNumber& number : soft_particle_numbers())
+    if (!spec.sizes || number.value != &SoftParticleSpec::exponent)
+      spec.*number.value = read_attribute(group, number.key, limits_of(number.range));
+  spec.trials = group.integer("trials");
+  if (spec.trials < 1) throw IoError("attribute 'trials' is " + std::to_string(spec.trials) + "; allowed: at least 1");
+  if (!group.has_attribute("placement")) return spec;
+  const auto placement = parse_enum<Placement>(group.text("placement"));
+  if (!placement) throw IoError("spec: unknown placement '" + group.text("placement") + "'");
+  spec.placement = *placement;
+  return spec;
+}
+
+void write_packings(const h5::Group& root, const std::vector<PackingInfo>& packings) {
+  const h5::Group group = root.create("packings");
+  write_records(group, packings);
+  write_column(group, "radius_count", "1", packings, [](const auto& p) { return p.radii.size(); });
+  std::vector<double> radii;
+  for (const PackingInfo& p : packings) radii.insert(radii.end(), p.radii.begin(), p.radii.end());
+  group.write("radii", std::span<const double>(radii));
+  group.attribute_of("radii", "unit", "m");
+}
+
+std::vector<PackingInfo> read_packings(const h5::Group& root) {
+  const h5::Group group = root.open("packings");
+  std::vector<PackingInfo> packings(column_length(group, "seed"));
+  read_records(group, packings);
+  const std::vector<double> radii =
+      read_numbers(group, "radii", "m", {group.doubles("radii").size()}, Limits::not_negative());
+  Slices slices(radii.size());
+  read_integers(group, "radius_count", packings, [&](auto& p, auto v) { p.radii = take(radii, slices, v); });
+  slices.finish();
+  return packings;
 }
 
 }  // namespace softgrain

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "common/core/in_pieces.h"
+#include "common/core/parallel_tasks.h"
 #include "common/dynamics/pair_loop.h"
 
 namespace softgrain {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/contact/law_use.h"
+#include "common/core/law_range.h"
 #include "common/dynamics/block_loop.h"
 #include "common/system.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/core/in_pieces.h"
+#include "common/core/parallel_tasks.h"
 #include "common/dynamics/pair_loop.h"
 #include "common/dynamics/parallel_pass.h"
 #include "common/neighbours/verlet_list.h"

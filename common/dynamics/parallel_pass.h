@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/contact/contact_loop.h"
-#include "common/core/in_pieces.h"
+#include "common/core/parallel_tasks.h"
 #include "common/dynamics/block_loop.h"
 #include "common/system.h"
 

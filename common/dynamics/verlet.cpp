@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/core/in_pieces.h"
+#include "common/core/parallel_tasks.h"
 #include "common/core/quad.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/parallel_pass.h"

@@ -1,4 +1,4 @@
-#include "common/io/explored_keys.h"
+#include "common/io/key_record.h"
 
 #include <fmt/format.h>
 

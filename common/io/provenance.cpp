@@ -1,5 +1,6 @@
 #include "common/io/provenance.h"
 
+#include "common/core/error.h"
 #include "softgrain_build.h"
 
 namespace softgrain {
@@ -24,6 +25,19 @@ void write_provenance(const h5::Group& root, const Provenance& provenance) {
   group.attribute("command", provenance.command);
   if (!provenance.kind.empty()) group.attribute("kind", provenance.kind);
   group.attribute("scene", provenance.scene);
+}
+
+void write_format(const h5::Group& root, const std::string& format) {
+  root.attribute("format", format);
+  root.attribute("schema_version", std::int64_t{kSchemaVersion});
+}
+
+void require_format(const h5::Group& root, const std::string& format, const std::string& path) {
+  if (!root.has_attribute("format") || root.text("format") != format) throw IoError(path + ": holds no " + format);
+  const std::int64_t schema = root.integer("schema_version");
+  if (schema != kSchemaVersion)
+    throw IoError(path + ": schema version " + std::to_string(schema) + ", this program reads version " +
+                  std::to_string(kSchemaVersion));
 }
 
 }  // namespace softgrain

@@ -1,4 +1,4 @@
-// Where a result came from: written into every output.
+// Where a result came from, and what a file holds: written into every output.
 #pragma once
 
 #include <cstdint>
@@ -37,5 +37,10 @@ Provenance build_provenance();
 
 /// Writes a group "provenance" with schema version.
 void write_provenance(const h5::Group& root, const Provenance& provenance);
+
+/// Throws IoError unless the file is of this kind and of a schema that is known.
+void require_format(const h5::Group& root, const std::string& format, const std::string& path);
+/// Marks a file as such.
+void write_format(const h5::Group& root, const std::string& format);
 
 }  // namespace softgrain

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "common/core/error.h"
-#include "common/core/in_pieces.h"
+#include "common/core/parallel_tasks.h"
 #include "common/core/quad.h"
 #include "common/neighbours/pair_search.h"
 

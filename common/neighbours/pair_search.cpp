@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "common/core/in_pieces.h"
+#include "common/core/parallel_tasks.h"
 
 namespace softgrain {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/core/in_pieces.h"
+#include "common/core/parallel_tasks.h"
 #include "common/neighbours/hierarchical_grid.h"
 
 namespace softgrain {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "common/core/in_pieces.h"
+#include "common/core/parallel_tasks.h"
 #include "common/neighbours/verlet_list.h"
 
 namespace softgrain {

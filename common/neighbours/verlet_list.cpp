@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "common/core/error.h"
-#include "common/core/in_pieces.h"
+#include "common/core/parallel_tasks.h"
 #include "common/neighbours/hierarchical_grid.h"
 #include "common/neighbours/skin.h"
 

@@ -7,7 +7,6 @@
 
 #include "common/core/cost.h"
 #include "common/statics/links.h"
-#include "common/statics/symmetry_planes.h"
 #include "common/statics/unknowns.h"
 
 namespace softgrain::statics {

@@ -8,8 +8,7 @@
 #include "common/io/interrupt.h"
 #include "macrosim/cell_matter/cell_axes.h"
 #include "macrosim/cell_matter/cell_packing.h"
-#include "macrosim/cell_matter/cell_tangent.h"
-#include "macrosim/cell_matter/step_mixer.h"
+#include "macrosim/cell_matter/cell_steps.h"
 
 namespace softgrain {
 

@@ -16,7 +16,7 @@
 #include <array>
 #include <vector>
 
-#include "common/contact/law_use.h"
+#include "common/core/law_range.h"
 #include "compute.h"
 #include "macrosim/lammps/contact_loop.h"
 

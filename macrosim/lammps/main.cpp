@@ -8,7 +8,7 @@
 
 #include "input.h"
 #include "lammps.h"
-#include "macrosim/lammps/styles.h"
+#include "macrosim/lammps/pair_softgrain.h"
 
 int main(int argc, char** argv) {
   MPI_Init(&argc, &argv);

@@ -1,3 +1,4 @@
+// Pair style softgrain, and all styles of softgrain made known to a LAMMPS.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "macrosim/lammps/pair_softgrain.h"
 
@@ -6,14 +7,16 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "common/contact/law_file.h"
+#include "common/contact/law_set.h"
 #include "common/core/error.h"
 #include "domain.h"
 #include "error.h"
 #include "force.h"
+#include "lammps.h"
+#include "macrosim/lammps/compute_softgrain_contacts.h"
 #include "macrosim/lammps/fix_softgrain_history.h"
+#include "macrosim/lammps/fix_softgrain_relax.h"
 #include "macrosim/lammps/fix_softgrain_wall.h"
-#include "macrosim/lammps/law_source.h"
 #include "macrosim/lammps/words.h"
 #include "memory.h"
 #include "modify.h"
@@ -354,3 +357,24 @@ double PairSoftgrain::memory_usage() {
 }
 
 }  // namespace LAMMPS_NS
+
+namespace {
+
+using namespace LAMMPS_NS;
+
+template <class Style>
+Fix* make_fix(LAMMPS* lmp, int count, char** words) {
+  return new Style(lmp, count, words);
+}
+
+}  // namespace
+
+void softgrain::lammps::add_styles(const LAMMPS& lmp) {
+  (*lmp.force->pair_map)["softgrain"] = [](LAMMPS* l) -> Pair* { return new PairSoftgrain(l); };
+  (*lmp.modify->fix_map)["softgrain/history"] = make_fix<FixSoftgrainHistory>;
+  (*lmp.modify->fix_map)["softgrain/wall"] = make_fix<FixSoftgrainWall>;
+  (*lmp.modify->fix_map)["softgrain/relax"] = make_fix<FixSoftgrainRelax>;
+  (*lmp.modify->compute_map)["softgrain/contacts"] = [](LAMMPS* l, int count, char** words) -> Compute* {
+    return new ComputeSoftgrainContacts(l, count, words);
+  };
+}

@@ -3,6 +3,8 @@
 //   pair_style softgrain soft TYPES ...|none [springs FILE]
 //   pair_coeff I J FILE NAME
 //   pair_coeff I J card FILE KIND modulus E friction MU [kt initial|secant] [damping Z] [beyond POLICY]
+//
+// And all styles of softgrain in a LAMMPS.
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <string>
@@ -96,3 +98,11 @@ class PairSoftgrain : public Pair {
 };
 
 }  // namespace LAMMPS_NS
+
+namespace softgrain::lammps {
+
+/// Makes pair style softgrain, fixes softgrain/wall and softgrain/relax and compute softgrain/contacts known. The
+/// command `clear` of a script forgets them.
+void add_styles(const LAMMPS_NS::LAMMPS& lmp);
+
+}  // namespace softgrain::lammps

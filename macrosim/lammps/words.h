@@ -1,10 +1,12 @@
-// Words of a script, with messages that say what is wrong.
+// Words of a script, with messages that say what is wrong; and the contact laws that they name: read on one rank,
+// known on all.
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <mpi.h>
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "common/contact/law_set.h"
 
@@ -25,5 +27,25 @@ AnyLaw read_law_words(char** words, int count, MPI_Comm world, LAMMPS_NS::Error*
 
 /// Refuses laws of disks in three dimensions, and those of three in two (`dimension` of the script).
 void check_dimension(const AnyLaw& law, int dimension, LAMMPS_NS::Error* error);
+
+/// The text of a file, read on rank 0. All ranks throw IoError when it cannot be read.
+std::string broadcast_file(const std::string& path, MPI_Comm world);
+
+/// Law `name` of a laws file (common/contact/law_set.h). Throws InputError (with the names that the file knows),
+/// IoError.
+AnyLaw law_of_file(const std::string& path, const std::string& name, MPI_Comm world);
+
+/// What a law card leaves open.
+struct CardChoices {
+  double modulus = 0.0;  ///< E of what is inside the soft particles [Pa]
+  double friction = 0.0;
+  double damping = 0.0;  ///< zeta, fraction of critical
+  bool secant = false;   ///< kt at 1 degree instead of the initial slope
+  std::string beyond;    ///< error, clamp or extrapolate; empty: as the card says
+};
+
+/// The law of kind "soft-solid" (first body soft) or "soft-soft" of a card as calibrate writes it. Throws InputError,
+/// IoError.
+AnyLaw law_of_card(const std::string& path, const std::string& kind, const CardChoices& choices, MPI_Comm world);
 
 }  // namespace softgrain::lammps

@@ -7,7 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/data/columns.h"
-#include "common/data/spec_io.h"
+#include "common/data/soft_particle_schema.h"
 
 namespace softgrain {
 

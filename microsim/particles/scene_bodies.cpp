@@ -9,7 +9,6 @@
 #include "common/io/scene.h"
 #include "microsim/particles/scene_memory.h"
 #include "microsim/particles/scene_walls.h"
-#include "microsim/particles/xyzr_file.h"
 
 namespace softgrain {
 

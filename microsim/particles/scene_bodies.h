@@ -1,5 +1,5 @@
-// Particles and walls of a scene of explicit particles; particles that are drawn by a distribution of sizes and placed
-// at random.
+// Particles and walls of a scene of explicit particles; particles from files of many spheres; particles that are drawn
+// by a distribution of sizes and placed at random.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,28 @@
 #include <vector>
 
 #include "common/core/particles.h"
+#include "common/core/vec.h"
 #include "common/io/scene.h"
 #include "common/packing/grading.h"
 #include "microsim/particles/scene_contacts.h"
 
 namespace softgrain {
+
+// Files of many spheres: "N Lx Ly Lz" on the first line, then N lines "x y z r". Plain or compressed by gzip. SI
+// units.
+
+struct XyzrFile {
+  Vec3 box{};                  ///< Lx Ly Lz [m], as written
+  std::vector<Vec3> position;  ///< [m]
+  std::vector<double> radius;  ///< [m], > 0
+};
+
+/// Line of a sphere in its file.
+inline std::int64_t xyzr_line(std::size_t sphere) { return static_cast<std::int64_t>(sphere) + 2; }
+
+/// Throws InputError ("file:line: ...") for wrong content, IoError for missing, unreadable or damaged files. `admit`
+/// hears the number of spheres before they are read and throws when that is too many; may be empty.
+XyzrFile read_xyzr(const std::string& path, const std::function<void(std::int64_t)>& admit = {});
 
 template <int D>
 struct SceneWall;  // scene_walls.h

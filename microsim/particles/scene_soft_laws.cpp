@@ -5,13 +5,12 @@
 #include <optional>
 #include <sstream>
 
-#include "common/contact/law_file.h"
-#include "common/contact/multi_contact_from_table.h"
-#include "common/contact/soft_contact_from_card.h"
+#include "common/contact/law_set.h"
+#include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "common/data/card_text.h"
 #include "common/data/law_card.h"
-#include "common/data/law_remarks.h"
+#include "common/data/law_words.h"
 #include "common/data/multi_contact_law.h"
 #include "common/io/key_record.h"
 #include "common/io/text_file.h"

@@ -10,8 +10,8 @@
 #include "common/data/columns.h"
 #include "common/data/snapshot_io.h"
 #include "common/dynamics/force_pass.h"
-#include "common/dynamics/system_snapshot.h"
 #include "common/neighbours/spatial_order.h"
+#include "common/state/system_io.h"
 
 namespace softgrain {
 

@@ -1,4 +1,4 @@
-#include "microsim/particles/xyzr_file.h"
+#include "microsim/particles/scene_bodies.h"
 
 #include <zlib.h>
 

@@ -1,5 +1,5 @@
 // softgrain calibrate DATA...: fits the contact laws to measurements; writes law.toml, law.h5 and summary.json.
-// Files of multi-contact measurements: see calibrate_multi_contact.h; of experiments (CSV): see calibrate_curves.h.
+// Files of multi-contact measurements, and those of experiments (CSV): see commands.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,12 +7,10 @@
 #include <filesystem>
 #include <limits>
 
-#include "calibrate/merge_measurements.h"
 #include "calibrate/threshold_fit.h"
-#include "pipelines/commands/calibrate_curves.h"
-#include "pipelines/commands/calibrate_multi_contact.h"
-#include "pipelines/law/fit_settings.h"
-#include "pipelines/law/fit_text.h"
+#include "common/data/measurements.h"
+#include "pipelines/commands/commands.h"
+#include "pipelines/law/law_fit.h"
 #include "pipelines/law/law_json.h"
 #include "pipelines/run/run_context.h"
 

@@ -1,4 +1,4 @@
-#include "pipelines/commands/calibrate_curves.h"
+#include "pipelines/commands/commands.h"
 
 #include <fmt/format.h>
 
@@ -7,11 +7,9 @@
 #include <filesystem>
 
 #include "calibrate/experiment_fit.h"
-#include "common/data/law_remarks.h"
+#include "common/data/law_words.h"
 #include "common/io/text_file.h"
-#include "pipelines/law/experiment_summary.h"
-#include "pipelines/law/fit_settings.h"
-#include "pipelines/law/fit_text.h"
+#include "pipelines/law/law_fit.h"
 #include "pipelines/report/report.h"
 
 namespace softgrain {

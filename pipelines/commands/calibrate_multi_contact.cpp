@@ -1,11 +1,11 @@
-#include "pipelines/commands/calibrate_multi_contact.h"
+#include "pipelines/commands/commands.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 
-#include "common/contact/multi_contact_table_file.h"
+#include "common/contact/make_laws.h"
 #include "common/io/hdf5_file.h"
 #include "pipelines/kinds/law_table/multi_contact_law_fit.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"

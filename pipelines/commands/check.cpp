@@ -9,8 +9,7 @@
 
 #include "common/core/error.h"
 #include "common/io/text_file.h"
-#include "pipelines/commands/result_check.h"
-#include "pipelines/commands/table_check.h"
+#include "pipelines/commands/commands.h"
 #include "pipelines/kinds/kinds.h"
 #include "pipelines/kinds/law_table/scene.h"
 #include "pipelines/run/run_context.h"

@@ -2,12 +2,12 @@
 // one. With one argument: what can be compared inside that run.
 #include <filesystem>
 
+#include "common/core/text.h"
 #include "common/io/provenance.h"
 #include "common/io/text_file.h"
 #include "pipelines/compare/compare_inputs.h"
 #include "pipelines/report/report.h"
 #include "pipelines/run/run_context.h"
-#include "pipelines/run/text_table.h"
 #include "pipelines/runs/set_text.h"
 
 namespace softgrain {

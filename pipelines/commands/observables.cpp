@@ -1,4 +1,4 @@
-#include "pipelines/commands/observables.h"
+#include "pipelines/commands/commands.h"
 
 #include <cmath>
 #include <filesystem>

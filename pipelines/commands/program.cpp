@@ -17,10 +17,9 @@
 #include "common/core/text.h"
 #include "common/io/interrupt.h"
 #include "common/io/text_file.h"
+#include "pipelines/commands/commands.h"
 #include "pipelines/commands/complaints.h"
 #include "pipelines/commands/law_options.h"
-#include "pipelines/commands/observables.h"
-#include "pipelines/commands/schema.h"
 #include "pipelines/run/run_context.h"
 
 namespace softgrain {

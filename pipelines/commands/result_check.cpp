@@ -1,4 +1,4 @@
-#include "pipelines/commands/result_check.h"
+#include "pipelines/commands/commands.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "common/data/snapshot_io.h"
 #include "common/io/hdf5_file.h"
 #include "common/io/text_file.h"
-#include "pipelines/results/result_files.h"
+#include "pipelines/results/kind_results.h"
 #include "pipelines/results/summary.h"
 #include "pipelines/run/run_context.h"
 

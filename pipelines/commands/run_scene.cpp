@@ -1,4 +1,5 @@
 // softgrain run, microsim, macrosim: one scene; its `kind` says which.
+// softgrain sweep SCENE --over key=a,b,c: one scene over values of its keys, and over seeds.
 #include <fmt/format.h>
 #include <omp.h>
 
@@ -62,5 +63,10 @@ ExitStatus command_run(const CommonOptions& options) { return run_scene(options,
 ExitStatus command_microsim(const CommonOptions& options) { return run_scene(options, "microsim"); }
 
 ExitStatus command_macrosim(const CommonOptions& options) { return run_scene(options, "macrosim"); }
+
+ExitStatus command_sweep(const CommonOptions& options) {
+  if (options.seed_given && !options.seeds.empty()) throw InputError("--seeds: goes without --seed");
+  return run_set(options, make_plan(options.over, options.seeds, options.overrides), "sweep", "sweep");
+}
 
 }  // namespace softgrain

@@ -1,4 +1,4 @@
-#include "pipelines/commands/schema.h"
+#include "pipelines/commands/commands.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/core/text.h"
-#include "common/io/explored_keys.h"
+#include "common/io/key_record.h"
 #include "common/io/text_file.h"
 #include "pipelines/kinds/kinds.h"
 

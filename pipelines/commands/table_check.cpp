@@ -1,4 +1,4 @@
-#include "pipelines/commands/table_check.h"
+#include "pipelines/commands/commands.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,6 @@
 #include "calibrate/experiment_fit.h"
 #include "common/core/error.h"
 #include "common/data/force_curves.h"
-#include "common/data/force_scale.h"
 #include "common/io/csv_file.h"
 #include "common/packing/grading_scene.h"
 #include "pipelines/kinds/macro/scene.h"

@@ -1,4 +1,5 @@
-// What the two sides of `softgrain compare` hold, and everything that can be compared between them.
+// What the two sides of `softgrain compare` hold, what they do not have in common, and everything that can be compared
+// between them.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,9 +12,24 @@
 #include "common/data/measurements.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/compare/compare_measurements.h"
-#include "pipelines/compare/differences.h"
 
 namespace softgrain {
+
+struct Differences {
+  std::vector<std::string> said;       ///< remarks: what a comparison may be about, or what drops out of it
+  std::vector<std::string> obstacles;  ///< differences that make an error norm of such runs meaningless
+
+  void add(const Differences& more);  ///< adds what is not there already
+};
+
+/// Differences of two curves, as "what: candidate against reference". Bodies, radii, materials, tests are obstacles; a
+/// law with another law is what is compared, a law with a twin that starts elsewhere is not. Where a file does not say
+/// it all, a remark tells it.
+Differences differences(const MacroCurve& candidate, const MacroCurve& reference);
+
+/// Differences of two kinds of soft particle. E and Rs drop out of dimensionless forces; nu, mu and the way of packing
+/// do not.
+Differences differences(const SoftParticleSpec& candidate, const SoftParticleSpec& reference);
 
 /// A run directory or one of its files.
 struct CompareSide {
@@ -51,7 +67,7 @@ struct CompareResult {
 };
 
 /// Candidate against reference: engines and relaxations of the same name; when the sides share none, the first of each.
-/// Sides that differ in what makes a comparison mean something (differences.h) are refused unless `different`; then a
+/// Sides that differ in what makes a comparison mean something (Differences) are refused unless `different`; then a
 /// test stands against another test by its sample. Throws InputError for these, and when nothing can be compared.
 CompareResult compare_sides(const CompareSide& candidate, const CompareSide& reference, bool different = false);
 

@@ -1,4 +1,4 @@
-#include "pipelines/compare/differences.h"
+#include "pipelines/compare/compare_inputs.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // Values of a law card.
 #include <algorithm>
 
-#include "common/contact/soft_contact_from_card.h"
+#include "common/contact/make_laws.h"
 #include "pipelines/law/law_values.h"
 
 namespace softgrain::law {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "common/data/cell_card.h"
-#include "common/data/estimate_words.h"
+#include "common/data/law_words.h"
+#include "pipelines/law/fitted_law.h"
 #include "pipelines/law/law_json.h"
-#include "pipelines/law/law_show.h"
 #include "pipelines/law/terminal_plot.h"
 
 namespace softgrain {

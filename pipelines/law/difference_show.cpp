@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "common/core/text.h"
+#include "pipelines/law/fitted_law.h"
 #include "pipelines/law/law_difference.h"
-#include "pipelines/law/law_show.h"
 #include "pipelines/law/terminal_plot.h"
 
 namespace softgrain::law {

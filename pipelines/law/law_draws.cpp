@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "calibrate/effect_components.h"
-#include "common/contact/multi_contact_from_table.h"
+#include "calibrate/draws.h"
+#include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/core/statistics.h"

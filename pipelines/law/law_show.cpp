@@ -1,4 +1,4 @@
-#include "pipelines/law/law_show.h"
+#include "pipelines/law/fitted_law.h"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,8 @@
 #include <sstream>
 
 #include "common/core/text.h"
-#include "common/data/estimate_words.h"
 #include "common/data/law_card_format.h"
-#include "common/data/law_remarks.h"
+#include "common/data/law_words.h"
 #include "pipelines/law/law_values.h"
 #include "pipelines/law/terminal_plot.h"
 

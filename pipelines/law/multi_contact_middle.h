@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/make_laws.h"
 
 namespace softgrain::law {
 

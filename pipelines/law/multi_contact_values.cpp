@@ -7,7 +7,6 @@
 #include "common/core/error.h"
 #include "common/core/statistics.h"
 #include "common/core/text.h"
-#include "common/data/multi_contact_interval.h"
 #include "common/data/multi_contact_replicates.h"
 #include "pipelines/law/law_values.h"
 #include "pipelines/law/multi_contact_middle.h"

@@ -6,13 +6,12 @@
 #include <array>
 #include <cmath>
 
-#include "common/contact/law_file.h"
-#include "common/contact/multi_contact_from_table.h"
-#include "common/contact/soft_contact_from_card.h"
+#include "common/contact/law_set.h"
+#include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "common/core/text.h"
 #include "common/data/card_text.h"
-#include "common/data/law_remarks.h"
+#include "common/data/law_words.h"
 #include "common/dynamics/force_pass.h"
 #include "common/io/text_file.h"
 #include "macrosim/curve_notes.h"

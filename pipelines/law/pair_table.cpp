@@ -6,8 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "common/contact/multi_contact_from_table.h"
-#include "common/contact/soft_contact_from_card.h"
+#include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "pipelines/law/law_values.h"
 

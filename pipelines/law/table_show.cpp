@@ -2,9 +2,8 @@
 #include <fmt/format.h>
 
 #include "common/core/text.h"
-#include "common/data/estimate_words.h"
-#include "common/data/multi_contact_choice.h"
-#include "pipelines/law/law_show.h"
+#include "common/data/law_words.h"
+#include "pipelines/law/fitted_law.h"
 #include "pipelines/law/law_values.h"
 #include "pipelines/law/terminal_plot.h"
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "common/core/text.h"
-#include "common/data/estimate_words.h"
+#include "common/data/law_words.h"
 #include "common/io/json_record.h"
 #include "pipelines/law/terminal_plot.h"
 

@@ -1,4 +1,4 @@
-#include "pipelines/report/error_cost.h"
+#include "pipelines/report/plot_helpers.h"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,7 @@
 #include "microsim/protocol.h"
 #include "pipelines/compare/compare_measurements.h"
 #include "pipelines/compare/macro_scores.h"
-#include "pipelines/report/engine_style.h"
 #include "pipelines/report/html.h"
-#include "pipelines/report/plot_helpers.h"
 
 namespace softgrain::report {
 namespace {

@@ -9,8 +9,8 @@
 #include "common/core/text.h"
 #include "common/io/scene.h"
 #include "pipelines/law/named_laws.h"
-#include "pipelines/report/engine_style.h"
 #include "pipelines/report/number_format.h"
+#include "pipelines/report/plot_helpers.h"
 #include "pipelines/report/sections.h"
 #include "pipelines/results/summary.h"
 

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "common/core/text.h"
-#include "pipelines/report/assets.h"
+#include "pipelines/report/report.h"
 
 namespace softgrain::report {
 namespace {

@@ -1,10 +1,12 @@
-// Series that several sections draw alike.
+// Series that several sections draw alike; how the engines of macro runs are called and drawn, everywhere alike; and
+// error against cost.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "common/data/macro_result.h"
 #include "pipelines/compare/measured_stiffness.h"
 #include "pipelines/report/run_data.h"
 #include "pipelines/report/svg_plot.h"
@@ -36,5 +38,39 @@ AxisOptions overlap_axis(double last);
 
 /// Largest overlap of some values.
 double last_delta(const ValuesByDelta& values);
+
+/// "soft particles with their law" for "law" ...; the name itself when it is not known.
+std::string engine_name(const std::string& engine);
+
+SeriesStyle engine_style(const std::string& engine);
+
+/// One paragraph on the laws that the curves were made with; empty when they do not say.
+std::string law_paragraph(const std::vector<MacroCurve>& curves);
+
+/// A column of macro curves.
+using Stress = std::vector<double> MacroCurve::*;
+
+/// One line per curve that has the column, over strain in per cent, in units of `unit`; each engine once in the legend.
+void add_curves(Plot& plot, const std::vector<MacroCurve>& curves, Stress member, double unit);
+
+// Error against cost: what every cheaper way of a run was off by, and what it cost, both against its own reference.
+
+/// One cheaper way against its reference.
+struct ErrorCost {
+  std::string name;        ///< legend entry
+  std::string detail;      ///< under the pointer: of what, against what
+  std::string engine;      ///< style, as engine_style(); empty: a relaxation
+  double cost = 0.0;       ///< contact evaluations over those of the reference
+  double error = 0.0;      ///< relative difference from the reference
+  double deviation = 0.0;  ///< standard error of `error`; NaN when there is one sample only
+};
+
+/// Laws and free twins against the shelled twin (macro runs and every scene of a comparison; error of the axial
+/// stress), and the relaxation of the fit against the published one (error: root mean square over Delta of the ratio of
+/// the mean normal forces less one, where the force is above 2 % of its largest). What cannot be had is left out.
+std::vector<ErrorCost> error_costs(const RunData& run);
+
+/// All of them in one plot; empty without any.
+std::string error_cost_figure(const RunData& run);
 
 }  // namespace softgrain::report

@@ -1,7 +1,10 @@
-// The report of a run: one self-contained page with figures and tables, readable without a network and printable.
+// The report of a run: one self-contained page with figures and tables, readable without a network and printable; its
+// figures as separate SVG files, for papers and slides; its style sheet and scripts.
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace softgrain {
 
@@ -10,3 +13,36 @@ namespace softgrain {
 void write_report(const std::string& run_directory);
 
 }  // namespace softgrain
+
+namespace softgrain::report {
+
+struct Figure {
+  std::string name;  ///< file name without extension, from the figure's title
+  std::string svg;   ///< complete document
+};
+
+/// Every svg element of an HTML body, in order; names are made unique by a number.
+std::vector<Figure> figures_of(const std::string& html);
+
+/// Writes them to DIR/figures in place of those that an earlier report left there. Throws IoError.
+void write_figures(const std::string& run_directory, const std::vector<Figure>& figures);
+
+/// Removes those that a report left in DIR/figures, and the directory when nothing else is in it.
+void remove_figures(const std::string& run_directory);
+
+}  // namespace softgrain::report
+
+// The style sheet and the scripts of a report. They are kept as files in pipelines/report/assets/ and become part of
+// the program when it is built (cmake/embed_texts.cmake).
+
+namespace softgrain::report::assets {
+
+std::string_view report_css();  ///< style for screen, phone and print
+std::string_view report_js();   ///< values under the pointer, legend entries that hide and show their curves
+
+// The packing in 3D, on top of three.js, in this order.
+std::string_view packing_data_js();   ///< states and colours
+std::string_view packing_scene_js();  ///< what is drawn
+std::string_view packing_view_js();   ///< what the reader does
+
+}  // namespace softgrain::report::assets

@@ -6,7 +6,7 @@
 #include "common/core/error.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
-#include "pipelines/results/result_files.h"
+#include "pipelines/results/kind_results.h"
 #include "pipelines/results/summary.h"
 
 namespace softgrain::report {

@@ -79,11 +79,4 @@ bool is_unfinished(const std::string& directory);
 /// of any kind, or one of these files is damaged.
 RunData load_run(const std::string& directory);
 
-/// Band that was read with the card when it is there, else from the covariance of the parameters by linearised error
-/// propagation; empty when neither exists.
-std::optional<LawBand> law_band(const PairLaw& law, LawPart part);
-
-/// n values evenly spread over [low, high].
-std::vector<double> spread(double low, double high, int n);
-
 }  // namespace softgrain::report

@@ -1,18 +1,42 @@
-// Every curve of several runs, in one drawing for each kind of curve.
-#include "pipelines/report/runs_figures.h"
+// What the kinds say of a run directory, and every curve of several runs, in one drawing for each kind of curve.
+#include "pipelines/report/sections.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <optional>
+#include <utility>
 
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
-#include "pipelines/report/run_values.h"
+#include "pipelines/report/run_data.h"
+#include "pipelines/results/kind_results.h"
 
 namespace softgrain::report {
+
+std::vector<RunValue> values_of(const RunData& run) {
+  std::vector<RunValue> out;
+  for (const KindResults& kind : results_of_kinds()) {
+    if (kind.values == nullptr) continue;
+    for (RunValue& v : kind.values(run))
+      if (std::isfinite(v.value)) out.push_back(std::move(v));
+  }
+  return out;
+}
+
+std::vector<RunCurve> curves_of(const std::string& directory) {
+  const RunData run = load_run(directory);
+  std::vector<RunCurve> out;
+  for (const KindResults& kind : results_of_kinds()) {
+    if (kind.curves == nullptr) continue;
+    std::vector<RunCurve> more = kind.curves(run);
+    std::move(more.begin(), more.end(), std::back_inserter(out));
+  }
+  return out;
+}
 
 static constexpr std::size_t kColours = 7;  ///< before dashes tell curves apart
 

@@ -1,5 +1,5 @@
 // How numbers of several runs depend on the keys that were swept.
-#include "pipelines/report/runs_figures.h"
+#include "pipelines/report/sections.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <set>
 
-#include "pipelines/report/error_cost.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/plot_helpers.h"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "common/data/estimate_words.h"
+#include "common/data/law_words.h"
 #include "pipelines/law/law_json.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"

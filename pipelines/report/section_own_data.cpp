@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "pipelines/law/experiment_summary.h"
+#include "pipelines/law/law_fit.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/plot_helpers.h"

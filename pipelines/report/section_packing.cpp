@@ -3,9 +3,9 @@
 #include <optional>
 
 #include "common/io/text_file.h"
-#include "pipelines/report/assets.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/packing_data.h"
+#include "pipelines/report/report.h"
 #include "pipelines/report/sections.h"
 
 namespace softgrain::report {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "common/data/law_remarks.h"
+#include "common/data/law_words.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/plot_helpers.h"
 #include "pipelines/report/sections.h"

@@ -8,7 +8,6 @@
 #include "common/core/text.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
-#include "pipelines/report/runs_figures.h"
 #include "pipelines/report/sections.h"
 #include "pipelines/report/svg_plot.h"
 #include "pipelines/results/set_summary.h"

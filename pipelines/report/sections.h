@@ -1,10 +1,14 @@
-// The sections of a report that belong to no kind of scene, one file each. A section without data is an empty string.
+// The sections of a report that belong to no kind of scene, one file each, and what the section of several runs side by
+// side is made of. A section without data is an empty string.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "pipelines/report/run_data.h"
+#include "pipelines/report/svg_plot.h"
 #include "pipelines/results/kind_results.h"
+#include "pipelines/results/set_summary.h"
 
 namespace softgrain::report {
 
@@ -25,5 +29,24 @@ std::string sizes_section(const RunData& run);             ///< passing over siz
 std::string grading_section(const RunData& run);     ///< passing over size of all grains, where no sizes were asked for
 std::string cost_section(const RunData& run);        ///< passes, contact evaluations, seconds, speed-ups
 std::string provenance_section(const RunData& run);  ///< version, seeds, command, scene
+
+// What the kinds say of a run directory, gathered.
+
+/// Numbers by which a run is set beside others; those that are not finite left out.
+std::vector<RunValue> values_of(const RunData& run);
+
+/// Curves of a run directory. Throws IoError where it holds no results, or damaged ones.
+std::vector<RunCurve> curves_of(const std::string& directory);
+
+// Drawings of several runs side by side.
+
+/// Style of the curve of run or choice of values number `index`; thin and without marks where many are drawn together.
+SeriesStyle run_style(std::size_t index, bool one_of_many);
+
+/// All curves of the runs whose directories are there, over seeds with their mean: a figure for each kind of curve.
+std::vector<std::string> run_curve_figures(const RunData& run, const SetSummary& set);
+
+/// The first of the numbers over every key whose values are numbers of one unit.
+std::vector<std::string> dependence_figures(const SetSummary& set, const std::vector<RunValue>& numbers);
 
 }  // namespace softgrain::report

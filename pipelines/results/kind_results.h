@@ -1,16 +1,45 @@
-// What runs of a kind of scene leave behind, as check, report, export and the removal of earlier runs know it.
+// What runs of a kind of scene leave behind, as check, report, export and the removal of earlier runs know it: files,
+// sections of a report, and a few numbers and curves by which runs are set side by side.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/core/limits.h"
 #include "common/data/snapshot.h"
 #include "common/io/hdf5_file.h"
-#include "pipelines/results/run_values.h"
+#include "common/io/json_record.h"
 
 namespace softgrain {
+
+/// One number that a run came to.
+struct RunValue {
+  std::string name;  ///< "axial stress at the end", with "(law)" behind it where several engines have one
+  std::string unit;  ///< empty: a plain number
+  double value = kNaN;
+  double error = kNaN;  ///< standard error within the run, over its samples; NaN: it has one sample, or does not say
+};
+
+void fields(auto&& visit, Of<RunValue> auto& v) {
+  visit("name", v.name);
+  visit("unit", v.unit);
+  visit("value", v.value);
+  visit("standard_error", v.error);
+}
+
+/// One curve of a run. Runs share a plot where its title agrees, and a colour rule where the name does.
+struct RunCurve {
+  std::string plot;     ///< title
+  std::string x_label;  ///< label of the x axis, with unit
+  std::string y_label;  ///< label of the y axis, without unit
+  std::string y_unit;   ///< SI, or empty
+  std::string name;     ///< name of the curve in the run: an engine, a kind of contact; empty: there is one
+  std::vector<double> x;
+  std::vector<double> y;
+};
 
 class Findings;
 
@@ -85,5 +114,12 @@ struct KindResults {
 
 /// Results of every kind; see kinds/kinds.cpp.
 const std::vector<KindResults>& results_of_kinds();
+
+/// What a file of this name is among the results of any kind; null: none.
+const ResultFile* result_file(const std::string& name);
+/// What an HDF5 file is among the results of any kind, by its content, whatever its name; null: none.
+const ResultFile* result_file_of(const h5::Group& root);
+/// Whether a file is a result of this program, by its name and, where other programs may use that name, by its content.
+bool is_result_file(const std::filesystem::path& path);
 
 }  // namespace softgrain

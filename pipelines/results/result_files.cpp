@@ -1,4 +1,4 @@
-#include "pipelines/results/result_files.h"
+#include "pipelines/results/kind_results.h"
 
 #include <regex>
 

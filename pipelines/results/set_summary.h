@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "pipelines/results/run_values.h"
+#include "pipelines/results/kind_results.h"
 #include "pipelines/results/summary.h"
 
 namespace softgrain {

@@ -8,7 +8,7 @@
 
 #include "common/core/error.h"
 #include "common/core/statistics.h"
-#include "common/data/law_remarks.h"
+#include "common/data/law_words.h"
 #include "microsim/protocol.h"
 #include "pipelines/compare/compare_measurements.h"
 

@@ -6,8 +6,8 @@
 #include <mutex>
 
 #include "common/core/error.h"
-#include "common/data/spec_io.h"
 #include "common/io/file_safety.h"
+#include "common/io/provenance.h"
 #include "common/io/text_file.h"
 
 namespace softgrain {

@@ -11,8 +11,8 @@
 #include "common/core/text.h"
 #include "macrosim/lammps_run/points_file.h"
 #include "pipelines/export/export_files.h"
-#include "pipelines/report/figures.h"
-#include "pipelines/results/result_files.h"
+#include "pipelines/report/report.h"
+#include "pipelines/results/kind_results.h"
 #include "pipelines/snapshots/snapshots.h"
 
 namespace softgrain {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/io/explored_keys.h"
+#include "common/io/key_record.h"
 #include "common/io/scene.h"
 #include "pipelines/results/kind_results.h"
 #include "pipelines/run/findings.h"

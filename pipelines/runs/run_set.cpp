@@ -15,7 +15,6 @@
 #include "pipelines/kinds/kinds.h"
 #include "pipelines/report/report.h"
 #include "pipelines/run/run_context.h"
-#include "pipelines/run/text_table.h"
 #include "pipelines/runs/set_text.h"
 
 namespace softgrain {

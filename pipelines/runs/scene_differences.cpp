@@ -11,7 +11,7 @@
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
 #include "pipelines/report/run_data.h"
-#include "pipelines/report/run_values.h"
+#include "pipelines/report/sections.h"
 #include "pipelines/runs/set_text.h"
 
 namespace softgrain {

@@ -8,7 +8,7 @@
 
 #include "common/core/text.h"
 #include "pipelines/law/terminal_plot.h"
-#include "pipelines/report/run_values.h"
+#include "pipelines/report/sections.h"
 
 namespace softgrain {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "common/core/text.h"
 #include "pipelines/results/set_summary.h"
-#include "pipelines/run/text_table.h"
 
 namespace softgrain {
 

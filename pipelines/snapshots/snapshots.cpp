@@ -10,7 +10,7 @@
 #include "common/core/error.h"
 #include "common/data/snapshot_io.h"
 #include "common/io/text_file.h"
-#include "pipelines/results/result_files.h"
+#include "pipelines/results/kind_results.h"
 
 namespace softgrain {
 

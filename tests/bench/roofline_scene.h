@@ -17,7 +17,7 @@
 #include "common/dynamics/verlet.h"
 #include "common/neighbours/spatial_order.h"
 #include "common/neighbours/verlet_list.h"
-#include "microsim/particles/xyzr_file.h"
+#include "microsim/particles/scene_bodies.h"
 
 namespace softgrain::bench {
 

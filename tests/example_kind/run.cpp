@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "common/core/parallel_tasks.h"
+#include "common/core/text.h"
 #include "common/io/text_file.h"
-#include "pipelines/run/text_table.h"
 #include "pipelines/run/typed_kind.h"
 #include "tests/example_kind/scene.h"
 #include "tests/example_kind/summary.h"

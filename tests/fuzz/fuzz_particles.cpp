@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/core/error.h"
-#include "microsim/particles/xyzr_file.h"
+#include "microsim/particles/scene_bodies.h"
 #include "tests/fuzz/input_file.h"
 
 namespace {

@@ -12,7 +12,6 @@
 #include "input.h"
 #include "lammps.h"
 #include "macrosim/lammps/pair_softgrain.h"
-#include "macrosim/lammps/styles.h"
 
 namespace softgrain::test {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/contact/law_file.h"
+#include "common/contact/law_set.h"
 #include "macrosim/macro_packing.h"
 #include "macrosim/macro_system.h"
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <numbers>
 
-#include "common/contact/law_file.h"
+#include "common/contact/law_set.h"
 #include "common/core/random.h"
 #include "common/dynamics/force_pass.h"
 #include "tests/lammps/dump_file.h"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/contact/law_file.h"
+#include "common/contact/law_set.h"
 #include "common/core/particles.h"
 #include "common/core/random.h"
 #include "common/dynamics/force_pass.h"

@@ -5,10 +5,10 @@
 #include <map>
 #include <tuple>
 
-#include "common/contact/soft_contact_from_card.h"
-#include "common/contact/threshold_term.h"
+#include "common/contact/make_laws.h"
+#include "common/contact/soft_contact.h"
 #include "common/core/error.h"
-#include "macrosim/lammps/law_source.h"
+#include "macrosim/lammps/words.h"
 #include "tests/lammps/in_process.h"
 #include "tests/lammps/macro_scene.h"
 #include "tests/support/temporary_directory.h"

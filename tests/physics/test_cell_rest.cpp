@@ -3,8 +3,7 @@
 
 #include <cmath>
 
-#include "macrosim/cell_matter/cell_tangent.h"
-#include "macrosim/cell_matter/step_mixer.h"
+#include "macrosim/cell_matter/cell_steps.h"
 #include "tests/support/cell_samples.h"
 
 namespace softgrain {

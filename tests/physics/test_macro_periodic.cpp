@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/make_laws.h"
 #include "common/dynamics/contact_watch.h"
 #include "common/dynamics/force_pass.h"
 #include "macrosim/body_contacts.h"

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "common/core/error.h"
-#include "common/data/shell_packing.h"
+#include "common/data/measurements.h"
 #include "macrosim/compression.h"
 #include "macrosim/macro_packing.h"
 #include "macrosim/staged_test.h"

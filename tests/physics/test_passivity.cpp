@@ -2,7 +2,7 @@
 // known. Nor do laws of soft particles with several neighbours, whatever way they are led.
 #include <gtest/gtest.h>
 
-#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/make_laws.h"
 #include "common/core/random.h"
 #include "common/dynamics/force_pass.h"
 #include "tests/support/impact.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "common/core/monotone_curve.h"
 #include "tests/property/random_cloud.h"

@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "common/data/multi_contact_replicates.h"
+#include "pipelines/law/fitted_law.h"
 #include "pipelines/law/law_difference.h"
-#include "pipelines/law/law_show.h"
 #include "pipelines/law/named_laws.h"
 #include "pipelines/law/terminal_plot.h"
 #include "tests/support/program.h"

@@ -5,8 +5,7 @@
 #include <filesystem>
 #include <map>
 
-#include "common/contact/multi_contact_from_table.h"
-#include "common/contact/multi_contact_table_file.h"
+#include "common/contact/make_laws.h"
 #include "common/data/macro_result.h"
 #include "common/data/multi_contact_replicates.h"
 #include "common/io/text_file.h"

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "common/contact/multi_contact_table_file.h"
+#include "common/contact/make_laws.h"
 #include "common/data/macro_result.h"
 #include "common/io/text_file.h"
 #include "tests/support/markup_check.h"

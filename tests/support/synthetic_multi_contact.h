@@ -10,7 +10,6 @@
 #include "common/core/random.h"
 #include "common/data/multi_contact_law.h"
 #include "common/data/multi_contact_measurements.h"
-#include "common/data/slide_direction.h"
 #include "microsim/multi_contact_arrangements.h"
 #include "tests/support/synthetic_law.h"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/make_laws.h"
 #include "common/data/macro_result.h"
 #include "common/data/snapshot_io.h"
 #include "common/neighbours/verlet_list.h"

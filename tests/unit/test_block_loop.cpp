@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/contact/threshold_term.h"
+#include "common/contact/soft_contact.h"
 #include "common/core/particles.h"
 #include "common/core/random.h"
 #include "common/dynamics/force_pass.h"

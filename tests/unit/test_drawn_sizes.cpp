@@ -4,18 +4,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/merge_measurements.h"
 #include "common/core/error.h"
 #include "common/core/particles.h"
 #include "common/data/card_text.h"
-#include "common/data/spec_io.h"
+#include "common/data/measurements.h"
+#include "common/data/soft_particle_schema.h"
 #include "macrosim/constructed_packing.h"
 #include "microsim/grain_box/grain_box_run.h"
 #include "microsim/particles/particles_scene.h"
 #include "microsim/powder/powder_start.h"
 #include "microsim/powder/powder_state_io.h"
 #include "microsim/shell_packing.h"
-#include "pipelines/compare/differences.h"
+#include "pipelines/compare/compare_inputs.h"
 #include "tests/support/temporary_directory.h"
 
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "calibrate/effect_components.h"
+#include "calibrate/draws.h"
 #include "common/core/error.h"
 #include "common/core/random.h"
 #include "common/core/statistics.h"

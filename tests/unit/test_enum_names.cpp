@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "common/contact/law_file.h"
+#include "common/contact/law_set.h"
 #include "common/core/error.h"
 #include "common/data/macro_result.h"
 #include "common/data/multi_contact_law.h"

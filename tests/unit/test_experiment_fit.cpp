@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/data/law_band.h"
-#include "pipelines/law/fit_text.h"
+#include "pipelines/law/law_fit.h"
 #include "tests/support/synthetic_law.h"
 
 namespace {

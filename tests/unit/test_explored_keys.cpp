@@ -1,4 +1,4 @@
-// Which keys a reader asks for in any of its modes (common/io/explored_keys.h), and that it finds those of every kind.
+// Which keys a reader asks for in any of its modes (common/io/key_record.h), and that it finds those of every kind.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/io/explored_keys.h"
+#include "common/io/key_record.h"
 #include "pipelines/kinds/kinds.h"
 #include "tests/support/changed_keys.h"
 #include "tests/support/keyed_scenes.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "common/data/force_scale.h"
+#include "common/data/force_curves.h"
 #include "common/data/macro_result.h"
 #include "pipelines/kinds/macro/summary.h"
 

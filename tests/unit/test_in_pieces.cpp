@@ -1,5 +1,5 @@
 // Loops in pieces: the same bits for any number of threads, and errors that reach the caller.
-#include "common/core/in_pieces.h"
+#include "common/core/parallel_tasks.h"
 
 #include <gtest/gtest.h>
 

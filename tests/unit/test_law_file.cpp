@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/contact/law_file.h"
+#include "common/contact/law_set.h"
 #include "common/core/error.h"
 
 namespace softgrain {

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "common/contact/laws.h"
-#include "common/contact/soft_contact_from_card.h"
+#include "common/contact/make_laws.h"
 #include "common/data/multi_contact_law.h"
 #include "pipelines/report/svg_plot.h"
 

@@ -4,9 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "common/contact/multi_contact_from_table.h"
-#include "common/contact/multi_contact_table_file.h"
-#include "common/contact/soft_contact_from_card.h"
+#include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/data/multi_contact_replicates.h"

@@ -1,5 +1,5 @@
 // Measurement files join into one ensemble only when they belong together.
-#include "calibrate/merge_measurements.h"
+#include "common/data/measurements.h"
 
 #include <gtest/gtest.h>
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/multi_contact_form_fit.h"
+#include "calibrate/multi_contact_fit.h"
 #include "calibrate/multi_contact_states.h"
-#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "pipelines/kinds/law_table/multi_contact_law_fit.h"
 #include "tests/support/known_multi_contact.h"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "common/dynamics/force_pass.h"
 #include "macrosim/macro_system.h"

@@ -6,8 +6,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "common/contact/multi_contact_from_table.h"
-#include "common/contact/multi_contact_table_file.h"
+#include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "common/core/monotone_curve.h"
 #include "common/core/random.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/make_laws.h"
 #include "common/core/few_samples.h"
 #include "tests/support/known_multi_contact.h"
 

@@ -3,7 +3,7 @@
 
 #include "common/data/macro_result.h"
 #include "common/io/text_file.h"
-#include "pipelines/commands/observables.h"
+#include "pipelines/commands/commands.h"
 #include "tests/support/synthetic_run.h"
 #include "tests/support/temporary_directory.h"
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <sstream>
 
-#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "pipelines/law/pair_table.h"
 #include "tests/support/synthetic_multi_contact.h"

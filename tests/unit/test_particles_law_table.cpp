@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/contact/multi_contact_from_table.h"
-#include "common/contact/multi_contact_table_file.h"
+#include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "common/dynamics/contact_watch.h"
 #include "common/dynamics/force_pass.h"

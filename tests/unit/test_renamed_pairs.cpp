@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/contact/law_file.h"
+#include "common/contact/law_set.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/verlet.h"
 #include "common/neighbours/spatial_order.h"

@@ -1,5 +1,5 @@
 // The loop of bootstraps: which random numbers a replicate gets, and how a signal ends it.
-#include "calibrate/replicates.h"
+#include "calibrate/draws.h"
 
 #include <gtest/gtest.h>
 

@@ -5,13 +5,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/contact/multi_contact_from_table.h"
-#include "common/contact/multi_contact_table_file.h"
+#include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/io/text_file.h"
-#include "pipelines/report/error_cost.h"
-#include "pipelines/report/reference_curves.h"
+#include "pipelines/report/law_curves.h"
+#include "pipelines/report/plot_helpers.h"
 #include "pipelines/report/report.h"
 #include "pipelines/report/run_data.h"
 #include "pipelines/run/run_context.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "common/data/law_remarks.h"
+#include "common/data/law_words.h"
 #include "pipelines/kinds/law_table/scene.h"
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/soft_particle/scene.h"

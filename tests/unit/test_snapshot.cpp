@@ -8,8 +8,8 @@
 #include "common/core/particles.h"
 #include "common/data/snapshot_io.h"
 #include "common/dynamics/force_pass.h"
-#include "common/dynamics/system_snapshot.h"
 #include "common/neighbours/spatial_order.h"
+#include "common/state/system_io.h"
 #include "tests/support/hdf5_edit.h"
 #include "tests/support/temporary_directory.h"
 

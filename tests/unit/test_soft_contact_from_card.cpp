@@ -1,12 +1,12 @@
 // A law card becomes the law of the loop, or is refused with the reason.
-#include "common/contact/soft_contact_from_card.h"
+#include "common/contact/make_laws.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "common/core/error.h"
-#include "common/data/law_remarks.h"
+#include "common/data/law_words.h"
 
 namespace {
 

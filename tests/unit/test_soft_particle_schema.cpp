@@ -10,7 +10,6 @@
 #include "common/core/material.h"
 #include "common/data/card_text.h"
 #include "common/data/soft_particle_schema.h"
-#include "common/data/spec_io.h"
 #include "pipelines/kinds/law_table/multi_contact_stage.h"
 #include "tests/support/temporary_directory.h"
 

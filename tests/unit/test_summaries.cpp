@@ -9,7 +9,7 @@
 #include "pipelines/kinds/macro_comparison/summary.h"
 #include "pipelines/kinds/particles/scene.h"
 #include "pipelines/kinds/particles/summary.h"
-#include "pipelines/law/experiment_summary.h"
+#include "pipelines/law/law_fit.h"
 #include "pipelines/report/run_data.h"
 #include "pipelines/report/sections.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/core/limits.h"
-#include "common/data/estimate_words.h"
+#include "common/data/law_words.h"
 
 namespace softgrain {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "calibrate/threshold_model.h"
 #include "common/core/error.h"
-#include "pipelines/law/fit_settings.h"
+#include "pipelines/law/law_fit.h"
 #include "tests/support/synthetic_law.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // Files of spheres: numbers as other programs write them.
-#include "microsim/particles/xyzr_file.h"
+#include "microsim/particles/scene_bodies.h"
 
 #include <gtest/gtest.h>
 

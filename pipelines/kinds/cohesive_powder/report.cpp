@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "common/core/statistics.h"
-#include "common/dynamics/system_snapshot.h"
+#include "common/state/system_io.h"
 #include "microsim/powder/powder_state_io.h"
 #include "pipelines/kinds/cohesive_powder/powder_data.h"
 #include "pipelines/kinds/cohesive_powder/report_plots.h"

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "common/core/text.h"
 #include "common/io/scene.h"
 #include "pipelines/kinds/cohesive_powder/scene.h"
 #include "pipelines/kinds/cohesive_powder/summary.h"
 #include "pipelines/run/run_context.h"
-#include "pipelines/run/text_table.h"
 
 namespace softgrain {
 

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "calibrate/bootstrap.h"
-#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/make_laws.h"
 #include "common/core/cost.h"
 #include "common/core/particles.h"
 #include "common/data/multi_contact_replicates.h"

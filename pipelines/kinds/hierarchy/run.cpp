@@ -7,8 +7,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "common/contact/multi_contact_from_table.h"
-#include "common/contact/multi_contact_table_file.h"
+#include "common/contact/make_laws.h"
 #include "pipelines/kinds/hierarchy/level.h"
 #include "pipelines/kinds/hierarchy/summary.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"

@@ -11,7 +11,6 @@
 #include "calibrate/response_surface.h"
 #include "common/core/error.h"
 #include "common/data/force_curves.h"
-#include "common/data/force_scale.h"
 #include "common/data/soft_particle_schema.h"
 #include "common/io/csv_file.h"
 #include "pipelines/kinds/soft_particle/check.h"

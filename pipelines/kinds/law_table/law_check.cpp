@@ -6,10 +6,8 @@
 #include <cmath>
 
 #include "common/data/card_text.h"
-#include "common/data/estimate_words.h"
 #include "common/data/law_band.h"
-#include "common/data/law_remarks.h"
-#include "common/data/multi_contact_choice.h"
+#include "common/data/law_words.h"
 #include "common/io/scene.h"
 #include "pipelines/kinds/law_table/multi_contact_law_fit.h"
 #include "pipelines/law/fitted_law.h"

@@ -7,7 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/core/text.h"
-#include "common/data/multi_contact_choice.h"
+#include "common/data/law_words.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
 #include "pipelines/law/law_json.h"
 

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "common/core/text.h"
-#include "common/data/slide_direction.h"
+#include "common/data/multi_contact_measurements.h"
 #include "microsim/multi_contact_arrangements.h"
 #include "pipelines/kinds/soft_particle/scene.h"
 

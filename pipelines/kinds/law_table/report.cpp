@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/multi_contact_form_fit.h"
+#include "calibrate/multi_contact_fit.h"
 #include "calibrate/multi_contact_states.h"
-#include "common/contact/multi_contact_from_table.h"
-#include "common/data/estimate_words.h"
-#include "common/data/law_remarks.h"
-#include "common/data/multi_contact_choice.h"
+#include "common/contact/make_laws.h"
+#include "common/data/law_words.h"
 #include "pipelines/kinds/law_table/scene.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <filesystem>
 
-#include "common/contact/multi_contact_table_file.h"
+#include "common/contact/make_laws.h"
 #include "pipelines/kinds/law_table/multi_contact_stage.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
 #include "pipelines/results/summary.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/effect_components.h"
+#include "calibrate/draws.h"
 #include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/statistics.h"

@@ -7,8 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/core/text.h"
-#include "common/data/estimate_words.h"
-#include "common/data/law_remarks.h"
+#include "common/data/law_words.h"
 #include "macrosim/cell_specimen.h"
 #include "macrosim/constructed_packing.h"
 #include "macrosim/lammps_run/lammps_program.h"

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "common/core/error.h"
-#include "macrosim/cell_test.h"
+#include "macrosim/cell_specimen.h"
 #include "macrosim/compression.h"
 #include "macrosim/constructed_packing.h"
 #include "pipelines/kinds/macro/room.h"

@@ -8,9 +8,9 @@
 #include "common/core/few_samples.h"
 #include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/macro/scene.h"
-#include "pipelines/report/engine_style.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
+#include "pipelines/report/plot_helpers.h"
 
 namespace softgrain::report {
 

@@ -11,7 +11,7 @@
 #include "common/core/text.h"
 #include "common/io/progress.h"
 #include "common/state/system_io.h"
-#include "macrosim/cell_test.h"
+#include "macrosim/cell_specimen.h"
 #include "macrosim/compression.h"
 #include "macrosim/constructed_packing.h"
 #include "macrosim/macro_system.h"

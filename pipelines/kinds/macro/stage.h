@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/data/macro_result.h"
-#include "common/data/shell_packing.h"
+#include "common/data/measurements.h"
 #include "common/data/snapshot.h"
 #include "macrosim/macro_packing.h"
 #include "macrosim/macro_system.h"

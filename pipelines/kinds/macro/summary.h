@@ -7,7 +7,7 @@
 #include "common/data/macro_result.h"
 #include "macrosim/macro_spec.h"
 #include "pipelines/kinds/macro/bands.h"
-#include "pipelines/results/run_values.h"
+#include "pipelines/results/kind_results.h"
 #include "pipelines/results/summary.h"
 
 namespace softgrain {

@@ -10,10 +10,9 @@
 #include "pipelines/compare/macro_scores.h"
 #include "pipelines/kinds/macro_comparison/scene.h"
 #include "pipelines/kinds/macro_comparison/summary.h"
-#include "pipelines/report/engine_style.h"
-#include "pipelines/report/error_cost.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
+#include "pipelines/report/plot_helpers.h"
 #include "pipelines/report/run_data.h"
 #include "pipelines/report/svg_plot.h"
 

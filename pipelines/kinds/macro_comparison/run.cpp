@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "common/core/text.h"
 #include "common/io/text_file.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/kinds/macro/bands.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/macro_comparison/summary.h"
-#include "pipelines/run/text_table.h"
 #include "pipelines/run/typed_kind.h"
 
 namespace softgrain {

@@ -7,13 +7,14 @@
 #include <functional>
 #include <map>
 
-#include "common/data/estimate_words.h"
+#include "common/data/law_words.h"
 #include "macrosim/body_contacts.h"
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/macro/summary.h"
 #include "pipelines/kinds/material/scene.h"
 #include "pipelines/kinds/material/summary.h"
 #include "pipelines/report/html.h"
+#include "pipelines/report/law_curves.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/run_data.h"
 #include "pipelines/report/svg_plot.h"

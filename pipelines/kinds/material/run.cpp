@@ -8,7 +8,7 @@
 #include "common/core/error.h"
 #include "common/core/limits.h"
 #include "common/core/text.h"
-#include "common/data/estimate_words.h"
+#include "common/data/law_words.h"
 #include "common/io/text_file.h"
 #include "macrosim/body_contacts.h"
 #include "pipelines/kinds/macro/stage.h"

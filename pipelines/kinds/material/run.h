@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "common/core/text.h"
 #include "pipelines/kinds/macro/lammps_stage.h"
 #include "pipelines/kinds/material/scene.h"
 #include "pipelines/kinds/material/summary.h"
 #include "pipelines/run/run.h"
-#include "pipelines/run/text_table.h"
 
 namespace softgrain {
 

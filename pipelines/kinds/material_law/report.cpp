@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/core/text.h"
-#include "common/data/estimate_words.h"
+#include "common/data/law_words.h"
 #include "pipelines/kinds/law_table/scene.h"
 #include "pipelines/kinds/material_law/scene.h"
 #include "pipelines/kinds/material_law/summary.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "common/core/text.h"
-#include "common/data/estimate_words.h"
+#include "common/data/law_words.h"
 #include "common/io/text_file.h"
 #include "pipelines/kinds/material/run.h"
 #include "pipelines/kinds/material_law/fit.h"

@@ -6,10 +6,10 @@
 #include <tuple>
 #include <vector>
 
+#include "common/core/text.h"
 #include "pipelines/kinds/material/run.h"
 #include "pipelines/kinds/material_models/scene.h"
 #include "pipelines/kinds/material_models/summary.h"
-#include "pipelines/run/text_table.h"
 
 namespace softgrain {
 

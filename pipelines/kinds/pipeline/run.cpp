@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "calibrate/threshold_fit.h"
-#include "common/contact/multi_contact_table_file.h"
+#include "common/contact/make_laws.h"
 #include "common/core/text.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/kinds/law_table/multi_contact_stage.h"

@@ -2,7 +2,7 @@
 
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
-#include "pipelines/law/fit_settings.h"
+#include "pipelines/law/law_fit.h"
 
 namespace softgrain {
 

@@ -9,7 +9,7 @@
 #include "calibrate/state_curves.h"
 #include "common/core/statistics.h"
 #include "common/data/card_text.h"
-#include "common/data/estimate_words.h"
+#include "common/data/law_words.h"
 #include "common/io/text_file.h"
 #include "pipelines/compare/stage_results.h"
 

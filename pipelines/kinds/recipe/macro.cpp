@@ -8,7 +8,7 @@
 #include "common/core/error.h"
 #include "common/core/particles.h"
 #include "common/core/statistics.h"
-#include "common/data/estimate_words.h"
+#include "common/data/law_words.h"
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/material_models/models.h"

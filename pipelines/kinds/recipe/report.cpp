@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/data/estimate_words.h"
+#include "common/data/law_words.h"
 #include "pipelines/kinds/law_table/scene.h"
 #include "pipelines/kinds/material_law/scene.h"
 #include "pipelines/kinds/recipe/run.h"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "common/core/error.h"
-#include "common/data/estimate_words.h"
+#include "common/data/law_words.h"
 #include "common/io/text_file.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/material_law/scene.h"

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/make_laws.h"
 #include "common/contact/multi_contact_prediction.h"
-#include "common/contact/multi_contact_table_file.h"
 #include "common/core/error.h"
 #include "common/core/limits.h"
 #include "common/packing/grading.h"

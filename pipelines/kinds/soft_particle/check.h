@@ -2,7 +2,7 @@
 // elsewhere.
 #pragma once
 
-#include "common/data/shell_packing.h"
+#include "common/data/measurements.h"
 #include "pipelines/kinds/soft_particle/scene.h"
 #include "pipelines/run/findings.h"
 

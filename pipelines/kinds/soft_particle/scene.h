@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "common/data/measurements.h"
-#include "common/data/shell_packing.h"
 #include "common/io/scene.h"
 #include "microsim/measure.h"
 #include "microsim/protocol.h"

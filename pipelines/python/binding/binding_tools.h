@@ -9,7 +9,7 @@
 #include "common/core/error.h"
 #include "common/core/limits.h"
 #include "common/io/scene.h"
-#include "pipelines/python/binding/card_binding.h"
+#include "pipelines/python/binding/law_bindings.h"
 
 namespace softgrain::python {
 

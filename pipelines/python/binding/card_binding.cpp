@@ -1,9 +1,9 @@
-#include "pipelines/python/binding/card_binding.h"
+#include "pipelines/python/binding/law_bindings.h"
 
 #include <algorithm>
 #include <sstream>
 
-#include "common/contact/soft_contact_from_card.h"
+#include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "common/data/law_band.h"
 #include "common/io/scene.h"

@@ -13,7 +13,7 @@
 #include "pipelines/commands/complaints.h"
 #include "pipelines/law/fitted_law.h"
 #include "pipelines/python/binding/binding_tools.h"
-#include "pipelines/python/binding/table_binding.h"
+#include "pipelines/python/binding/law_bindings.h"
 
 namespace softgrain::python {
 

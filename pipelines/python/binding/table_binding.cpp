@@ -1,12 +1,11 @@
-#include "pipelines/python/binding/table_binding.h"
+#include "pipelines/python/binding/law_bindings.h"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
-#include "common/contact/multi_contact_from_table.h"
+#include "common/contact/make_laws.h"
 #include "common/core/limits.h"
-#include "common/data/multi_contact_interval.h"
 #include "common/data/multi_contact_replicates.h"
 #include "pipelines/python/binding/binding_tools.h"
 

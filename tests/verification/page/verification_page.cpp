@@ -5,8 +5,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "common/core/text.h"
 #include "common/io/provenance.h"
-#include "pipelines/run/text_table.h"
 #include "tests/verification/page/page.h"
 
 namespace {

@@ -1,0 +1,98 @@
+// What the files of this folder have from each other, beside the commands of run_context.h: parts of calibrate, check
+// and run, and schema.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/core/enum_names.h"
+#include "common/core/error.h"
+#include "pipelines/run/findings.h"
+#include "pipelines/run/run_context.h"
+
+namespace CLI {
+class App;
+}
+
+namespace softgrain {
+
+// softgrain calibrate DATA.csv...: the law of a contact from force-displacement measurements of an experiment.
+
+/// Whether the inputs are tables in text (.csv, .tsv, .txt, .dat). Throws InputError when only some are, or when an
+/// option for such tables stands beside other files.
+bool are_curve_files(const CommonOptions& options);
+
+/// Fits, writes law.toml, law.h5, summary.json and the report.
+ExitStatus calibrate_curves(const CommonOptions& options);
+
+// softgrain calibrate with multi-contact measurements: several neighbours at once.
+
+/// Whether all of these files hold multi-contact measurements; false when none does. Throws InputError for a mixture,
+/// IoError.
+bool are_multi_contact_files(const std::vector<std::string>& files);
+
+/// Fits one entry per file and writes law_table.toml, law_table.h5, multi_contact.h5 (that of the first file, for the
+/// report), summary.json and the report. Settings through --set: `discrepancy`, `replicates`, `min_packings`, `target`.
+/// Status not_usable when a recorded point did not converge or a best law is not good. Throws InputError (settings, two
+/// files of one solid fraction), UnusableResult (no force anywhere), IoError.
+ExitStatus calibrate_multi_contact(const CommonOptions& options);
+
+// softgrain check of tables that people bring: measurements of an experiment, sieve curves, radii.
+
+/// Says which data a text of columns holds, how many, and what takes them. Throws InputError where it holds none of
+/// these or they are not sound, IoError.
+void check_table(const std::string& path, Findings& out);
+
+// softgrain check of results: files of ours, summaries, run directories.
+
+/// An HDF5 file of any kind of ours: read as the commands would read it. Throws IoError when it is damaged.
+void check_data(const std::string& path, Findings& out);
+
+/// summary.json of a run: status, command, remarks. Throws InputError when it is none.
+void check_summary(const std::string& path, Findings& out);
+
+/// A run directory: its summary and every file of ours in it. Throws IoError when one of them is damaged, InputError
+/// when there is none.
+void check_directory(const std::string& path, Findings& out);
+
+// Observables and parameters of a run as two small text files, in the form that GrainLearning (and other calibration
+// tools) read: a header line "# name name ..." and columns of numbers.
+
+/// Throws InputError unless the scene is of a kind that has observables: pipeline, soft-particle, macro. Before any
+/// work.
+void require_observables(const std::string& scene, const std::vector<std::string>& overrides);
+
+/// Writes PREFIX_sim.txt and PREFIX_param.txt.
+///   A run with a macro part: strain, stress [Pa], lateral_stress [Pa], coordination, means over samples of the law's
+///   curves. Other runs: Delta, Fn [N], Fn_error [N] (standard error over packings); of soft-solid contacts where they
+///   were measured, and those of soft-soft contacts as Fn_soft_soft beside it where the overlaps are the same.
+///   The parameters are the overrides "key=value" that are plain numbers, named by the last part of their key (the
+///   whole key when two would share it).
+/// Throws InputError, IoError.
+void write_observables(const std::string& directory, const std::vector<std::string>& overrides,
+                       const std::string& prefix);
+
+// softgrain schema: which keys a kind of scenes has, for people, for the guide and for editors.
+
+enum class SchemaForm { text, markdown, json };
+
+template <>
+inline constexpr auto enum_names<SchemaForm> = enum_name_list<SchemaForm>({{SchemaForm::text, "text"},
+                                                                           {SchemaForm::markdown, "markdown"},
+                                                                           {SchemaForm::json, "json"}});
+
+struct SchemaOptions {
+  bool chosen = false;
+  std::string kind{};   ///< empty: the list of kinds
+  std::string table{};  ///< "macro", "loading.stage", "." for the root; empty: the root and which tables there are
+  SchemaForm form = SchemaForm::text;
+};
+
+/// Adds `schema` to the program's command line.
+void add_schema_command(CLI::App& app, SchemaOptions& options);
+
+/// Prints what was asked for. Throws InputError.
+ExitStatus command_schema(const SchemaOptions& options);
+
+}  // namespace softgrain
