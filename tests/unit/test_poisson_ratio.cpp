@@ -46,11 +46,13 @@ std::string refused(const KindScene& kind, const std::string& key, const std::st
 
 /// Paths of the keys of a scene that take one Poisson's ratio.
 std::vector<std::string> keys_of_scene(const KindScene& kind) {
+  const KindRuns files(kind);
+  const std::string file = files.out("scene.toml");
   KeyRecord record;
-  const Scene scene = Scene::parse(kind.text, kind.name);
+  const Scene scene = Scene::load(file);
   kind_of(scene).read(scene);
   std::vector<std::string> out;
-  for (const auto& [path, asked] : record.keys(kind.name))
+  for (const auto& [path, asked] : record.keys(file))
     if (path.ends_with(".nu") && asked.form == KeyForm::number) out.push_back(path);
   return out;
 }
