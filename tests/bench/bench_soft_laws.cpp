@@ -77,9 +77,9 @@ void SoftLawMultiContact(benchmark::State& state, bool solid_partner) {
 
 constexpr auto kPair = SoftLawMultiContact<LawForm::pair, false>;
 constexpr auto kPairBack = SoftLawMultiContact<LawForm::pair, true>;
-constexpr auto kBag = SoftLawMultiContact<LawForm::isotropic, false>;
-constexpr auto kBagRolling = SoftLawMultiContact<LawForm::isotropic, false, true>;
-constexpr auto kBagBack = SoftLawMultiContact<LawForm::isotropic, true>;
+constexpr auto kIsotropic = SoftLawMultiContact<LawForm::isotropic, false>;
+constexpr auto kIsotropicRolling = SoftLawMultiContact<LawForm::isotropic, false, true>;
+constexpr auto kIsotropicBack = SoftLawMultiContact<LawForm::isotropic, true>;
 constexpr auto kDirectional = SoftLawMultiContact<LawForm::directional, false>;
 constexpr auto kDirectionalRolling = SoftLawMultiContact<LawForm::directional, false, true>;
 constexpr auto kDirectionalAll = SoftLawMultiContact<LawForm::directional, true, true>;
@@ -95,9 +95,9 @@ SOFT_BENCHMARK(kPair, pair, false);
 SOFT_BENCHMARK(kPair, pair_solid, true);
 SOFT_BENCHMARK(kPairBack, pair_unloading, false);
 SOFT_BENCHMARK(kIsotropic, isotropic, false);
-SOFT_BENCHMARK(kBag, bag_solid, true);
-SOFT_BENCHMARK(kBagRolling, bag_rolling, false);
-SOFT_BENCHMARK(kBagBack, bag_unloading, false);
+SOFT_BENCHMARK(kIsotropic, isotropic_solid, true);
+SOFT_BENCHMARK(kIsotropicRolling, isotropic_rolling, false);
+SOFT_BENCHMARK(kIsotropicBack, isotropic_unloading, false);
 SOFT_BENCHMARK(kDirectional, directional, false);
 SOFT_BENCHMARK(kDirectional, directional_solid, true);
 SOFT_BENCHMARK(kDirectionalRolling, directional_rolling, false);
