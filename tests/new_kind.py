@@ -119,17 +119,17 @@ def self_test(root):
     with tempfile.TemporaryDirectory() as temporary:
         copy = pathlib.Path(temporary) / "copy"
         shutil.copytree(root, copy, ignore=shutil.ignore_patterns("build", ".git", "*.h5", "__pycache__"))
-        write_kind(copy, "drop-test")
-        left = [str(path) for path in (copy / KINDS / "drop_test").iterdir()
+        write_kind(copy, "self-test")
+        left = [str(path) for path in (copy / KINDS / "self_test").iterdir()
                 if re.search(r"(?i)example", path.read_text())]
         assert not left, f"these still name the example: {left}"
         entry = (copy / KINDS / "kinds.cpp").read_text()
-        assert "drop_test_kind()" in entry and f'#include "{KINDS}/drop_test/scene.h"' in entry
+        assert "self_test_kind()" in entry and f'#include "{KINDS}/self_test/scene.h"' in entry
         for check in (["check_layers.py", "."], ["check_names.py", "."], ["check_guide.py", "."], ["house.py", ".", "--hold"],
                       ["house.py", ".", "--compare", "pipelines/guide/house.svg"]):
             subprocess.run([sys.executable, "tests/" + check[0], *check[1:]], cwd=copy, check=True, stdout=subprocess.DEVNULL)
         try:
-            write_kind(copy, "drop-test")
+            write_kind(copy, "self-test")
         except SystemExit as refusal:
             assert "exists" in str(refusal)
         else:
