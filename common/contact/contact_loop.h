@@ -15,20 +15,17 @@
 
 namespace softgrain {
 
-/// Pairs that a loop visits: [begin, end), or the places in the list that `order` holds there.
+/// Pairs that a loop visits: [begin, end).
 struct PairRange {
   std::int32_t begin = 0;
   std::int32_t end = 0;
-  const std::int32_t* order = nullptr;
-
-  [[nodiscard]] std::int32_t at(std::int32_t k) const { return order == nullptr ? k : order[k]; }
 };
 
 /// touch(c, pair, geometry) for pairs that touch or are within `reach`, apart(c) for the others.
 template <class Source, class Touch, class Apart>
 void visit_pairs(const Source& source, double reach, const PairRange& range, Touch&& touch, Apart&& apart) {
   for (std::int32_t k = range.begin; k < range.end; ++k) {
-    const auto c = static_cast<std::size_t>(range.at(k));
+    const auto c = static_cast<std::size_t>(k);
     const auto pair = source.pair(c);
     ContactGeometry<Source::kDimension> g;
     if (source.meet(pair, reach, g))
@@ -83,7 +80,7 @@ template <class Source, class Law>
 void close_sums(const Source& source, const Law& law, const PairRange& range) {
   if constexpr (Law::traits.needs_particle_pass)
     for (std::int32_t k = range.begin; k < range.end; ++k)
-      source.sums_of(source.pair(static_cast<std::size_t>(range.at(k))), [&](bool, auto& sum) {
+      source.sums_of(source.pair(static_cast<std::size_t>(k)), [&](bool, auto& sum) {
         if (!sum.ready && sum.square > 0.0) law.finish(sum);
       });
 }

@@ -40,7 +40,7 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kSource> {
   /// contacts in a row share, the sums stay at hand.
   template <bool kStiffness>
   void scatter() {
-    if (kForeign || pass_.part.owner == nullptr)
+    if (kForeign || pass_.part.split == nullptr)
       scatter_to<kStiffness, !kForeign>([](std::size_t) { return true; });
     else
       scatter_to<kStiffness, true>([split = pass_.part.split](std::size_t c) { return split[c] == 0; });

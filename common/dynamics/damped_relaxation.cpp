@@ -140,7 +140,7 @@ void DampedRelaxation<D>::move_all(System<D>& s, const Fire::Steering& steering,
 template <int D>
 RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* frame) {
   RelaxationResult result;
-  PassThreads threads;
+  PassThreads threads(s.particles.sphere.size());
   stop_motion(s.particles);
   const auto& turn = s.particles.inverse_inertia;
   turns_ = std::any_of(turn.begin(), turn.end(), [](double inverse) { return inverse > 0.0; });

@@ -30,7 +30,7 @@ void run_steps(System3& system, const Drive& drive, double dt, std::int64_t step
   if (drive) drive(system, 1.0);
   VelocityVerlet<3> integrator(dt);
   integrator.initialise(system);
-  PassThreads threads;
+  PassThreads threads(system.particles.sphere.size());
   for (std::int64_t k = 0; k < steps; ++k) {
     stop_if_interrupted("relaxing");
     integrator.step(system);

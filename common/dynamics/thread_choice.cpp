@@ -18,6 +18,8 @@ constexpr double kSlower = 2.0;
 constexpr int kLongestWait = 256;
 /// Shorter blocks say nothing: other programs come and go in slices of a few milliseconds [s].
 constexpr double kBlockSeconds = 0.02;
+/// Fewer bodies have too few pairs for several threads.
+constexpr std::size_t kFewBodies = 500;
 
 double cpu_seconds() {
   timespec now{};
@@ -77,9 +79,9 @@ void ThreadChoice::took(const Block& block) {
   on_all_ = !on_all_;
 }
 
-PassThreads::PassThreads() {
+PassThreads::PassThreads(std::size_t bodies) {
   const int threads = omp_get_max_threads();
-  if (in_use || threads < 2 || omp_in_parallel() != 0) return;
+  if (bodies < kFewBodies || in_use || threads < 2 || omp_in_parallel() != 0) return;
   in_use = true;
   before_ = threads;
   begin();

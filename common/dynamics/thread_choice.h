@@ -43,10 +43,11 @@ class ThreadChoice {
 };
 
 /// Takes the threads of the program for passes, by the choice that all relaxations and integrations of a thread share,
-/// and gives them back at its end. Does nothing inside of parallel work, within another one, and with one thread.
+/// and gives them back at its end. Does nothing inside of parallel work, within another one, with one thread, and for
+/// so few bodies that nothing goes on several threads.
 class PassThreads {
  public:
-  PassThreads();
+  explicit PassThreads(std::size_t bodies);
   ~PassThreads();
   PassThreads(const PassThreads&) = delete;
   PassThreads& operator=(const PassThreads&) = delete;

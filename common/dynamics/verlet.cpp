@@ -95,7 +95,7 @@ void VelocityVerlet<D>::sum_forces(System<D>& s) {
 
 template <int D>
 void VelocityVerlet<D>::advance(System<D>& s, std::int64_t steps) {
-  PassThreads threads;
+  PassThreads threads(s.particles.sphere.size());
   for (std::int64_t k = 0; k < steps; ++k) {
     move(s, k > 0);
     sum_forces(s);

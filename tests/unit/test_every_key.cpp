@@ -112,7 +112,7 @@ TEST_P(EveryKey, ChangesWhatIsRunOrIsRefused) {
   const KeyTally tally = try_all(scene());
   std::printf("%s: %zu keys and places, %zu values, %zu keys refused with every value\n", GetParam().name.c_str(),
               tally.places, tally.values, tally.refused);
-  EXPECT_GT(tally.places, 5U);
+  EXPECT_GT(tally.places, GetParam().instant ? 5U : 10U);
   EXPECT_TRUE(tally.without_effect.empty()) << "taken without effect:\n" << joined_lines(tally.without_effect);
 }
 

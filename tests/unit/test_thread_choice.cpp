@@ -68,11 +68,31 @@ TEST(PassThreads, GiveTheThreadsBack) {
   const int before = omp_get_max_threads();
   omp_set_num_threads(3);
   for (int k = 0; k < 3; ++k) {
-    PassThreads threads;
+    PassThreads threads(10000);
     const double begin = omp_get_wtime();
     while (omp_get_wtime() < begin + 0.1) threads.passed(1, 10);  // one of three threads works: others are tried
   }
   EXPECT_EQ(omp_get_max_threads(), 3);
+  omp_set_num_threads(before);
+}
+
+/// One within another, and one for a few bodies, leave the choice alone: whatever they are told, all threads stay.
+TEST(PassThreads, OneAtATimeAndForManyBodies) {
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(3);
+  const auto idle = [](PassThreads& threads) {
+    for (int k = 0; k < 3; ++k) {
+      const double begin = omp_get_wtime();
+      while (omp_get_wtime() < begin + 0.03) threads.passed(1, 10);
+      EXPECT_EQ(omp_get_max_threads(), 3);
+    }
+  };
+  PassThreads few(10);
+  idle(few);
+  PassThreads outer(10000);
+  omp_set_num_threads(3);
+  PassThreads inner(10000);
+  idle(inner);
   omp_set_num_threads(before);
 }
 
