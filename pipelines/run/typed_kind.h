@@ -1,5 +1,4 @@
-// A kind of scene over its own `Setup`, all that a scene of it says: how nearly every kind stands in the table of
-// kinds.
+// A kind of scene over its own `Setup`, all that a scene of it says: how most kinds stand in the table of kinds.
 #pragma once
 
 #include <nlohmann/json.hpp>
