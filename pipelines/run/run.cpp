@@ -10,9 +10,16 @@
 
 namespace softgrain {
 
+namespace {
+
+/// Folder of a run directory for results of tasks until the run ends.
+constexpr const char* kTaskFolder = "work";
+
+}  // namespace
+
 TaskStore::TaskStore(const RunContext& context, const Scene& scene, std::uint64_t seed, const std::string& beside)
     : context_(context),
-      directory_(context.path("work")),
+      directory_(context.path(kTaskFolder)),
       fingerprint_(scene.text() + "\n# seed " + std::to_string(seed) + "\n" + beside) {
   context.begin(scene, seed, beside);
   std::error_code error;
@@ -68,6 +75,12 @@ ExitStatus Run::finish(nlohmann::json summary, const std::string& console) const
   write_report(context.directory());
   store.clear();
   return good ? ExitStatus::good : ExitStatus::not_usable;
+}
+
+void complete_ended_run(const std::string& directory) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(directory + "/report.html", ignored)) write_report(directory);
+  std::filesystem::remove_all(directory + "/" + kTaskFolder, ignored);
 }
 
 }  // namespace softgrain

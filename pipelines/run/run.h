@@ -95,4 +95,8 @@ class Run {
   Stopwatch watch_;
 };
 
+/// What finish() does after the summary is written, for a run that was killed in between: writes the report if there is
+/// none, removes the kept tasks.
+void complete_ended_run(const std::string& directory);
+
 }  // namespace softgrain

@@ -14,6 +14,7 @@
 #include "common/io/text_file.h"
 #include "pipelines/kinds/kinds.h"
 #include "pipelines/report/report.h"
+#include "pipelines/run/run.h"
 #include "pipelines/run/run_context.h"
 #include "pipelines/runs/set_text.h"
 
@@ -176,8 +177,7 @@ void make_run(ReadyRun run, const RunContext& context, RunEntry& entry) {
     (void)kind_of(run.scene).run(run.scene, run.options);
   } catch (const AlreadyFinished&) {
     context.say(entry.name + ": has ended before");
-    std::error_code ignored;
-    if (!fs::exists(run.options.out + "/report.html", ignored)) write_report(run.options.out);
+    complete_ended_run(run.options.out);
   } catch (const UnusableResult& e) {
     entry.reason = e.what();
   } catch (const FingerprintMismatch&) {

@@ -116,6 +116,19 @@ TEST_F(PowderVariants, AVariantIsASceneOfItsOwn) {
             summary("smooth")["samples"]);
 }
 
+/// A kill between the summary of a variant and its report.
+TEST_F(PowderVariants, AReportThatAKillLeftOutIsMadeUpFor) {
+  run("", 0);
+  const std::string report = read_text(out("smooth/report.html"));
+  fs::remove(out("smooth/report.html"));
+  fs::remove_all(out("smooth/figures"));
+  fs::create_directories(out("smooth/work"));
+  run("--resume", 0);
+  EXPECT_EQ(read_text(out("smooth/report.html")), report);
+  EXPECT_TRUE(fs::exists(out("smooth/figures/solid-fraction.svg")));
+  EXPECT_FALSE(fs::exists(out("smooth/work")));
+}
+
 TEST_F(PowderVariants, WhatHasEndedIsNotRunAgain) {
   run("", 0);
   const json first = summary();

@@ -13,6 +13,7 @@
 #include "common/io/text_file.h"
 #include "pipelines/kinds/cohesive_powder/scene.h"
 #include "pipelines/report/report.h"
+#include "pipelines/run/run.h"
 #include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
@@ -154,6 +155,7 @@ VariantEntry entry_of(const PowderVariant& variant, const RunContext& context) {
   if (!variant.picked) return powder_variant_entry(variant, known ? &*earlier : nullptr);
   if (known && context.resume()) {
     context.say(variant.name + ": has ended before");
+    complete_ended_run(context.path(variant.name));
     return powder_variant_entry(variant, &*earlier);
   }
   run_variant(variant, context);
