@@ -74,13 +74,20 @@ CellRoom room_of(const MacroSpec& spec, const MacroPacking& packing) {
 }  // namespace
 
 CellLaw cell_law_of(const CellCard& card, double youngs_modulus) {
-  return {equation_of(card, youngs_modulus), {}, {card.friction.value, card.stiffness.value}};
+  CellLaw law{equation_of(card, youngs_modulus), {}, {card.friction.value, card.stiffness.value}, std::nullopt};
+  if (card.memory) {
+    const CellMemory& m = *card.memory;
+    law.memory = ShearMemory{m.dilatancy.value,      m.critical_pores.value, m.strength_slope.value,
+                             m.strength_range.value, m.density_slope.value,  m.least_state.value};
+  }
+  return law;
 }
 
 FinesLaw fines_law_of(const CellCard& card, double youngs_modulus) {
   return {equation_of(card, youngs_modulus),
           card.void_ratio.value,
-          {card.excess_alone.value, card.excess_many.value, card.excess_decay.value}};
+          {card.excess_alone.value, card.excess_many.value, card.excess_decay.value},
+          card.memory ? card.memory->critical_pores.value : 0.0};
 }
 
 double fines_volume(const CellMatter& matter, double coarse) { return coarse * matter.share / (1.0 - matter.share); }
@@ -147,7 +154,8 @@ std::string start_remark(const MacroSpec& spec, const CellStart& start) {
   constexpr double kFar = 0.5;
   if (!spec.cells->at_density && std::abs(start.excess_share - 1.0) > kFar)
     add(fmt::format("excess pores are {:.3g} times those of the card at this start pressure", start.excess_share));
-  if (const std::string unloads = no_unloading_text(spec, "the cell law"); !unloads.empty()) add(unloads);
+  if (const std::string unloads = no_unloading_text(spec, "the cell law"); !card.memory && !unloads.empty())
+    add(unloads);
   if (start.without_fines > 0)
     add(fmt::format("{} of {} cells are too small for any fines", start.without_fines, start.content.size()));
   return text;
@@ -161,6 +169,52 @@ void require_same_grains(const CellCard& card, const MacroSpec& spec) {
         card.poisson_ratio, card.grain_friction, spec.poisson_ratio, spec.friction));
 }
 
+namespace {
+
+/// What a law with memory knows beyond the springs of faces.
+void write_memory(const h5::Group& group, const CellState& state) {
+  const h5::Group memory = group.create("memory");
+  std::vector<double> critical;
+  for (const CellContent& c : state.content) critical.push_back(c.critical);
+  std::vector<double> shape;
+  for (const FaceSpring& f : state.springs.springs) shape.push_back(f.shape);
+  std::vector<double> parts;
+  for (const SpringForces& forces : state.springs.parts)
+    for (const Vec3& v : forces) parts.insert(parts.end(), {v[0], v[1], v[2]});
+  std::vector<double> stress;
+  for (int k = 0; k < 3; ++k)
+    for (int l = 0; l < 3; ++l) stress.push_back(state.stress[k][l]);
+  memory.write("critical_pores", critical);
+  memory.write("stress", stress);
+  memory.write("strength", state.strength);
+  memory.write("next_pores", state.next_pores);
+  memory.write("face_shape", shape);
+  memory.write("spring_forces", parts, {shape.size(), 3 * kFaceSprings});
+}
+
+void read_memory(const h5::Group& memory, CellState& state) {
+  const auto critical = memory.doubles("critical_pores");
+  const auto shape = memory.doubles("face_shape");
+  const auto parts = memory.doubles("spring_forces");
+  const auto stress = memory.doubles("stress");
+  state.strength = memory.doubles("strength");
+  state.next_pores = memory.doubles("next_pores");
+  std::vector<FaceSpring>& springs = state.springs.springs;
+  if (stress.size() != 9 || critical.size() != state.content.size() || shape.size() != springs.size() ||
+      parts.size() != 3 * kFaceSprings * springs.size())
+    throw IoError("cells: arrays of wrong length");
+  for (int k = 0; k < 9; ++k) state.stress[k / 3][k % 3] = stress[static_cast<std::size_t>(k)];
+  for (std::size_t i = 0; i < critical.size(); ++i) state.content[i].critical = critical[i];
+  for (std::size_t f = 0; f < springs.size(); ++f) {
+    springs[f].shape = shape[f];
+    SpringForces& forces = state.springs.parts.emplace_back();
+    for (std::size_t k = 0; k < 3 * kFaceSprings; ++k)
+      forces[k / 3][static_cast<int>(k % 3)] = parts[3 * kFaceSprings * f + k];
+  }
+}
+
+}  // namespace
+
 void write_cell_state(const h5::Group& group, const CellState& state) {
   std::vector<double> sites;
   std::vector<double> content;
@@ -170,7 +224,7 @@ void write_cell_state(const h5::Group& group, const CellState& state) {
   for (const auto& p : state.periods) periods.insert(periods.end(), p.begin(), p.end());
   std::vector<std::int64_t> faces;
   std::vector<double> springs;
-  for (const FaceSpring& f : state.springs) {
+  for (const FaceSpring& f : state.springs.springs) {
     faces.insert(faces.end(), {f.key.i, f.key.j, f.key.periods[0], f.key.periods[1], f.key.periods[2], f.slides});
     for (const Vec3& v : {f.force, f.separation}) springs.insert(springs.end(), {v[0], v[1], v[2]});
     springs.push_back(f.stiffness);
@@ -180,8 +234,10 @@ void write_cell_state(const h5::Group& group, const CellState& state) {
   group.write("sites", sites, {state.sites.size(), 4});
   group.write("content", content, {state.content.size(), 2});
   group.write("periods", periods, {state.periods.size(), 3});
-  group.write("faces", faces, {state.springs.size(), 6});
-  group.write("face_springs", springs, {state.springs.size(), 7});
+  const std::size_t count = state.springs.springs.size();
+  group.write("faces", faces, {count, 6});
+  group.write("face_springs", springs, {count, 7});
+  if (!state.strength.empty()) write_memory(group, state);
 }
 
 CellState read_cell_state(const h5::Group& group) {
@@ -212,8 +268,9 @@ CellState read_cell_state(const h5::Group& group) {
                       v[6],
                       {{v[3], v[4], v[5]}},
                       k[5] != 0};
-    out.springs.push_back(spring);
+    out.springs.springs.push_back(spring);
   }
+  if (group.has("memory")) read_memory(group.open("memory"), out);
   return out;
 }
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "common/core/enum_names.h"
 #include "common/core/limits.h"
@@ -18,6 +20,16 @@ template <>
 inline constexpr auto enum_names<StateForm> = enum_name_list<StateForm>({{StateForm::porosity, "porosity"},
                                                                          {StateForm::pores, "pores"}});
 
+/// What shear leaves behind in cells (ShearMemory of macrosim/cell_matter).
+struct CellMemory {
+  Estimate dilatancy;       ///< A: compaction by slip beyond what friction uses of the work
+  Estimate critical_pores;  ///< r_c: pores at the critical state over those where the card's preparation jams
+  Estimate strength_slope;  ///< m: growth of the strength of faces with density
+  Estimate strength_range;  ///< c: strengths lie within mu_f (1 -+ c)
+  Estimate density_slope;   ///< lambda: change of the critical state with phi - phi_J
+  Estimate least_state;     ///< x_r: shear compacts no cell below this state
+};
+
 /// Numbers of the cell law (macrosim/cell_matter), dimensionless, and what they were measured on.
 struct CellCard {
   StateForm form = StateForm::porosity;
@@ -30,6 +42,9 @@ struct CellCard {
   Estimate friction;       ///< mu_f of faces
   Estimate stiffness;      ///< chi of faces
   Estimate lateral_ratio;  ///< K0 of the fines alone, mean over the oedometer
+  /// With it mu_f is the strength at the critical state and chi the stiffness before any slip; none: as in earlier
+  /// versions, one spring a face and cells that forget.
+  std::optional<CellMemory> memory;
   // Where it holds.
   double pressure_low = 0.0;  ///< p/E of the fit
   double pressure_high = 0.0;
@@ -46,6 +61,16 @@ struct CellCard {
   std::string fines_sizes;      ///< size distribution of the fines, in words
   std::int64_t samples = 0;     ///< number of samples of each measurement
 };
+
+/// A number of a card under its key there.
+struct CellCardNumber {
+  std::string key;
+  Estimate estimate;
+  std::string meaning;
+};
+
+/// All numbers of a card in the order of the file; those of the memory, if it has one, at the end.
+std::vector<CellCardNumber> numbers_of(const CellCard& card);
 
 /// Writes the card as TOML, for people and for read_cell_card(), which gives the same bits. Atomic. Throws IoError.
 void write_cell_card(const CellCard& card, const std::string& path, const Provenance& provenance = build_provenance());

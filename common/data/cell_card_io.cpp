@@ -17,27 +17,40 @@ namespace {
 
 using Out = std::back_insert_iterator<std::string>;
 
-/// A number of [cell].
-struct CellNumber {
+/// A number of [cell] or of [memory].
+template <class Table>
+struct CardEntry {
   const char* key;
-  Estimate CellCard::*estimate;
+  Estimate Table::*estimate;
   Range range;
   const char* meaning;
 };
 
-const std::array<CellNumber, 9>& cell_numbers() {
+const std::array<CardEntry<CellCard>, 9>& cell_numbers() {
   using C = CellCard;
-  static const std::array<CellNumber, 9> numbers{
-      {{"K", &C::modulus, Range::positive(), ""},
-       {"n", &C::exponent, Range{1.0, kLargestExponent, true, false}, ""},
-       {"e_J", &C::void_ratio, Range::positive(), "pores over solid volume of the fines alone where they jam"},
+  static const std::array<CardEntry<C>, 9> numbers{
+      {{"K", &C::modulus, Range::positive(), "p/E = K x^n"},
+       {"n", &C::exponent, Range{1.0, kLargestExponent, true, false}, "its exponent"},
+       {"e_J", &C::void_ratio, Range::positive(), "void ratio of the fines alone where they jam"},
        {"e_c", &C::excess_alone, Range::positive(), "the same of the coarse grains alone"},
-       {"w_inf", &C::excess_many, Range::not_negative(), ""},
-       {"xi", &C::excess_decay, Range::positive(), ""},
-       {"mu_f", &C::friction, Range::not_negative(), "limit of the friction of faces over p A"},
-       {"chi", &C::stiffness, Range::positive(), "stiffness of its spring over B A/d"},
-       {"K0", &C::lateral_ratio, Range{0.0, 1.0, true, false},
-        "lateral over axial stress of the fines, oedometric; for people"}}};
+       {"w_inf", &C::excess_many, Range::not_negative(), "excess pores beside coarse grains among many fines"},
+       {"xi", &C::excess_decay, Range::positive(), "ratio of fines over which they fall to that"},
+       {"mu_f", &C::friction, Range::not_negative(), "friction of faces"},
+       {"chi", &C::stiffness, Range::positive(), "stiffness of their springs"},
+       {"K0", &C::lateral_ratio, Range{0.0, 1.0, true, false}, "lateral over axial stress of the fines alone"}}};
+  return numbers;
+}
+
+const std::array<CardEntry<CellMemory>, 6>& memory_numbers() {
+  using M = CellMemory;
+  static const std::array<CardEntry<M>, 6> numbers{
+      {{"A", &M::dilatancy, Range::not_negative(), "compaction by slip beyond what friction uses of the work"},
+       {"r_c", &M::critical_pores, Range::positive(), "pores at the critical state over those at the onset"},
+       {"m", &M::strength_slope, Range::not_negative(), "growth of the strength of faces with density"},
+       {"c", &M::strength_range, Range{0.0, 1.0, true, true}, "strengths lie within mu_f (1 -+ c)"},
+       {"lambda", &M::density_slope, Range{-kLargestExponent, kLargestExponent, false, false},
+        "change of the critical solid fraction with phi - phi_J"},
+       {"x_r", &M::least_state, Range{0.0, 1.0, false, true}, "shear compacts no cell below this x"}}};
   return numbers;
 }
 
@@ -54,14 +67,25 @@ void write_head(Out out, const Provenance& provenance) {
 }
 
 void write_numbers(Out out, const CellCard& card) {
-  fmt::format_to(out,
-                 "\n# p/E = K x^n of a cell. \"porosity\": x = (phi - phi_J)/(1 - phi_J), \"pores\": x = 1 - Vp/Vp_J;\n"
-                 "# Vp_J = e_J V_f + W, and of all cells W/V_c = w_inf + (e_c - w_inf) exp(-(V_f/V_c)/xi) for solid\n"
-                 "# volumes V_f of fines and V_c of coarse grains. Ends of intervals: 95 %.\n");
+  fmt::format_to(
+      out,
+      "\n# p/E = K x^n of a cell. \"porosity\": x = (phi - phi_J)/(1 - phi_J), \"pores\": x = 1 - Vp/Vp_J;\n"
+      "# Vp_J = e_J V_f + W, and of all cells W/V_c = w_inf + (e_c - w_inf) exp(-(V_f/V_c)/xi) for solid\n"
+      "# volumes V_f of fines and V_c of coarse grains. A face bears mu_f p A at most, its spring has the stiffness\n"
+      "# chi B A/d. Ends of intervals: 95 %.\n");
   fmt::format_to(out, "[cell]\nform = {}\n", quoted(to_string(card.form)));
-  for (const CellNumber& n : cell_numbers())
-    fmt::format_to(out, "{} = {}{}{}\n", n.key, estimate_text(card.*n.estimate), *n.meaning == '\0' ? "" : "  # ",
-                   n.meaning);
+  for (const auto& n : cell_numbers())
+    fmt::format_to(out, "{} = {}  # {}\n", n.key, estimate_text(card.*n.estimate), n.meaning);
+}
+
+void write_memory(Out out, const CellMemory& memory) {
+  fmt::format_to(
+      out,
+      "\n# Slip gamma_p with the frictional work W_p moves phi_J: d ln phi_J = A (1.5 mu_f gamma_p - W_p/p). Faces\n"
+      "# of cells bear mu_f [1 + c tanh(-m psi/c)], psi = [phi_c + lambda (phi - phi_J) - phi_J]/(1 - phi_c).\n"
+      "[memory]\n");
+  for (const auto& n : memory_numbers())
+    fmt::format_to(out, "{} = {}  # {}\n", n.key, estimate_text(memory.*n.estimate), n.meaning);
 }
 
 void write_range(Out out, const CellCard& card) {
@@ -89,6 +113,16 @@ Estimate read_estimate(const SceneTable& table, const Range& range) {
   Estimate e = read_estimate_text(table, range);
   if (!(e.low <= e.high)) table.throw_error("low", "must not be above the high end");
   return e;
+}
+
+CellMemory read_memory(const SceneTable& t) {
+  CellMemory memory;
+  for (const auto& n : memory_numbers()) memory.*n.estimate = read_estimate(t.table(n.key), n.range);
+  const double c = memory.strength_range.value;
+  if (memory.dilatancy.value * c > 1.0 + c)
+    t.throw_error("A",
+                  fmt::format("must be at most (1 + c)/c = {:.4g}, or slip would give energy back", (1.0 + c) / c));
+  return memory;
 }
 
 void read_range(const SceneTable& t, CellCard& card) {
@@ -120,11 +154,20 @@ void read_measured(const SceneTable& t, CellCard& card) {
 
 }  // namespace
 
+std::vector<CellCardNumber> numbers_of(const CellCard& card) {
+  std::vector<CellCardNumber> out;
+  for (const auto& n : cell_numbers()) out.push_back({n.key, card.*n.estimate, n.meaning});
+  if (card.memory)
+    for (const auto& n : memory_numbers()) out.push_back({n.key, *card.memory.*n.estimate, n.meaning});
+  return out;
+}
+
 void write_cell_card(const CellCard& card, const std::string& path, const Provenance& provenance) {
   std::string text;
   const Out out(text);
   write_head(out, provenance);
   write_numbers(out, card);
+  if (card.memory) write_memory(out, *card.memory);
   write_range(out, card);
   write_measured(out, card);
   write_text_atomic(path, text);
@@ -139,7 +182,8 @@ CellCard read_cell_card(const Scene& file) {
   (void)read_words(root, {});
   const SceneTable cell = root.table("cell");
   card.form = cell.choice<StateForm>("form");
-  for (const CellNumber& n : cell_numbers()) card.*n.estimate = read_estimate(cell.table(n.key), n.range);
+  for (const auto& n : cell_numbers()) card.*n.estimate = read_estimate(cell.table(n.key), n.range);
+  if (root.has("memory")) card.memory = read_memory(root.table("memory"));
   read_range(root.table("range"), card);
   read_measured(root.table("measured"), card);
   root.finish();

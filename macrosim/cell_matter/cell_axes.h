@@ -21,7 +21,7 @@ class CellPacking::Axes {
     double sum = 0.0;
     for (std::size_t i = 0; i < p.cells_.volume.size(); ++i)
       sum += p.forces_.response[i].stiffness * p.cells_.volume[i] * p.cells_.volume[i];
-    for (const FaceSpring& spring : p.forces_.springs)
+    for (const FaceSpring& spring : p.forces_.trial.springs)
       if (p.law_.friction.coefficient > 0.0) sum += spring.stiffness * norm2(spring.separation);
     double pressed = 0.0;
     for (int k = 0; k < 3; ++k) pressed += std::abs(control_.stress[k]) * p.room_.volume();

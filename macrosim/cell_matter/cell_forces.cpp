@@ -55,6 +55,26 @@ void add_dyad(Matrix<3>& m, const Vec3& a, const Vec3& b) {
   for (int k = 0; k < 3; ++k) m[k] += b * a[k];
 }
 
+/// Pressures with the part of the springs. Bits of a law without memory: the responses alone.
+std::vector<double> pressures(const CellForces& forces, const RadicalCells& cells) {
+  std::vector<double> out;
+  out.reserve(forces.response.size());
+  for (const CellResponse& r : forces.response) out.push_back(r.pressure);
+  for (std::size_t f = 0; f < forces.trial.energy.size(); ++f) {
+    if (!(forces.trial.energy[f] > 0.0)) continue;
+    const auto i = static_cast<std::size_t>(cells.faces[f].i);
+    const auto j = static_cast<std::size_t>(cells.faces[f].j);
+    const auto bulk = [&](std::size_t c) { return forces.response[c].stiffness * cells.volume[c]; };
+    const auto falls = [&](std::size_t c) {
+      return -forces.response[c].stiffness - cells.volume[c] * forces.response[c].hardening;
+    };
+    const double share = forces.trial.energy[f] / (bulk(i) + bulk(j));
+    out[i] += share * falls(i);
+    out[j] += share * falls(j);
+  }
+  return out;
+}
+
 }  // namespace
 
 bool CellForces::possible() const { return std::isfinite(energy) && std::isfinite(largest_force); }
@@ -70,18 +90,19 @@ CellForces cell_forces(const CellLaw& law, const std::vector<CellContent>& conte
     if (relative_pores(content[i], cells.volume[i]) < law.guard.from) ++out.guarded;
   }
   if (!std::isfinite(out.energy)) return out;
-  out.springs = springs.trial(law.friction, cells, keys, out.response);
+  out.trial = springs.trial(law.friction, law.memory.has_value(), cells, keys, out.response);
+  out.pressure = pressures(out, cells);
   RowSums rows(sites.size());
   for (std::size_t f = 0; f < cells.faces.size(); ++f) {
     const CellFace& face = cells.faces[f];
     const auto i = static_cast<std::size_t>(face.i);
     const auto j = static_cast<std::size_t>(face.j);
-    const double p_i = out.response[i].pressure;
-    const double p_j = out.response[j].pressure;
+    const double p_i = out.pressure[i];
+    const double p_j = out.pressure[j];
     const FaceSlopes slopes(face, sites[i].x);
-    const FaceSpring& spring = out.springs[f];
+    const FaceSpring& spring = out.trial.springs[f];
     add_dyad(out.stress, (slopes.upper * p_i - slopes.lower * p_j + spring.force) * (1.0 / volume), face.separation);
-    out.spring_energy += spring.energy();
+    out.spring_energy += law.memory ? out.trial.energy[f] : spring.energy();
     out.mean_load += 0.5 * (p_i + p_j) * face.area / static_cast<double>(cells.faces.size());
     if (spring.slides) ++out.sliding;
     if (i == j) continue;
@@ -115,10 +136,10 @@ std::vector<FaceKey> face_keys(const RadicalCells& cells, const std::vector<std:
   return out;
 }
 
-std::array<double, 6> wall_loads(const RadicalCells& cells, const std::vector<CellResponse>& response) {
+std::array<double, 6> wall_loads(const RadicalCells& cells, const std::vector<double>& pressure) {
   std::array<double, 6> out{};
   for (const WallFace& face : cells.at_walls)
-    out[static_cast<std::size_t>(face.plane)] += response[static_cast<std::size_t>(face.site)].pressure * face.area;
+    out[static_cast<std::size_t>(face.plane)] += pressure[static_cast<std::size_t>(face.site)] * face.area;
   return out;
 }
 
@@ -133,6 +154,14 @@ void require_valid(const CellLaw& law, const std::vector<CellContent>& content, 
       throw InputError(fmt::format(
           "cells: cell {} holds {} m^3 of solid and {} m^3 of pores where pressure begins; both must be above 0", i,
           content[i].solid, content[i].pores));
+  if (!law.memory) return;
+  require_valid(*law.memory);
+  if (!(f.coefficient > 0.0 && f.stiffness > 0.0))
+    throw InputError("cells: shear memory needs friction and stiffness of faces above 0");
+  for (std::size_t i = 0; i < content.size(); ++i)
+    if (!(content[i].critical > 0.0) || !std::isfinite(content[i].critical))
+      throw InputError(fmt::format("cells: cell {} has {} m^3 of pores at the critical state; above 0 are needed", i,
+                                   content[i].critical));
 }
 
 }  // namespace softgrain

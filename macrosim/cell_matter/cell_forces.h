@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "common/tessellation/radical_cells.h"
@@ -14,6 +15,8 @@ struct CellLaw {
   EquationOfState equation;
   PoreGuard guard;
   FaceFriction friction;
+  std::optional<ShearMemory> memory =
+      std::nullopt;  ///< none: shear leaves nothing behind but the forces of the springs
 };
 
 /// How the volumes of both cells of a face change with the places of both sites.
@@ -35,16 +38,19 @@ struct FaceSlopes {
 ///   stress in a periodic cell: 1/V sum over faces, each once, of {(A/d)[p_i (x_j - c) + p_j (c - x_i)] + T} (x) (x_j -
 ///   x_i),
 /// compression positive, T of FaceSprings. The resolved grains have no contact force on top: it is in p.
+/// With ShearMemory U has the springs' energy too, whose stiffness goes with B of their cells: to the pressure of a
+/// cell each face adds U_f (-dB_i/dV_i)/(B_i + B_j), B = -V dp/dV.
 struct CellForces {
   std::vector<CellResponse> response;
-  std::vector<FaceSpring> springs;  ///< trial springs of the faces, in their order
-  std::vector<Vec3> force;          ///< net forces on the sites [N]
-  std::vector<double> mass;         ///< masses in relaxations: half the sum of a row of the stiffness matrix [N/m]
-  Matrix<3> stress;                 ///< stress of a periodic cell [Pa]; between planes see wall_loads()
-  double energy = 0.0;              ///< energy of the cells [J]
-  double spring_energy = 0.0;       ///< energy of the springs [J]
-  double mean_load = 0.0;           ///< mean of p A over the faces [N]
-  double largest_force = 0.0;       ///< largest net force on a site [N]
+  std::vector<double> pressure;  ///< pressures of the cells, with the part of their springs [Pa]
+  SpringSet trial;               ///< trial springs of the faces, in their order
+  std::vector<Vec3> force;       ///< net forces on the sites [N]
+  std::vector<double> mass;      ///< masses in relaxations: half the sum of a row of the stiffness matrix [N/m]
+  Matrix<3> stress;              ///< stress of a periodic cell [Pa]; between planes see wall_loads()
+  double energy = 0.0;           ///< energy of the cells [J]
+  double spring_energy = 0.0;    ///< energy of the springs [J]
+  double mean_load = 0.0;        ///< mean of p A over the faces [N]
+  double largest_force = 0.0;    ///< largest net force on a site [N]
   int guarded = 0;  ///< number of cells that only the guard keeps from collapse: beyond what the law was measured for
   int sliding = 0;  ///< number of faces at the Coulomb limit
 
@@ -65,7 +71,7 @@ std::vector<FaceKey> face_keys(const RadicalCells& cells);
 std::vector<FaceKey> face_keys(const RadicalCells& cells, const std::vector<std::array<std::int32_t, 3>>& periods);
 
 /// Outward force on each of the six planes: the sum of p_i A over the cells at it. No excess pores beside a wall.
-std::array<double, 6> wall_loads(const RadicalCells& cells, const std::vector<CellResponse>& response);
+std::array<double, 6> wall_loads(const RadicalCells& cells, const std::vector<double>& pressure);
 
 /// Throws InputError for what no state can be made of, with the cell: contents without pores or solid, sizes that
 /// differ.

@@ -34,7 +34,7 @@ CellPacking::CellPacking(CellLaw law, const std::vector<Sphere<3>>& sites, std::
       if (!(cells_.volume[i] > content_[i].solid))
         throw InputError(fmt::format("cells: cell {} has a volume of {:.4g} m^3 and holds {:.4g} m^3 of solid", i,
                                      cells_.volume[i], content_[i].solid));
-  springs_.keep(forces_.springs);
+  keep();
 }
 
 CellPacking::CellPacking(CellLaw law, const CellState& state, bool periodic)
@@ -45,12 +45,21 @@ CellPacking::CellPacking(CellLaw law, const CellState& state, bool periodic)
       periods_(state.periods) {
   require_valid(law_, content_, sites_.size());
   if (periods_.size() != sites_.size()) throw IoError("cells: periods of other sites");
+  const auto fits = [&](std::size_t cells, std::size_t parts) {
+    return law_.memory ? cells == sites_.size() && parts == state.springs.springs.size() : cells == 0 && parts == 0;
+  };
+  if (!fits(state.strength.size(), state.springs.parts.size()) || state.next_pores.size() != state.strength.size())
+    throw IoError("cells: a state of a law with another memory");
   springs_.keep(state.springs);
+  springs_.keep_strength(state.strength);
+  next_pores_ = state.next_pores;
+  kept_stress_ = state.stress;
   if (!room_.holds(sites_) || !evaluate()) throw IoError("cells: a state that cannot be");
 }
 
 CellState CellPacking::state() const {
-  return {sites_, content_, periods_, springs_.kept(), room_.low(), room_.high()};
+  return {sites_,      content_,    periods_, springs_.kept(), room_.low(), room_.high(), springs_.strength(),
+          next_pores_, kept_stress_};
 }
 
 /// False: a cell has no pores, a site is outside, or a force is no number.
@@ -65,7 +74,7 @@ bool CellPacking::evaluate() {
 
 Matrix<3> CellPacking::stress() const {
   if (room_.periodic()) return forces_.stress;
-  const auto loads = wall_loads(cells_, forces_.response);
+  const auto loads = wall_loads(cells_, forces_.pressure);
   const Vec3 size = room_.high() - room_.low();
   Matrix<3> out;
   for (int k = 0; k < 3; ++k) {
@@ -93,7 +102,69 @@ void add_part(const RelaxationResult& part, RelaxationResult& all) {
   all.passes = passes;
 }
 
+/// Parts of a strain of which none is larger than `largest` along any axis.
+int parts_of(const Vec3& factor, double largest) {
+  double strain = 0.0;
+  for (int k = 0; k < 3; ++k) strain = std::max(strain, std::abs(std::log(factor[k])));
+  return std::clamp(static_cast<int>(std::ceil(strain / largest * (1.0 - 1e-9))), 1, kMostParts);
+}
+
+/// Stresses that are asked for when a share `done` of a strain is applied.
+BoxControl on_the_way(BoxControl control, const Matrix<3>& before, double done) {
+  for (int k = 0; k < 3; ++k) control.stress[k] = before[k][k] + (control.stress[k] - before[k][k]) * done;
+  return control;
+}
+
 }  // namespace
+
+/// What a trial leaves behind.
+void CellPacking::keep() {
+  if (law_.memory)
+    remember();
+  else
+    springs_.keep(forces_.trial);
+}
+
+/// The slip of faces moves phi_J of the next part of a strain and, with it, strengths.
+void CellPacking::remember() {
+  const ShearMemory& memory = *law_.memory;
+  const double mu_f = law_.friction.coefficient;
+  kept_stress_ = stress();
+  std::vector<double> slip(sites_.size());
+  std::vector<double> work(sites_.size());
+  SpringSet now = forces_.trial;
+  for (std::size_t f = 0; f < now.springs.size(); ++f) {
+    FaceSpring& spring = now.springs[f];
+    const CellFace& face = cells_.faces[f];
+    if (const auto at = springs_.find(spring.key)) {
+      const FaceSpring& before = springs_.kept().springs[*at];
+      const FaceSlip one = slip_of(before.force, before.stiffness, spring.force, spring.stiffness,
+                                   spring.separation - before.separation, face.separation * (1.0 / face.distance));
+      for (const std::int32_t c : {face.i, face.j}) {
+        const auto k = static_cast<std::size_t>(c);
+        slip[k] += face.area * one.slip / (3.0 * cells_.volume[k]);
+        work[k] += one.work / (2.0 * cells_.volume[k]);
+      }
+    }
+    const double shape = face.area / face.distance;
+    const double ratio = shape / spring.shape;
+    spring.stiffness *= ratio;
+    spring.shape = shape;
+    if (ratio >= 1.0) continue;
+    spring.force *= ratio;
+    for (Vec3& part : now.parts[f]) part *= ratio;
+  }
+  springs_.keep(std::move(now));
+  std::vector<double> strength;
+  next_pores_.clear();
+  for (std::size_t i = 0; i < sites_.size(); ++i) {
+    CellContent next = content_[i];
+    next.pores = memory.pores_after(mu_f, next, cells_.volume[i], forces_.response[i].pressure, slip[i], work[i]);
+    next_pores_.push_back(next.pores);
+    strength.push_back(memory.strength(mu_f, next, cells_.volume[i]));
+  }
+  springs_.keep_strength(std::move(strength));
+}
 
 /// Applies the affine part of a strain, then relaxes. Where this leaves a cell without pores, the strain is applied in
 /// parts.
@@ -104,10 +175,13 @@ CellPoint CellPacking::step(const Vec3& factor, const BoxControl* control, const
   const CellPacking before = *this;
   tessellations_ = faces_ = 0;
   RelaxationResult end;
-  int parts = 1;
-  for (int left = 1; left > 0;) {
+  const Matrix<3> stress_before = kept_stress_;
+  int parts = law_.memory ? parts_of(factor, kMemoryStrain) : 1;
+  double done = 0.0;
+  for (int left = parts; left > 0;) {
     const auto sites = sites_;
     const CellRoom room = room_;
+    for (std::size_t i = 0; i < next_pores_.size(); ++i) content_[i].pores = next_pores_[i];
     Vec3 part;
     for (int k = 0; k < 3; ++k) part[k] = std::pow(factor[k], 1.0 / parts);
     stretch(part);
@@ -124,10 +198,12 @@ CellPoint CellPacking::step(const Vec3& factor, const BoxControl* control, const
       continue;
     }
     --left;
+    done += (1.0 - done) / (left + 1);
     std::optional<Axes> axes;
-    if (left == 0 && control != nullptr) axes.emplace(*this, *control);
+    if (control != nullptr && (left == 0 || law_.memory))
+      axes.emplace(*this, left == 0 ? *control : on_the_way(*control, stress_before, done));
     add_part(rest(options, axes ? &*axes : nullptr), end);
-    springs_.keep(forces_.springs);
+    keep();
   }
   CellPoint point = now();
   point.relaxation = end;

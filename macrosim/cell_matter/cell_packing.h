@@ -37,9 +37,12 @@ struct CellState {
   std::vector<Sphere<3>> sites;
   std::vector<CellContent> content;
   std::vector<std::array<std::int32_t, 3>> periods;
-  std::vector<FaceSpring> springs;
+  SpringSet springs;
   Vec3 low{};
   Vec3 high{};
+  std::vector<double> strength;    ///< of cells, with ShearMemory
+  std::vector<double> next_pores;  ///< CellContent::pores of the next strain step, with ShearMemory
+  Matrix<3> stress{};              ///< when it was kept, with ShearMemory [Pa]
 };
 
 /// Sites, contents and springs in one room. Strains are diagonal: every axis is stretched by a factor, sites go along
@@ -49,7 +52,10 @@ struct CellState {
 /// stiffness of the faces of each site as its mass. Trial states leave the springs alone; they are kept where the
 /// relaxation ends, so what is kept depends on the end alone. A move that would leave a cell without pores, or a site
 /// outside planes, is taken back, and smaller ones follow; a strain whose affine guess would do so is applied in
-/// smaller parts. There is no randomness, and the results are bitwise the same for any number of threads.
+/// smaller parts.
+/// With ShearMemory a strain is applied in parts of at most kMemoryStrain; axes held by stress follow in each part.
+/// What the slip of a part does to phi_J and to strengths counts from the next part on, so that every state is at rest
+/// as it is reported. There is no randomness, and the results are bitwise the same for any number of threads.
 class CellPacking {
  public:
   /// Centres anywhere (they are brought into a periodic cell). Springs begin without force at these places. Throws
@@ -57,7 +63,8 @@ class CellPacking {
   /// planes.
   CellPacking(CellLaw law, const std::vector<Sphere<3>>& sites, std::vector<CellContent> content, const CellRoom& room);
 
-  /// Goes on from a state() of a rectangular room.
+  /// Goes on from a state() of a rectangular room. With ShearMemory now() then is of the next part of a strain: with
+  /// the limits and faces that slip has left.
   CellPacking(CellLaw law, const CellState& state, bool periodic);
 
   /// Multiplies the lengths along the axes by `stretch` (below 1 compresses), then relaxes the sites; springs are kept.
@@ -79,8 +86,11 @@ class CellPacking {
 
  private:
   class Axes;
+  static constexpr double kMemoryStrain = 2.5e-3;
   static constexpr Vec3 kAsItIs{{1.0, 1.0, 1.0}};
 
+  void keep();
+  void remember();
   CellPoint step(const Vec3& stretch, const BoxControl* control, const CellRelaxation& options);
   void stretch(const Vec3& factor);
   RelaxationResult rest(const CellRelaxation& options, Axes* axes);
@@ -97,6 +107,8 @@ class CellPacking {
   CellRoom room_;
   std::vector<std::array<std::int32_t, 3>> periods_;  ///< number of periods by which each site was moved back, per axis
   FaceSprings springs_;
+  std::vector<double> next_pores_;
+  Matrix<3> kept_stress_{};
   RadicalCells cells_;
   CellForces forces_;
   std::int64_t tessellations_ = 0;

@@ -98,12 +98,14 @@ struct Mixture {
       const double v = fines_of(i, s, state);
       if (v >= 0.0) {
         out.fines.push_back(v);
-        out.content.push_back({bodies.grain(i) + v, law.void_ratio * v + excess_of(i, s)});
+        out.content.push_back({bodies.grain(i) + v, law.void_ratio * v + excess_of(i, s),
+                               law.critical_pores * (law.void_ratio * v + excess_of(i, 1.0))});
         continue;
       }
       ++out.without_fines;
       out.fines.push_back(0.0);
-      out.content.push_back({bodies.grain(i), pores_without_fines(i, state)});
+      const double pores = pores_without_fines(i, state);
+      out.content.push_back({bodies.grain(i), pores, law.critical_pores * pores});
     }
     constexpr double kMostWithout = 0.25;
     if (out.without_fines > kMostWithout * static_cast<double>(volume.size()))

@@ -24,6 +24,7 @@ struct FinesLaw {
   EquationOfState equation;
   double void_ratio = 0.0;  ///< e_J of the fines alone where they jam
   ExcessPores excess;
+  double critical_pores = 0.0;  ///< r_c of ShearMemory; 0: without
 };
 
 /// The solid that each site represents. A grain has its own volume and surface. A soft body is fines alone (no solid,

@@ -109,8 +109,8 @@ Matrix<3> stiffness_of(const CellFace& face, const FaceSpring& spring, double st
   const Vec3 normal = face.separation * (1.0 / face.distance);
   for (int a = 0; a < 3; ++a) out[a][a] = turn + k;
   add_dyad(out, normal, -k);
-  if (const double size = norm(spring.force); spring.slides && size > 0.0)
-    add_dyad(out, spring.force * (1.0 / size), (kSlide - 1.0) * k);
+  if (const double size = norm(spring.force); spring.yields > 0.0 && size > 0.0)
+    add_dyad(out, spring.force * (1.0 / size), (kSlide - 1.0) * k * spring.yields);
   return out;
 }
 
@@ -130,9 +130,9 @@ CellTangent::CellTangent(const std::vector<Sphere<3>>& sites, const RadicalCells
     if (face.i == face.j) continue;
     const auto i = static_cast<std::size_t>(face.i);
     const auto j = static_cast<std::size_t>(face.j);
-    const double step = std::abs(forces.response[i].pressure - forces.response[j].pressure);
+    const double step = std::abs(forces.pressure[i] - forces.pressure[j]);
     const FaceSlopes slopes(face, sites[i].x);
-    faces_.push_back({i, j, slopes.upper, slopes.lower, stiffness_of(face, forces.springs[f], step)});
+    faces_.push_back({i, j, slopes.upper, slopes.lower, stiffness_of(face, forces.trial.springs[f], step)});
     own_[i] -= slopes.lower;
     own_[j] -= slopes.upper;
   }

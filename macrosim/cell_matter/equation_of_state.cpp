@@ -14,7 +14,8 @@ CellResponse PoreForm::at(const CellContent& c, double volume) const {
   const double y = 1.0 - relative_pores(c, volume);
   if (!(y > 0.0)) return {};
   const double p = modulus * std::pow(y, exponent);
-  return {p, exponent * p / (y * c.pores), c.pores * p * y / (exponent + 1.0)};
+  const double stiffness = exponent * p / (y * c.pores);
+  return {p, stiffness, c.pores * p * y / (exponent + 1.0), (1.0 - exponent) * stiffness / (y * c.pores)};
 }
 
 double PoreForm::fines(double volume, double grain, double excess, double void_ratio, double y) const {
@@ -31,7 +32,8 @@ CellResponse PorosityForm::at(const CellContent& c, double volume) const {
   const double stiffness = exponent * p / t * phi / volume;
   // Beyond phi = 1, where the guard refuses the cell, the series is not needed.
   const double series = phi < 1.0 ? gsl_sf_hyperg_2F1(1.0, 2.0, exponent + 2.0, t / phi) : 1.0;
-  return {p, stiffness, p * c.solid * t / ((exponent + 1.0) * phi * phi) * series};
+  return {p, stiffness, p * c.solid * t / ((exponent + 1.0) * phi * phi) * series,
+          ((1.0 - exponent) * phi / t - 2.0) * stiffness / volume};
 }
 
 double PorosityForm::fines(double volume, double grain, double excess, double void_ratio, double x) const {
@@ -59,19 +61,21 @@ CellResponse PoreGuard::at(const CellContent& c, double volume, double modulus) 
   if (q >= from) return {};
   const double u = from / q;
   return {modulus * (u - 1.0) * (u - 1.0), 2.0 * modulus * (u - 1.0) * u / (q * c.pores),
-          modulus * c.pores * from * (u - 1.0 / u - 2.0 * std::log(u))};
+          modulus * c.pores * from * (u - 1.0 / u - 2.0 * std::log(u)),
+          2.0 * modulus * (2.0 - 3.0 * u) * u / (q * q * c.pores * c.pores)};
 }
 
 CellResponse respond(const EquationOfState& equation, const PoreGuard& guard, const CellContent& c, double volume) {
   if (!(volume > c.solid)) {
     constexpr double kNone = std::numeric_limits<double>::infinity();
-    return {kNone, kNone, kNone};
+    return {kNone, kNone, kNone, -kNone};
   }
   CellResponse out = std::visit([&](const auto& form) { return form.at(c, volume); }, equation);
   const CellResponse more = guard.at(c, volume, modulus(equation));
   out.pressure += more.pressure;
   out.stiffness += more.stiffness;
   out.energy += more.energy;
+  out.hardening += more.hardening;
   return out;
 }
 

@@ -5,10 +5,11 @@
 
 namespace softgrain {
 
-/// What a cell holds; conserved while it is strained.
+/// What a cell holds; conserved while it is strained, but for `pores` of a law with ShearMemory.
 struct CellContent {
-  double solid = 0.0;  ///< m: volume of its grain and of its fines, overlaps counted twice [m^3]
-  double pores = 0.0;  ///< VpJ: volume of its pores where pressure begins [m^3], above 0
+  double solid = 0.0;     ///< m: volume of its grain and of its fines, overlaps counted twice [m^3]
+  double pores = 0.0;     ///< VpJ: volume of its pores where pressure begins [m^3], above 0
+  double critical = 0.0;  ///< pores at the critical state of shear [m^3]; of laws with ShearMemory only
 };
 
 /// Response of a cell at one volume V. The energy is that of compression from V = solid + pores, so dU/dV = -pressure.
@@ -16,6 +17,7 @@ struct CellResponse {
   double pressure = 0.0;   ///< [Pa]; 0 for volumes beyond solid + pores
   double stiffness = 0.0;  ///< -dp/dV [Pa/m^3], not negative
   double energy = 0.0;     ///< [J]; infinite for V <= solid (with guard)
+  double hardening = 0.0;  ///< d(stiffness)/dV [Pa/m^6]; below 0 where the cell gets stiffer as it is compressed
 };
 
 /// Volume of pores over that where pressure begins: q = (V - m)/VpJ; 1 at the onset, 0 where pores are gone.

@@ -4,10 +4,13 @@
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/tessellation/radical_cells.h"
 #include "macrosim/cell_matter/equation_of_state.h"
+#include "macrosim/cell_matter/shear_memory.h"
 
 namespace softgrain {
 
@@ -32,9 +35,19 @@ struct FaceSpring {
   Vec3 separation;         ///< x_j - x_i when the spring was kept [m]
   bool slides = false;     ///< whether the force is at the Coulomb limit
   double tangent = 0.0;    ///< trial spring: stiffness against a motion in the face, before the limit [N/m]
-  double kept = 1.0;       ///< trial spring: share of its force that the limit leaves
+  double kept = 1.0;       ///< trial spring: share of that which the limit leaves
+  double yields = 0.0;     ///< trial spring: share of what is left that yields along the force
+  double shape = 0.0;      ///< A/d of the face when the spring was kept [m]; with ShearMemory only
 
   [[nodiscard]] double energy() const { return stiffness > 0.0 ? norm2(force) / (2.0 * stiffness) : 0.0; }
+};
+
+/// Springs of all faces, in their order. With ShearMemory each is six in parallel: `force` is their sum, and `parts`
+/// and `energy` have an entry for each face; else they are empty.
+struct SpringSet {
+  std::vector<FaceSpring> springs;
+  std::vector<SpringForces> parts;
+  std::vector<double> energy;  ///< of trial springs [J]
 };
 
 /// Springs of the last kept state. A trial state never changes them, so a relaxation may try what it likes and friction
@@ -55,19 +68,29 @@ struct FaceSpring {
 /// faces. (The mantle of fines around it shears and rolls with it; a spin of the grain would need a stiffness of its
 /// own that nothing measures. The price: a rotation of the whole sample as a rigid body would load the springs, and
 /// stress has a small antisymmetric part. Strains without rotation have no such spin on average.) Walls are smooth.
+///
+/// With ShearMemory the stiffness follows B both ways, T = k u (hyperelastic), at the A/d of the kept state; pressures
+/// of CellForces then have a part of the springs, so that no change of volume makes energy. When a trial is kept, its
+/// springs take the A/d that there is now: a smaller one keeps the displacement, a larger one the force, either of
+/// which takes energy. Limits are mu p A, mu the mean of the strengths of both cells at the last kept state.
 class FaceSprings {
  public:
-  /// Trial springs of all faces, in their order. `keys`, `response` and `volume` belong to the trial state.
-  [[nodiscard]] std::vector<FaceSpring> trial(const FaceFriction& friction, const RadicalCells& cells,
-                                              const std::vector<FaceKey>& keys,
-                                              const std::vector<CellResponse>& response) const;
+  /// Trial springs of all faces. `keys`, `response` and `volume` belong to the trial state.
+  [[nodiscard]] SpringSet trial(const FaceFriction& friction, bool memory, const RadicalCells& cells,
+                                const std::vector<FaceKey>& keys, const std::vector<CellResponse>& response) const;
 
-  void keep(std::vector<FaceSpring> springs);
+  void keep(SpringSet springs);
+  /// Strengths mu of all cells, for the limits of trials with ShearMemory.
+  void keep_strength(std::vector<double> strength) { strength_ = std::move(strength); }
 
-  [[nodiscard]] const std::vector<FaceSpring>& kept() const { return kept_; }
+  [[nodiscard]] const SpringSet& kept() const { return kept_; }
+  [[nodiscard]] const std::vector<double>& strength() const { return strength_; }
+  /// Place of a face in kept(); none: it is new.
+  [[nodiscard]] std::optional<std::size_t> find(const FaceKey& key) const;
 
  private:
-  std::vector<FaceSpring> kept_;  ///< ordered by key
+  SpringSet kept_;  ///< ordered by key
+  std::vector<double> strength_;
 };
 
 }  // namespace softgrain

@@ -7,29 +7,13 @@
 #include "common/data/law_words.h"
 #include "pipelines/law/fitted_law.h"
 #include "pipelines/law/law_json.h"
+#include "pipelines/law/law_values.h"
 #include "pipelines/law/terminal_plot.h"
 
 namespace softgrain {
 namespace law {
 
 namespace {
-
-struct CellNumber {
-  const char* key;
-  Estimate CellCard::*estimate;
-  const char* meaning;
-};
-constexpr CellNumber kCellNumbers[] = {
-    {"K", &CellCard::modulus, "p/E = K x^n"},
-    {"n", &CellCard::exponent, "its exponent"},
-    {"e_J", &CellCard::void_ratio, "void ratio of the fines alone where they jam"},
-    {"e_c", &CellCard::excess_alone, "the same of the coarse grains alone"},
-    {"w_inf", &CellCard::excess_many, "excess pores beside coarse grains among many fines"},
-    {"xi", &CellCard::excess_decay, "ratio of fines over which they fall to that"},
-    {"mu_f", &CellCard::friction, "friction of faces"},
-    {"chi", &CellCard::stiffness, "stiffness of their springs"},
-    {"K0", &CellCard::lateral_ratio, "lateral over axial stress of the fines alone"},
-};
 
 std::string state_text(const CellCard& card) {
   return card.form == StateForm::porosity ? "x = (phi - phi_J)/(1 - phi_J)" : "x = 1 - Vp/Vp_J";
@@ -64,8 +48,8 @@ std::string show(const CellCard& card, const FittedLaw& file, bool utf8) {
       2);
   text += fmt::format("\n{} form, {}\n", to_string(card.form), state_text(card));
   std::vector<std::vector<std::string>> rows{{"", "", "value", "error", "95 % interval"}};
-  for (const CellNumber& n : kCellNumbers) {
-    const Estimate& e = card.*n.estimate;
+  for (const CellCardNumber& n : numbers_of(card)) {
+    const Estimate& e = n.estimate;
     rows.push_back({n.key, number(e.value), std::isfinite(e.standard_error) ? number(e.standard_error, 2) : "-",
                     ends_text(e.low, e.high, {.number = number, .may_be_equal = true}), n.meaning});
   }
@@ -92,8 +76,8 @@ nlohmann::json law_json(const CellCard& card) {
                      {"fines_ratio", card.fines_ratio},
                      {"fines_sizes", card.fines_sizes},
                      {"samples", card.samples}};
-  for (const law::CellNumber& n : law::kCellNumbers) {
-    const Estimate& e = card.*n.estimate;
+  for (const CellCardNumber& n : numbers_of(card)) {
+    const Estimate& e = n.estimate;
     out[n.key] = {{"value", json_of(e.value)},
                   {"standard_error", json_of(e.standard_error)},
                   {"interval", {json_of(e.low), json_of(e.high)}}};

@@ -89,7 +89,7 @@ TEST_P(CellMatter, BetweenPlanesWallsBearWhatTheEnergySays) {
   const RadicalCells cells = radical_cells(s.sites, box);
   const Scattered m = scattered(s, cells.volume);
   const CellForces f = cell_forces(m.law, m.content, s.sites, cells, box.volume(), face_keys(cells), {});
-  const std::array<double, 6> loads = wall_loads(cells, f.response);
+  const std::array<double, 6> loads = wall_loads(cells, f.pressure);
   Vec3 sum;
   for (const Vec3& one : f.force) sum += one;
   for (int k = 0; k < 3; ++k) {

@@ -22,7 +22,7 @@ TEST(CellTangent, TakesASmallMotionBack) {
   const CellStart start = start_at_pressure(s.law, s.bodies, s.volume, s.fines, 1e-3);
   const CellLaw law{s.law.equation, {}, {10.0, 1.0}};
   FaceSprings springs;
-  springs.keep(forces_of(law, start.content, s.sites, s.cell, {}).springs);
+  springs.keep(forces_of(law, start.content, s.sites, s.cell, {}).trial);
   auto moved = s.sites;
   RandomStream random(5, RandomPurpose::test, 1);
   std::vector<Vec3> motion(moved.size());
@@ -137,7 +137,7 @@ TEST(CellPackings, BetweenPlanesComeToTheStressOfTheirWalls) {
   control.largest_strain = 0.02;
   const CellPoint point = p.press({{1.0, 1.0, 1.0}}, control, {});
   EXPECT_EQ(point.relaxation.end, RelaxationEnd::converged);
-  const auto loads = wall_loads(p.cells(), p.forces().response);
+  const auto loads = wall_loads(p.cells(), p.forces().pressure);
   const Vec3 size = p.room().high() - p.room().low();
   for (int k = 0; k < 3; ++k) {
     const double area = size[(k + 1) % 3] * size[(k + 2) % 3];

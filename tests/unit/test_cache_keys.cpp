@@ -125,6 +125,7 @@ MacroSpec full_spec() {
   spec.solid_sizes = Grading::power_law(3.0, 1e-3, 3e-3);
   spec.soft_sizes = Grading::power_law(2.5, 1e-3, 3e-3);
   spec.cells = CellMatter{};
+  spec.cells->card.memory = CellMemory{};
   spec.packing_text = "x,y,z";
   spec.splits = {0.25};
   spec.test = MacroTest::stages;

@@ -45,6 +45,13 @@ CellCard sample_card() {
   return c;
 }
 
+CellCard card_with_memory() {
+  CellCard c = sample_card();
+  c.memory = CellMemory{{1.18, 0.1 / 3.0, 1.1, 1.3}, {0.9496, 0.01, 0.93, 0.97},     {35.0, 5.0, 20.0, 50.0},
+                        {0.666, kInf, 0.0, 1.0},     {-0.24, 0.05 / 7.0, -0.4, 0.0}, {1.6e-3, kInf, 0.0, 1.0}};
+  return c;
+}
+
 void expect_same_estimate(const Estimate& a, const Estimate& b) {
   EXPECT_EQ(a.value, b.value);
   EXPECT_EQ(a.standard_error, b.standard_error);
@@ -54,14 +61,18 @@ void expect_same_estimate(const Estimate& a, const Estimate& b) {
 
 TEST(CellCardFile, RoundTripIsExact) {
   const TemporaryDirectory directory;
-  const CellCard a = sample_card();
+  const CellCard a = card_with_memory();
   write_cell_card(a, directory.file("card.toml"));
   const CellCard b = read_cell_card(directory.file("card.toml"));
   EXPECT_EQ(a.form, b.form);
-  for (const auto estimate :
-       {&CellCard::modulus, &CellCard::exponent, &CellCard::void_ratio, &CellCard::excess_alone, &CellCard::excess_many,
-        &CellCard::excess_decay, &CellCard::friction, &CellCard::stiffness, &CellCard::lateral_ratio})
-    expect_same_estimate(a.*estimate, b.*estimate);
+  const auto numbers = numbers_of(a);
+  const auto read = numbers_of(b);
+  ASSERT_EQ(numbers.size(), 15U);
+  ASSERT_EQ(read.size(), numbers.size());
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    EXPECT_EQ(numbers[k].key, read[k].key);
+    expect_same_estimate(numbers[k].estimate, read[k].estimate);
+  }
   for (const auto number :
        {&CellCard::youngs_modulus, &CellCard::density, &CellCard::pressure_low, &CellCard::pressure_high,
         &CellCard::mixture_high, &CellCard::poisson_ratio, &CellCard::grain_friction, &CellCard::start_pressure,
@@ -85,6 +96,28 @@ TEST(CellCardFile, MayNotSayTheModulusOfItsGrains) {
   const CellCard read = read_cell_card(directory.file("card.toml"));
   EXPECT_TRUE(std::isnan(read.youngs_modulus));
   EXPECT_TRUE(std::isnan(read.density));
+}
+
+/// Cards of earlier versions, and of laws that forget, have no [memory].
+TEST(CellCardFile, MayHaveNoMemory) {
+  const TemporaryDirectory directory;
+  write_cell_card(sample_card(), directory.file("card.toml"));
+  EXPECT_EQ(read_text(directory.file("card.toml")).find("[memory]"), std::string::npos);
+  EXPECT_FALSE(read_cell_card(directory.file("card.toml")).memory);
+  EXPECT_EQ(numbers_of(sample_card()).size(), 9U);
+}
+
+TEST(CellCardFile, SlipThatGivesEnergyBackIsRefused) {
+  const TemporaryDirectory directory;
+  CellCard card = card_with_memory();
+  card.memory->dilatancy.value = 2.6;  // (1 + c)/c = 2.502
+  write_cell_card(card, directory.file("card.toml"));
+  try {
+    (void)read_cell_card(directory.file("card.toml"));
+    ADD_FAILURE() << "not refused";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("A: must be at most (1 + c)/c = 2.502"), std::string::npos) << e.what();
+  }
 }
 
 /// The card of sample_card() with the line that begins so replaced; empty: taken out.

@@ -269,6 +269,16 @@ void require_names_apart(const SceneTable& root, const std::vector<MaterialVaria
   }
 }
 
+/// Between packings of one span nothing is extrapolated, unless another span is asked for.
+void refuse_idle_span(const SceneTable& equation, const MaterialScene& scene) {
+  if (!equation.has("largest_span") || !scene.equation.spans.empty()) return;
+  const auto span = [](const MaterialVariant& v) { return v.setup.spec.solid_polydispersity; };
+  for (const MaterialVariant& v : scene.variants)
+    if (span(v) != span(scene.variants.front())) return;
+  equation.add_error("largest_span",
+                     "nothing is extrapolated: all packings have one span, and `spans` asks for no other");
+}
+
 }  // namespace
 
 MaterialScene read_material(const SceneTable& root) {
@@ -282,8 +292,9 @@ MaterialScene read_material(const SceneTable& root) {
   read_stages(root, root.table_or_empty("test"), base.spec);
   base.samples = root.count(kSamplesKey, 1, 10000, base.samples);
   base.kept_states = read_kept_states(root);
-  out.equation = read_equation(root.table_or_empty(
-      {"equation", "equation of state (pressure over solid fraction), fitted to all variants together"}));
+  const SceneTable equation = root.table_or_empty(
+      {"equation", "equation of state (pressure over solid fraction), fitted to all variants together"});
+  out.equation = read_equation(equation);
   out.equation.asked = root.has("equation");
   const Loadings loadings(root, base.spec);
   std::set<std::string> names;
@@ -316,6 +327,7 @@ MaterialScene read_material(const SceneTable& root) {
   const auto by_lammps = [](const MaterialVariant& v) { return v.setup.spec.preparation == Preparation::lammps; };
   if (!out.variants.empty() && std::all_of(out.variants.begin(), out.variants.end(), by_lammps))
     refuse_protocol_keys(root.table_or_empty("packing"));
+  if (!root.has_errors()) refuse_idle_span(equation, out);
   require_names_apart(root, out.variants);
   return out;
 }

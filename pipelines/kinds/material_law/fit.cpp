@@ -333,12 +333,6 @@ std::string missing_group(const std::vector<VariantResult>& results, const State
 
 }  // namespace
 
-std::vector<LawNumber> numbers_of(const CellCard& card) {
-  return {{"K", card.modulus},        {"n", card.exponent},        {"e_J", card.void_ratio},
-          {"e_c", card.excess_alone}, {"w_inf", card.excess_many}, {"xi", card.excess_decay},
-          {"K0", card.lateral_ratio}, {"mu_f", card.friction},     {"chi", card.stiffness}};
-}
-
 MaterialLaw fit_material_law(const MaterialLawScene& scene, const std::vector<VariantResult>& results,
                              const std::optional<StateFit>& states, std::uint64_t seed) {
   MaterialLaw none;

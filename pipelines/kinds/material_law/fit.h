@@ -22,9 +22,6 @@ struct MaterialLaw {
   std::vector<std::string> problems;  ///< why it is not usable; empty: it is
 };
 
-/// The numbers of a card under their names in it.
-std::vector<LawNumber> numbers_of(const CellCard& card);
-
 /// `results` in the order of the variants; `states`: the fit to them, if there was one.
 MaterialLaw fit_material_law(const MaterialLawScene& scene, const std::vector<VariantResult>& results,
                              const std::optional<StateFit>& states, std::uint64_t seed);

@@ -198,7 +198,8 @@ class RecipeRun {
       const CellCard card =
           among_all_fines(scene_, fitted.card, forms.joined_onset(1, scene_.levels.size() - 1, widen));
       write_cell_card(card, run_.path(kCellLawFile), run_.provenance);
-      summary_.law.of_pair = std::exchange(summary_.law.numbers, numbers_of(card));
+      summary_.law.of_pair = std::exchange(summary_.law.numbers, {});
+      for (const CellCardNumber& n : numbers_of(card)) summary_.law.numbers.push_back({n.key, n.estimate});
       head().files["cell_law"] = run_.path(kCellLawFile);
       std::vector<MacroCurve> kept;
       out().curves.push_back(press_in_cells(scene_, card, end, run_, kept));
