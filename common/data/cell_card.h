@@ -72,6 +72,9 @@ struct CellCardNumber {
 /// All numbers of a card in the order of the file; those of the memory, if it has one, at the end.
 std::vector<CellCardNumber> numbers_of(const CellCard& card);
 
+/// What the number of this key means; empty for another key.
+std::string meaning_of_cell_number(const std::string& key);
+
 /// Writes the card as TOML, for people and for read_cell_card(), which gives the same bits. Atomic. Throws IoError.
 void write_cell_card(const CellCard& card, const std::string& path, const Provenance& provenance = build_provenance());
 

@@ -162,6 +162,14 @@ std::vector<CellCardNumber> numbers_of(const CellCard& card) {
   return out;
 }
 
+std::string meaning_of_cell_number(const std::string& key) {
+  for (const auto& n : cell_numbers())
+    if (n.key == key) return n.meaning;
+  for (const auto& n : memory_numbers())
+    if (n.key == key) return n.meaning;
+  return "";
+}
+
 void write_cell_card(const CellCard& card, const std::string& path, const Provenance& provenance) {
   std::string text;
   const Out out(text);

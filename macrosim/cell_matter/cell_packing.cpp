@@ -131,7 +131,7 @@ void CellPacking::remember() {
   const double mu_f = law_.friction.coefficient;
   kept_stress_ = stress();
   std::vector<double> slip(sites_.size());
-  std::vector<double> work(sites_.size());
+  std::vector<double> used(sites_.size());
   SpringSet now = forces_.trial;
   for (std::size_t f = 0; f < now.springs.size(); ++f) {
     FaceSpring& spring = now.springs[f];
@@ -140,10 +140,13 @@ void CellPacking::remember() {
       const FaceSpring& before = springs_.kept().springs[*at];
       const FaceSlip one = slip_of(before.force, before.stiffness, spring.force, spring.stiffness,
                                    spring.separation - before.separation, face.separation * (1.0 / face.distance));
+      const double pressure = 0.5 * (forces_.response[static_cast<std::size_t>(face.i)].pressure +
+                                     forces_.response[static_cast<std::size_t>(face.j)].pressure);
       for (const std::int32_t c : {face.i, face.j}) {
+        if (!(pressure > 0.0)) continue;
         const auto k = static_cast<std::size_t>(c);
         slip[k] += face.area * one.slip / (3.0 * cells_.volume[k]);
-        work[k] += one.work / (2.0 * cells_.volume[k]);
+        used[k] += one.work / (2.0 * cells_.volume[k] * pressure);
       }
     }
     const double shape = face.area / face.distance;
@@ -159,7 +162,7 @@ void CellPacking::remember() {
   next_pores_.clear();
   for (std::size_t i = 0; i < sites_.size(); ++i) {
     CellContent next = content_[i];
-    next.pores = memory.pores_after(mu_f, next, cells_.volume[i], forces_.response[i].pressure, slip[i], work[i]);
+    next.pores = memory.pores_after(mu_f, next, cells_.volume[i], slip[i], used[i]);
     next_pores_.push_back(next.pores);
     strength.push_back(memory.strength(mu_f, next, cells_.volume[i]));
   }

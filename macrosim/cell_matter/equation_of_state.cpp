@@ -65,12 +65,41 @@ CellResponse PoreGuard::at(const CellContent& c, double volume, double modulus) 
           2.0 * modulus * (2.0 - 3.0 * u) * u / (q * q * c.pores * c.pores)};
 }
 
-CellResponse respond(const EquationOfState& equation, const PoreGuard& guard, const CellContent& c, double volume) {
+namespace {
+
+/// Volume of a cell in this state.
+double volume_at(const EquationOfState& equation, const CellContent& c, double state) {
+  if (std::holds_alternative<PoreForm>(equation)) return c.solid + (1.0 - state) * c.pores;
+  const double onset = c.solid / (c.solid + c.pores);
+  return c.solid / (onset + state * (1.0 - onset));
+}
+
+CellResponse respond_with_tail(const EquationOfState& equation, const CellContent& c, double volume, double tail) {
+  const auto at = [&](double v) { return std::visit([&](const auto& form) { return form.at(c, v); }, equation); };
+  const double end = volume_at(equation, c, tail);
+  const CellResponse last = at(end);
+  const double energy = 2.0 * last.pressure * last.pressure / last.stiffness;
+  if (volume < end) {
+    CellResponse out = at(volume);
+    out.energy += energy - last.energy;
+    return out;
+  }
+  const double rate = last.stiffness / last.pressure;
+  const double u = 1.0 / (1.0 + 0.5 * (volume - end) * rate);
+  const double stiffness = last.stiffness * u * u * u;
+  return {last.pressure * u * u, stiffness, energy * u, -1.5 * stiffness * u * rate};
+}
+
+}  // namespace
+
+CellResponse respond(const EquationOfState& equation, const PoreGuard& guard, const CellContent& c, double volume,
+                     double tail) {
   if (!(volume > c.solid)) {
     constexpr double kNone = std::numeric_limits<double>::infinity();
     return {kNone, kNone, kNone, -kNone};
   }
-  CellResponse out = std::visit([&](const auto& form) { return form.at(c, volume); }, equation);
+  CellResponse out = tail > 0.0 ? respond_with_tail(equation, c, volume, tail)
+                                : std::visit([&](const auto& form) { return form.at(c, volume); }, equation);
   const CellResponse more = guard.at(c, volume, modulus(equation));
   out.pressure += more.pressure;
   out.stiffness += more.stiffness;

@@ -68,8 +68,11 @@ struct PoreGuard {
   [[nodiscard]] CellResponse at(const CellContent& c, double volume, double modulus) const;
 };
 
-/// Equation and guard together. `volume` <= c.solid: energy and pressure are infinite.
-CellResponse respond(const EquationOfState& equation, const PoreGuard& guard, const CellContent& c, double volume);
+/// Equation and guard together. `volume` <= c.solid: energy and pressure are infinite. Beyond the volume V_r of the
+/// state `tail` > 0 the pressure does not end at the onset but falls as p_r/(1 + z/2)^2, z = (V - V_r) S_r/p_r with the
+/// pressure p_r and the stiffness S_r there: a cell that others make room for keeps some stiffness and its place.
+CellResponse respond(const EquationOfState& equation, const PoreGuard& guard, const CellContent& c, double volume,
+                     double tail = 0.0);
 
 /// Throws InputError for a modulus that is not above 0, an exponent not above 1 (the stiffness would jump at the
 /// onset), a guard outside [0, 1), values that are not finite.

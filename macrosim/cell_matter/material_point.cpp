@@ -52,7 +52,7 @@ MaterialPoint::MaterialPoint(const CellLaw& law, double solid_fraction, double o
   content_ = {solid_fraction, pores_of(solid_fraction, onset), pores_of(solid_fraction, critical)};
   require_valid(law_, {content_}, 1);
   next_pores_ = content_.pores;
-  response_ = respond(law_.equation, law_.guard, content_, 1.0);
+  response_ = respond(law_.equation, law_.guard, content_, 1.0, law_.memory->least_state);
   stiffness_ = law_.friction.stiffness * response_.stiffness;
   strength_ = law_.memory->strength(law_.friction.coefficient, content_, 1.0);
 }
@@ -73,11 +73,11 @@ void MaterialPoint::part(const Vec3& strain) {
   content_.solid *= denser;
   content_.pores = pores * content_.solid;
   content_.critical = critical * content_.solid;
-  response_ = respond(law_.equation, law_.guard, content_, 1.0);
+  response_ = respond(law_.equation, law_.guard, content_, 1.0, law_.memory->least_state);
   const double stiffness_before = stiffness_;
   stiffness_ = law_.friction.stiffness * response_.stiffness;
   double slip = 0.0;
-  double work = 0.0;
+  double used = 0.0;
   double energy = 0.0;
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     const auto& [normal, weight] = directions()[f];
@@ -86,12 +86,12 @@ void MaterialPoint::part(const Vec3& strain) {
         pull(faces_[f].force, stiffness_before, stiffness_, motion, normal, strength_ * response_.pressure);
     const FaceSlip one = slip_of(faces_[f].sum, stiffness_before, pulled.sum, stiffness_, motion, normal);
     slip += 2.0 * weight * one.slip;
-    work += 3.0 * weight * one.work;
+    if (response_.pressure > 0.0) used += 3.0 * weight * one.work / response_.pressure;
     energy += 3.0 * weight * pulled.energy;
     faces_[f] = {pulled.force, pulled.sum};
   }
   spring_pressure_ = response_.stiffness > 0.0 ? -energy * (1.0 + response_.hardening / response_.stiffness) : 0.0;
-  next_pores_ = memory.pores_after(mu_f, content_, 1.0, response_.pressure, slip, work);
+  next_pores_ = memory.pores_after(mu_f, content_, 1.0, slip, used);
   CellContent next = content_;
   next.pores = next_pores_;
   strength_ = memory.strength(mu_f, next, 1.0);

@@ -57,12 +57,12 @@ double ShearMemory::strength(double mu_f, const CellContent& content, double vol
   return mu_f + (mu - mu_f) * std::clamp(0.5 * (x / least_state - 1.0), 0.0, 1.0);
 }
 
-double ShearMemory::pores_after(double mu_f, const CellContent& content, double volume, double pressure, double slip,
-                                double work) const {
-  if (!(dilatancy > 0.0) || !(pressure > 0.0)) return content.pores;
+double ShearMemory::pores_after(double mu_f, const CellContent& content, double volume, double slip,
+                                double used) const {
+  if (!(dilatancy > 0.0)) return content.pores;
   const double onset = onset_of(content.solid, content.pores);
   const double critical_ratio = 1.5 * mu_f;
-  double moved = onset * (1.0 + dilatancy * (critical_ratio * slip - work / pressure));
+  double moved = onset * (1.0 + dilatancy * (critical_ratio * slip - used));
   if (moved > onset && least_state > 0.0) {
     const double phi = content.solid / volume;
     moved = std::min(moved, std::max(onset, (phi - least_state) / (1.0 - least_state)));

@@ -13,7 +13,7 @@ namespace softgrain {
 /// Cells jam at a solid fraction phi_J that shear moves. Compaction of a step is what friction does not use of the work
 /// (Taylor's work equation; Rowe 1962, Proc. R. Soc. A 269, 500 has another form of it):
 ///   d phi_J/phi_J = A (M dgamma_p - dW_p/p),  M = 1.5 mu_f,
-/// gamma_p and W_p the slip and the frictional work of the faces of a cell. Faces are the stronger the denser their
+/// gamma_p and W_p the slip and the frictional work of the faces of a cell, p the pressure at the face. Faces are the stronger the denser their
 /// cells are than their critical state (the state parameter of Been and Jefferies 1985, Geotechnique 35, 99):
 ///   mu = mu_f [1 + c tanh(-m psi/c)],  psi = [phi_c + lambda (phi - phi_J) - phi_J]/(1 - phi_c).
 /// phi_c belongs to the grading, whatever the preparation: pores r_c (e_J v + w) of each cell.
@@ -23,16 +23,16 @@ struct ShearMemory {
   double strength_slope = 0.0;  ///< m: 0: all faces are equally strong
   double strength_range = 0.5;  ///< c, below 1: strengths lie within mu_f (1 -+ c)
   double density_slope = 0.0;   ///< lambda
-  double least_state = 0.0;     ///< x_r: shear compacts no cell below this state (residual pressure)
+  double least_state = 0.0;     ///< x_r: shear compacts no cell below this state, and pressures end slowly beyond it
 
   /// mu of a cell at the solid fraction phi. Where the cell is nearly unjammed (x < 3 x_r), a strength below mu_f goes
   /// linearly to mu_f at x_r: there volume no longer changes.
   [[nodiscard]] double strength(double mu_f, const CellContent& content, double volume) const;
 
-  /// Pores where the cell jams after slip gamma_p under the pressure p > 0 with the frictional work W_p by volume [Pa].
-  /// A rise of phi_J ends at x = x_r.
-  [[nodiscard]] double pores_after(double mu_f, const CellContent& content, double volume, double pressure, double slip,
-                                   double work) const;
+  /// Pores where the cell jams after slip gamma_p, of whose faces friction used the share `used`, the sum of W_p/p over
+  /// them. A rise of phi_J ends at x = x_r.
+  [[nodiscard]] double pores_after(double mu_f, const CellContent& content, double volume, double slip,
+                                   double used) const;
 };
 
 /// A face has six springs in parallel, each with a limit: Masing's rules for reversals, and the hyperbolic backbone

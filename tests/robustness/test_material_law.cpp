@@ -92,6 +92,59 @@ TEST(MaterialLaw, ASmallMaterialGivesACardThatReadsBack) {
   EXPECT_NE(read_text(out + "/material.csv").find("fines-shear,1,shear"), std::string::npos);
 }
 
+/// A card with shear memory, and what a scene of coarse grains makes of it.
+TEST(MaterialLaw, WithShearMemoryGivesACardForTestsThatShear) {
+  const TemporaryDirectory directory;
+  std::string text = kSmallMaterialLaw;
+  text.replace(text.find("cells = 40\n"), 11, "memory = true\ndense = false\n");
+  text.replace(text.find("samples = 2"), 11, "samples = 1");
+  write_text_atomic(directory.file("scene.toml"), text);
+  const std::string out = directory.file("out");
+  const ProgramOutcome outcome = run_the_program("run '" + directory.file("scene.toml") + "' --out '" + out + "'");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const CellCard card = read_cell_card(out + "/cell_law.toml");
+  ASSERT_TRUE(card.memory);
+  EXPECT_GT(card.exponent.value, 1.3);
+  EXPECT_LT(card.exponent.value, 1.9);
+  EXPECT_GT(card.friction.value, 0.3);
+  EXPECT_LT(card.friction.value, 1.0);
+  EXPECT_EQ(card.memory->dilatancy.value, 1.0) << "not measured without dense fines";
+  EXPECT_GT(card.memory->critical_pores.value, 0.7);
+  EXPECT_LT(card.memory->critical_pores.value, 1.0);
+  EXPECT_NEAR(card.memory->strength_range.value, 2.0 / 3.0, 1e-12) << "not measured without dense fines";
+  EXPECT_GT(card.memory->least_state.value, 0.0);
+  const std::string page = read_text(out + "/report.html");
+  for (const char* part : {"cell-law-fines-triaxial-ratio", "cell-law-fines-oedometric-pressure", "critical state"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  const ProgramOutcome shown = run_the_program("law show '" + out + "/cell_law.toml'");
+  EXPECT_NE(shown.output.find("r_c"), std::string::npos) << shown.output;
+  write_text_atomic(directory.file("macro.toml"), "kind = \"macro\"\nlaw = \"" + out + R"(/cell_law.toml"
+[macro]
+bodies = 40
+boundary = "periodic"
+preparation = "fast"
+start_pressure = 1e-4
+solid_polydispersity = 3
+[fines]
+share = 0.4
+[[stage]]
+kind = "triaxial"
+strain = 0.02
+steps = 2
+[[stage]]
+kind = "unload"
+strain = 0.005
+steps = 1
+)");
+  const std::string check = "check '" + directory.file("macro.toml") + "'";
+  EXPECT_EQ(run_the_program(check).output.find("no shear memory"), std::string::npos);
+  const std::string macro = "macrosim '" + directory.file("macro.toml") + "' --out '" + directory.file("macro") + "'";
+  const ProgramOutcome run = run_the_program(macro);
+  EXPECT_EQ(run.status, 0) << run.output;
+  const std::string plain = check + " --set law='" + SOFTGRAIN_SOURCE_DIR + "/results/material_law/cell_law.toml'";
+  EXPECT_NE(run_the_program(plain).output.find("no shear memory"), std::string::npos);
+}
+
 TEST(SlowMaterialLaw, TooSmallAMaterialGivesNone) {
   const TemporaryDirectory directory;
   write_text_atomic(directory.file("scene.toml"), kTinyMaterialLaw);

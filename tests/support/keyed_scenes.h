@@ -127,6 +127,12 @@ share = 0.4
 )";
 }
 
+inline std::string material_law_memory() {
+  std::string text = kTinyMaterialLaw;
+  text.replace(text.find("cells = 40\n"), 11, "memory = true\n");
+  return text;
+}
+
 inline std::string macro_table() {
   return std::string("kind = \"macro\"\nlaw = \"") + SOFTGRAIN_SOURCE_DIR +
          "/tests/reference/law/two_fractions.toml\"\n" + R"([macro]
@@ -326,6 +332,7 @@ inline std::vector<KindScene> keyed_scenes() {
   add("comparison-stages", comparison_stages() + "[scene.law]\ncard = \"other-law.toml\"\n[[scene]]\nname = \"b\"\n");
   add("comparison-packing", comparison_packing());
   add("macro-cells", macro_cells());
+  add("material-law-memory", material_law_memory());
   add("macro-table", macro_table());
   add("models", models_scene());
   add("recipe-constituents", recipe_constituents());

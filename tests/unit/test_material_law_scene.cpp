@@ -67,16 +67,56 @@ TEST(MaterialLawScene, MakesFinesCoarseGrainsAndMixtures) {
   EXPECT_EQ(variants[1].setup.spec.preload, 0.02);
   EXPECT_NEAR(sizes(2).smallest(), 0.016 / 3.0, 1e-12);
   EXPECT_NEAR(sizes(2).largest(), 0.016, 1e-12);
-  for (std::size_t k = kFirstMixture; k < variants.size(); ++k) {
+  for (std::size_t k = scene.at.first_mixture; k < variants.size(); ++k) {
     const MaterialVariant& v = variants[k];
     EXPECT_EQ(v.setup.spec.test, MacroTest::oedometric);
     EXPECT_FALSE(v.same_packings);
     const GrainShares shares = shares_of(scene, v, 1, 0);
     EXPECT_EQ(shares.coarse + shares.fines, 600);
     const double share = shares.fines_volume / (shares.fines_volume + shares.coarse_volume);
-    EXPECT_NEAR(share, scene.mixtures[k - kFirstMixture], 0.05) << v.name;
+    EXPECT_NEAR(share, scene.mixtures[k - scene.at.first_mixture], 0.05) << v.name;
   }
   EXPECT_EQ(variants[3].name, "mix-25");
+}
+
+/// With shear memory all packings are compressed isotropically, and the fines, loose and dense, are tested further.
+TEST(MaterialLawScene, WithShearMemoryTestsFinesInMoreWays) {
+  const MaterialLawScene scene =
+      read_law_scene("[law]\nmemory = true\nmixtures = [0.25, 0.5, 0.75]\nisotropic_strain = 0.025\n");
+  const auto& variants = scene.material.variants;
+  const auto name = [&](std::size_t k) { return variants.at(k).name; };
+  ASSERT_EQ(variants.size(), 14U);
+  EXPECT_EQ(name(scene.at.fines), "fines");
+  EXPECT_EQ(name(scene.at.coarse), "coarse");
+  EXPECT_EQ(name(scene.at.oedometer), "fines-oedometric");
+  EXPECT_EQ(name(scene.at.collapse), "fines-collapse");
+  EXPECT_EQ(name(scene.at.first_mixture), "mix-25");
+  std::vector<std::string> tests;
+  for (const std::size_t k : scene.at.shear_tests) tests.push_back(name(k));
+  EXPECT_EQ(tests, (std::vector<std::string>{"fines-oedometric", "fines-triaxial", "fines-preload-triaxial",
+                                             "fines-preload-shear", "fines-dense-triaxial",
+                                             "fines-dense-preload-triaxial", "fines-dense-preload-shear"}));
+  for (const MaterialVariant& v : variants) {
+    const bool test = v.name.starts_with("fines-") && v.name != "fines-dense";
+    EXPECT_EQ(v.same_packings, test) << v.name;
+    EXPECT_EQ(v.setup.spec.test, test ? MacroTest::stages : MacroTest::isotropic) << v.name;
+    EXPECT_EQ(v.setup.spec.preparation, v.name.starts_with("fines-dense") ? Preparation::dense : Preparation::fast);
+    if (!test) {
+      EXPECT_EQ(v.setup.spec.strain_end, 0.025) << v.name;
+    }
+  }
+  const MacroSpec& triaxial = variants.at(scene.at.shear_tests[2]).setup.spec;
+  ASSERT_EQ(triaxial.stages.size(), 2U);
+  EXPECT_EQ(triaxial.stages[0].axis[0].value, 0.02);
+  EXPECT_TRUE(triaxial.stages[1].axis[1].by_stress);
+  EXPECT_EQ(triaxial.stages[1].axis[1].as_at, 1);
+  EXPECT_FALSE(triaxial.stages[1].axis[2].by_stress);
+  const MacroSpec& oedometer = variants.at(scene.at.oedometer).setup.spec;
+  EXPECT_EQ(oedometer.stages[0].axis[2].value, 0.08);
+  EXPECT_EQ(oedometer.stages[1].axis[2].value, -0.02);
+  EXPECT_EQ(oedometer.stages[1].record.kind, StageKind::unload);
+  const MaterialLawScene loose = read_law_scene("[law]\nmemory = true\ndense = false\nmixtures = [0.25, 0.5, 0.75]\n");
+  EXPECT_EQ(loose.material.variants.size(), 10U);
 }
 
 std::string refusal(const std::string& law, const std::string& grains = "count = 600\nratio = 6") {
@@ -99,6 +139,9 @@ TEST(MaterialLawScene, RefusesWhatGivesNoLaw) {
   EXPECT_NE(refusal("[law]\nmixtures = [0.2, 0.5]\n").find("at least three shares"), std::string::npos);
   EXPECT_NE(refusal("[law]\nmixtures = [0.2, 0.5, 0.5]\n").find("must ascend"), std::string::npos);
   EXPECT_NE(refusal("[law]\ncells = 20\n").find("from 40"), std::string::npos);
+  EXPECT_NE(refusal("[law]\nmemory = true\ncells = 80\n").find("fitted without cells"), std::string::npos);
+  for (const char* key : {"dense = true", "isotropic_strain = 0.02", "triaxial_strain = 0.1", "unload_strain = 0.01"})
+    EXPECT_NE(refusal(std::string("[law]\n") + key + "\n").find("goes with memory = true"), std::string::npos) << key;
   EXPECT_NE(refusal("", "count = 30\nratio = 6").find("too few for a periodic cell"), std::string::npos)
       << refusal("", "count = 30\nratio = 6");
   EXPECT_NE(refusal("[[stage]]\nkind = \"hold\"\n").find("stage"), std::string::npos);

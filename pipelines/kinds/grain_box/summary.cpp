@@ -16,7 +16,7 @@ using nlohmann::json;
 /// What is not defined is null.
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
-json point_json(const std::vector<const BoxPoint*>& points) {
+json point_json(const std::vector<const BoxPoint*>& points, double density) {
   if (points.empty()) return nullptr;
   const BoxPoint& p = *points.back();
   return {{"states", points.size()},
@@ -27,6 +27,7 @@ json point_json(const std::vector<const BoxPoint*>& points) {
           {"shear_stress", p.shear},
           {"wall_moment", p.moment},
           {"solid_fraction", p.solid_fraction},
+          {"bulk_density", density * p.solid_fraction},
           {"coordination", p.coordination},
           {"coordination_without_rattlers", p.coordination_without},
           {"rattlers", p.rattlers},
@@ -83,9 +84,9 @@ json result_json(const GrainBoxResult& result, const std::vector<double>& stress
               {"test", result.spec.loading.test},
               {"increments", result.spec.loading.increments},
               {"growth_passes", result.state.growth_passes},
-              {"after_compaction", point_json(result.points_of(BoxPhase::compaction))},
-              {"after_friction", point_json(result.points_of(BoxPhase::friction))},
-              {"at_end", point_json(result.points_of(BoxPhase::loading))},
+              {"after_compaction", point_json(result.points_of(BoxPhase::compaction), result.spec.material.density)},
+              {"after_friction", point_json(result.points_of(BoxPhase::friction), result.spec.material.density)},
+              {"at_end", point_json(result.points_of(BoxPhase::loading), result.spec.material.density)},
               {"pressure_of_smallest_G", number(pressure_of_smallest_shear(result))},
               {"largest_shear_stress_ratio", largest_over_pressure(result, &BoxPoint::shear)},
               {"largest_wall_moment_ratio", largest_over_pressure(result, &BoxPoint::moment)},

@@ -117,6 +117,13 @@ HierarchySetup read_hierarchy_setup(const Scene& scene) {
       if (!has_one(out.multi_contact, kind))
         root.add_error("configuration", "a hierarchy needs a configuration \"one\" with a " + to_string(kind) +
                                             " partner: inner soft particles meet all three kinds");
+    const auto rolls = [](const MultiContactConfiguration& c) {
+      return std::any_of(c.stages.begin(), c.stages.end(),
+                         [](const auto& stage) { return stage.move == MultiContactMove::roll; });
+    };
+    const auto& configurations = out.multi_contact.configurations;
+    if (std::none_of(configurations.begin(), configurations.end(), rolls))
+      root.table("hierarchy").refuse({"rolling"}, "no [[configuration]] rolls: there is no rolling resistance");
     if (out.multi_contact.packings_max < MultiContactFitOptions{}.min_packings)
       root.table_or_empty("multi_contact").add_error("packings_max", "fewer than 4: there would be no fit");
     return out;

@@ -79,6 +79,8 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
       const auto any = [&](auto&& has) { return std::any_of(setup.scenes.begin(), setup.scenes.end(), has); };
       refuse_idle_keys(macro, any([](const ComparisonScene& s) { return !s.setup.twins.empty(); }),
                        any([](const ComparisonScene& s) { return s.setup.bands > 0; }));
+      if (!any([](const ComparisonScene& s) { return !s.setup.twins.empty(); }))
+        root.table_or_empty("material").refuse({"restitution"}, "goes with twins, which no [[scene]] has");
       if (macro.has("solid_fill") &&
           !any([](const ComparisonScene& s) { return s.setup.spec.construction == Construction::voids; }))
         macro.add_error("solid_fill", "goes with construction = \"voids\", which no [[scene]] has");

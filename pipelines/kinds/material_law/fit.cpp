@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <tuple>
 
 #include "calibrate/excess_pores_fit.h"
@@ -20,6 +21,7 @@
 #include "macrosim/cell_matter/face_springs.h"
 #include "macrosim/preparation.h"
 #include "pipelines/compare/stage_results.h"
+#include "pipelines/kinds/material_law/memory_fit.h"
 
 namespace softgrain {
 
@@ -166,7 +168,10 @@ class MaterialLawFit {
     add("n", out_.card.exponent);
     fit_excess();
     lateral_ratio();
-    fit_friction();
+    if (scene_.memory)
+      fit_memory();
+    else
+      fit_friction();
     out_.summary.usable = out_.problems.empty();
     return std::move(out_);
   }
@@ -174,11 +179,11 @@ class MaterialLawFit {
  private:
   void add(const char* name, const Estimate& e) { out_.summary.numbers.push_back({name, e}); }
 
-  [[nodiscard]] const VariantResult& result(LawVariant v) const { return results_[place_of(v)]; }
+  [[nodiscard]] const VariantResult& result(std::size_t place) const { return results_[place]; }
 
   /// What it was measured on.
   void describe() {
-    const MacroSpec& spec = result(LawVariant::fines).variant->setup.spec;
+    const MacroSpec& spec = result(scene_.at.fines).variant->setup.spec;
     CellCard& card = out_.card;
     card.youngs_modulus = spec.youngs_modulus;
     card.density = spec.density;
@@ -191,7 +196,7 @@ class MaterialLawFit {
     card.fines_sizes = whole.form() == GradingForm::power_law
                            ? fmt::format("power law r^-{:g}", whole.pieces().front().exponent)
                            : fmt::format("{}, cut at the split", to_string(whole.form()));
-    card.samples = result(LawVariant::fines).variant->setup.samples;
+    card.samples = result(scene_.at.fines).variant->setup.samples;
     std::tie(card.pressure_low, card.pressure_high) = std::tuple_cat(pressure_range(results_));
   }
 
@@ -209,9 +214,9 @@ class MaterialLawFit {
   }
 
   void fit_excess() {
-    MixtureGroups groups{result(LawVariant::fines).variant->name, result(LawVariant::coarse).variant->name, {}};
+    MixtureGroups groups{result(scene_.at.fines).variant->name, result(scene_.at.coarse).variant->name, {}};
     std::vector<GrainShares> shares;
-    for (std::size_t k = kFirstMixture; k < results_.size(); ++k) {
+    for (std::size_t k = scene_.at.first_mixture; k < results_.size(); ++k) {
       shares.push_back(grains_of(*results_[k].variant));
       const double ratio = shares.back().fines_volume / shares.back().coarse_volume;
       groups.mixtures.push_back({results_[k].variant->name, ratio});
@@ -249,9 +254,9 @@ class MaterialLawFit {
   /// Adds K0, the lateral over the axial stress of the fines, mean over the recorded points of the compression.
   void lateral_ratio() {
     std::vector<double> samples;
-    for (const MacroCurve& c : result(LawVariant::fines).curves) {
+    for (const MacroCurve& c : result(scene_.memory ? scene_.at.oedometer : scene_.at.fines).curves) {
       std::vector<double> ratios;
-      for (std::size_t k = 1; k < c.strain.size(); ++k)
+      for (std::size_t k = 1; k < c.strain.size() && c.stage[k] == 0; ++k)
         if (c.stress_axial[k] > 0.0) ratios.push_back(c.stress_lateral[k] / c.stress_axial[k]);
       if (!ratios.empty()) samples.push_back(mean_error(ratios).mean);
     }
@@ -260,8 +265,73 @@ class MaterialLawFit {
     add("K0", out_.card.lateral_ratio);
   }
 
+  void fit_memory() {
+    std::vector<ShearPath> paths;
+    std::vector<double> left;
+    for (const std::size_t test : scene_.at.shear_tests)
+      for (const MacroCurve& c : result(test).curves) {
+        if (!c.usable) {
+          out_.problems.push_back("shear memory: a test of the fines did not come to its end: " +
+                                  result(test).variant->name);
+          return;
+        }
+        paths.push_back(ShearPath::of(c));
+      }
+    for (const MacroCurve& c : result(scene_.at.collapse).curves)
+      left.push_back((c.stress_x.back() + c.stress_y.back() + c.stress_axial.back()) / 3.0 / c.start.youngs_modulus);
+    const FinesBase fines{out_.card.form, out_.card.modulus.value, out_.card.exponent.value,
+                          out_.card.void_ratio.value};
+    const ShearMemoryFit fit = fit_shear_memory(fines, paths, left, scene_.dense);
+    if (!fit.usable) {
+      out_.problems.push_back("shear memory: " + fit.message);
+      return;
+    }
+    out_.card.friction = fit.friction;
+    out_.card.stiffness = fit.stiffness;
+    out_.card.memory = fit.memory;
+    out_.summary.friction_deviation = fit.deviation;
+    out_.summary.undetermined = fit.undetermined;
+    for (const CellCardNumber& n : numbers_of(out_.card))
+      if (std::ranges::none_of(out_.summary.numbers, [&](const LawNumber& known) { return known.name == n.key; }))
+        out_.summary.numbers.push_back({n.key, n.estimate});
+    add_memory_curves(fines, fit);
+  }
+
+  /// Mean pressure and stress ratio of every test, and the law from the start of its first sample.
+  void add_memory_curves(const FinesBase& fines, const ShearMemoryFit& fit) {
+    const ShearNumbers numbers{fit.friction.value, fit.stiffness.value, fit.memory};
+    for (const std::size_t test : scene_.at.shear_tests) {
+      std::vector<ShearPath> paths;
+      std::vector<ShearPrediction> laws;
+      for (const MacroCurve& c : result(test).curves) {
+        paths.push_back(ShearPath::of(c));
+        laws.push_back(predict(fines, numbers, paths.back()));
+      }
+      const auto add_measure = [&](const char* measure, const std::function<double(const Vec3&)>& of) {
+        FrictionCurve curve{result(test).variant->name, measure, {}, {}, {}, {}};
+        for (std::size_t k = 1; k < paths.front().strain.size(); ++k) {
+          std::vector<double> values;
+          std::vector<double> model;
+          for (std::size_t s = 0; s < paths.size(); ++s) {
+            if (paths[s].stress.size() > k) values.push_back(of(paths[s].stress[k]));
+            if (laws[s].stress.size() > k) model.push_back(of(laws[s].stress[k]));
+          }
+          const MeanError mean = mean_error(values);
+          curve.strain.push_back(-std::expm1(-paths.front().strain[k][2]));
+          curve.measured.push_back(mean.mean);
+          curve.error.push_back(mean.error);
+          curve.fitted.push_back(model.empty() ? kNaN : mean_error(model).mean);
+        }
+        out_.summary.curves.push_back(std::move(curve));
+      };
+      add_measure("p/E", [](const Vec3& s) { return (s[0] + s[1] + s[2]) / 3.0; });
+      add_measure("(sigma_z - sigma_x)/p",
+                  [](const Vec3& s) { return 3.0 * (s[2] - 0.5 * (s[0] + s[1])) / (s[0] + s[1] + s[2]); });
+    }
+  }
+
   void fit_friction() {
-    const std::array<const VariantResult*, 2> tests{&result(LawVariant::fines), &result(LawVariant::sheared_fines)};
+    const std::array<const VariantResult*, 2> tests{&result(scene_.at.fines), &result(scene_.at.sheared_fines)};
     for (const VariantResult* test : tests)
       for (const MacroCurve& c : test->curves)
         if (!c.usable || c.strain.size() != test->curves.front().strain.size()) {
@@ -298,7 +368,7 @@ class MaterialLawFit {
   void add_curves(const FaceFrictionFit& fit, const FaceFrictionData& data, const std::vector<FinesPath>& paths) {
     std::size_t at = 0;
     for (std::size_t t = 0; t < paths.size(); ++t) {
-      const LawVariant of = t == 0 ? LawVariant::fines : LawVariant::sheared_fines;
+      const std::size_t of = t == 0 ? scene_.at.fines : scene_.at.sheared_fines;
       const MacroCurve& c = result(of).curves.front();
       FrictionCurve curve{result(of).variant->name, t == 0 ? "lateral/axial" : "q/p", {}, {}, {}, {}};
       const std::size_t before = paths[t].points.size() - paths[t].compared;

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "common/core/text.h"
+#include "common/data/cell_card.h"
 #include "common/data/law_words.h"
 #include "pipelines/kinds/law_table/scene.h"
 #include "pipelines/kinds/material_law/scene.h"
@@ -17,17 +19,6 @@
 namespace softgrain::report {
 
 namespace {
-
-std::string meaning_of(const std::string& name) {
-  if (name == "K" || name == "n") return "equation of state";
-  if (name == "e_J") return "void ratio of the fines where they jam";
-  if (name == "e_c") return "void ratio of the coarse grains alone";
-  if (name == "w_inf") return "excess pores over coarse volume, many fines";
-  if (name == "xi") return "decay over V_f/V_c";
-  if (name == "mu_f") return "friction of faces";
-  if (name == "chi") return "stiffness of faces";
-  return "lateral over axial stress of the fines";
-}
 
 std::string interval_of(const Estimate& e) { return ends_text(e.low, e.high, {format_number, 3, " to "}); }
 
@@ -43,7 +34,8 @@ std::string number_table(const CellLawSummary& law) {
   if (recipe) header.emplace_back("of the two coarsest levels alone");
   HtmlTable table(header, 2);
   for (const LawNumber& n : law.numbers) {
-    std::vector<std::string> row{n.name, meaning_of(n.name), format_number(n.estimate.value), interval_of(n.estimate)};
+    std::vector<std::string> row{n.name, meaning_of_cell_number(n.name), format_number(n.estimate.value),
+                                 interval_of(n.estimate)};
     if (recipe) row.emplace_back(of_pair(law, n.name));
     table.row(row);
   }
@@ -90,12 +82,35 @@ std::string pores_figure(const CellLawSummary& law) {
                 "ratio of coarse grains alone. Bars and band: 95 %.");
 }
 
+/// How a curve is drawn, by what it measures.
+struct CurveLook {
+  std::string id;
+  std::string title;
+  std::string label;
+  std::optional<double> low;
+  Scale scale = Scale::linear;
+  std::string x = "axial strain of the stage [%]";
+};
+
+CurveLook look_of(const FrictionCurve& c) {
+  if (c.measure == "q/p") return {"cell-law-shear", "Fines sheared at constant volume", "q/p", 0.0};
+  if (c.measure == "lateral/axial")
+    return {"cell-law-lateral", "Fines in oedometric compression", "lateral over axial stress", 0.0};
+  const bool pressure = c.measure == "p/E";
+  return {"cell-law-" + c.variant + (pressure ? "-pressure" : "-ratio"),
+          c.variant,
+          c.measure,
+          std::nullopt,
+          pressure ? Scale::logarithmic : Scale::linear,
+          "axial strain [%]"};
+}
+
 std::string friction_figure(const FrictionCurve& c) {
-  const bool sheared = c.measure == "q/p";
-  Plot plot({.id = sheared ? "cell-law-shear" : "cell-law-lateral",
-             .title = sheared ? "Fines sheared at constant volume" : "Fines in oedometric compression",
-             .x = {.label = "axial strain of the stage [%]"},
-             .y = {.label = sheared ? "q/p" : "lateral over axial stress", .low = 0.0}});
+  const CurveLook look = look_of(c);
+  Plot plot({.id = look.id,
+             .title = look.title,
+             .x = {.label = look.x},
+             .y = {.label = look.label, .scale = look.scale, .low = look.low}});
   std::vector<double> percent;
   for (const double e : c.strain) percent.push_back(100.0 * e);
   Series measured{.label = "grains", .hover = "", .x = percent, .y = c.measured};
@@ -107,7 +122,7 @@ std::string friction_figure(const FrictionCurve& c) {
   fitted.style = {.color = palette::vermillion, .width = 1.8};
   plot.add(std::move(measured));
   plot.add(std::move(fitted));
-  return figure(plot.svg(), "Mean over samples ± standard error; the law with the fitted friction, all cells fines.");
+  return figure(plot.svg(), "Mean over samples ± standard error; the law with the fitted numbers, all cells fines.");
 }
 
 std::string mixture_table(const CellLawSummary& law) {

@@ -23,6 +23,9 @@ std::string law_text(const CellLawSummary& s) {
   if (s.usable)
     text += fmt::format("  W/V_c is {:.2g} about its form, stress ratios of the fines {:.2g} about the law\n",
                         s.excess_deviation, s.friction_deviation);
+  if (!s.undetermined.empty())
+    text += "  only together well determined: " +
+            join_text(s.undetermined, ",", [](const std::string& one) { return " " + one; }) + "\n";
   return text;
 }
 

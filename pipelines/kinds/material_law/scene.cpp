@@ -8,8 +8,10 @@
 #include "common/core/limits.h"
 #include "common/core/particles.h"
 #include "common/packing/grading.h"
+#include "macrosim/preparation.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/material_law/fit.h"
+#include "pipelines/kinds/material_law/memory_fit.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 
 namespace softgrain {
@@ -65,14 +67,146 @@ void read_law(const SceneTable& law, MaterialLawScene& out) {
     }
 }
 
+/// Strains of the tests of a law with shear memory.
+struct MemoryStrains {
+  double isotropic = 0.03;
+  double triaxial = 0.10;
+  double unload = 0.02;
+};
+
+MemoryStrains read_memory(const SceneTable& law, MaterialLawScene& out) {
+  MemoryStrains s;
+  out.memory = law.flag({"memory",
+                         "whether cells remember shear: faces that yield gradually, onsets and strengths that "
+                         "shear moves. Needed for tests that shear; measured in more tests of the fines"},
+                        false);
+  if (!out.memory) {
+    law.refuse({"dense", "isotropic_strain", "triaxial_strain", "unload_strain"}, "goes with memory = true");
+    return s;
+  }
+  law.refuse({"cells"}, "shear memory is fitted without cells");
+  out.dense = law.flag({"dense",
+                        "with `memory`: whether fines of preparation `\"dense\"` are tested too, without which "
+                        "A = 1 and c = 2/3 are taken"},
+                       true);
+  const Range range{0.0, 0.3, true, false};
+  s.isotropic = law.number({"isotropic_strain",
+                            "with `memory`: nominal strain along each axis to which all packings are "
+                            "compressed"},
+                           Unit::none, range, s.isotropic);
+  s.triaxial =
+      law.number({"triaxial_strain", "with `memory`: nominal axial strain of fines under constant lateral stress"},
+                 Unit::none, range, s.triaxial);
+  s.unload = law.number({"unload_strain",
+                         "with `memory`: nominal strain by which fines are unloaded after oedometric "
+                         "compression"},
+                        Unit::none, range, s.unload);
+  return s;
+}
+
+MacroStage stage_of(const MacroSpec& spec, StageKind kind, double strain, std::int64_t steps) {
+  MacroStage stage;
+  stage.record.name = to_string(kind);
+  stage.record.kind = stage.record.way = kind;
+  stage.steps = steps;
+  stage.increments_per_step = spec.increments_per_step;
+  stage.tolerance = spec.tolerance;
+  stage.axis[2].value = strain;
+  if (kind == StageKind::isotropic) stage.axis[0].value = stage.axis[1].value = strain;
+  if (kind == StageKind::shear) stage.axis[0].value = -strain;
+  stage.logarithmic = kind == StageKind::shear;
+  stage.isotropic = kind == StageKind::isotropic;
+  return stage;
+}
+
+/// The same packings as the variant before, in stages.
+MaterialVariant test_of(const MaterialVariant& packing, const std::string& name, std::vector<MacroStage> stages) {
+  MaterialVariant v = packing;
+  v.name = name;
+  v.same_packings = true;
+  v.packings = packing.name;
+  v.setup.spec.test = MacroTest::stages;
+  v.setup.spec.stages = std::move(stages);
+  return v;
+}
+
+/// Fines in tests that shear memory is fitted to: `loose` ones also oedometrically, and until they collapse.
+void add_memory_tests(const MaterialVariant& packing, const MemoryStrains& strains, double shear, bool loose,
+                      MaterialLawScene& out) {
+  auto& variants = out.material.variants;
+  const MacroSpec& spec = packing.setup.spec;
+  const auto add = [&](const std::string& name, std::vector<MacroStage> stages) {
+    variants.push_back(test_of(packing, packing.name + "-" + name, std::move(stages)));
+    out.at.shear_tests.push_back(variants.size() - 1);
+  };
+  const auto triaxial = [&](std::int64_t number) {
+    MacroStage stage = stage_of(spec, StageKind::triaxial, strains.triaxial, spec.steps);
+    for (const std::size_t k : {0U, 1U}) stage.axis[k] = {true, 0.0, number};
+    return stage;
+  };
+  MacroStage preload = stage_of(spec, StageKind::isotropic, spec.preload, spec.preload_steps);
+  preload.record.name = "preload";
+  if (loose) {
+    MacroStage unload =
+        stage_of(spec, StageKind::oedometric, -strains.unload, std::max<std::int64_t>(spec.steps / 2, 1));
+    unload.record.name = "unload";
+    unload.record.kind = StageKind::unload;
+    out.at.oedometer = variants.size();
+    add("oedometric", {stage_of(spec, StageKind::oedometric, spec.strain_end, spec.steps), unload});
+  }
+  add("triaxial", {triaxial(0)});
+  add("preload-triaxial", {preload, triaxial(1)});
+  add("preload-shear", {preload, stage_of(spec, StageKind::shear, shear, spec.steps)});
+  if (!loose) return;
+  out.at.collapse = variants.size();
+  variants.push_back(
+      test_of(packing, packing.name + "-collapse", {stage_of(spec, StageKind::shear, shear, spec.steps)}));
+}
+
+/// All packings of a law with shear memory: compressed isotropically, which hardly moves onsets.
+void make_memory_variants(const MacroSetup& base, const MemoryStrains& strains, double shear,
+                          const std::vector<SizePiece>& fines, const std::vector<SizePiece>& coarse,
+                          MaterialLawScene& out) {
+  auto& variants = out.material.variants;
+  MacroSetup pressed = base;
+  pressed.spec.test = MacroTest::isotropic;
+  pressed.spec.strain_end = strains.isotropic;
+  const auto add = [&](const std::string& name, const Grading& sizes) {
+    variants.push_back(variant_of(name, pressed, sizes));
+    return variants.size() - 1;
+  };
+  const auto add_fines = [&](const std::string& name, Preparation preparation, bool loose) {
+    const std::size_t at = add(name, Grading::classes(fines));
+    MaterialVariant& v = variants[at];
+    v.setup.spec.preparation = preparation;
+    if (preparation != base.spec.preparation) {
+      PreparationProtocol& protocol = v.setup.spec.protocol;
+      protocol = protocol_of(preparation, v.setup.spec.friction);
+      protocol.tolerance = base.spec.protocol.tolerance;
+      protocol.max_passes = base.spec.protocol.max_passes;
+    }
+    MaterialVariant tested = v;
+    tested.setup.spec.strain_end = base.spec.strain_end;
+    add_memory_tests(tested, strains, shear, loose, out);
+    return at;
+  };
+  out.at.fines = out.at.sheared_fines = add_fines("fines", base.spec.preparation, true);
+  if (out.dense) (void)add_fines("fines-dense", Preparation::dense, false);
+  out.at.coarse = add("coarse", Grading::classes(coarse));
+  out.at.first_mixture = variants.size();
+  for (const double share : out.mixtures) add(name_of(share), mixture_of(coarse, fines, share));
+}
+
 /// All packings that are measured, from the grains of the whole material.
-void make_variants(const SceneTable& law, const MacroSetup& base, double shear_strain, MaterialLawScene& out) {
+void make_variants(const SceneTable& law, const MacroSetup& base, double shear_strain, const MemoryStrains& strains,
+                   MaterialLawScene& out) {
   const double cut = out.split * out.sizes.largest();
   const std::vector<SizePiece> fines = pieces_between(out.sizes, 0.0, cut);
   const std::vector<SizePiece> coarse = pieces_between(out.sizes, cut, kInfinity);
   if (fines.empty())
     law.throw_error("split", fmt::format("no grain is fine: the smallest radius is {:.3g} of the largest",
                                          out.sizes.smallest() / out.sizes.largest()));
+  if (out.memory) return make_memory_variants(base, strains, shear_strain, fines, coarse, out);
   MacroSetup still = base;  // what other tests than shear do before is nothing
   still.spec.preload = 0.0;
   auto& variants = out.material.variants;
@@ -92,7 +226,7 @@ void require_grains(const SceneTable& law, const SceneTable& grains, const Mater
     if (v.setup.spec.bodies > kManyGrains) continue;
     const std::string problem = room_problem(v.setup, scene.material.seed, "grains");
     if (!problem.empty()) grains.throw_error("count", fmt::format("packing {}: {} ([grains] count)", v.name, problem));
-    if (&v - scene.material.variants.data() < static_cast<std::ptrdiff_t>(kFirstMixture)) continue;
+    if (&v - scene.material.variants.data() < static_cast<std::ptrdiff_t>(scene.at.first_mixture)) continue;
     const GrainShares shares = shares_of(scene, v, scene.material.seed, 0);
     if (shares.coarse == 0 || shares.fines == 0)
       law.throw_error("mixtures",
@@ -118,7 +252,7 @@ GrainShares shares_of(const MaterialLawScene& scene, const MaterialVariant& vari
 MaterialLawScene read_material_law_scene(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     (void)root.choice(kKindKey, {"material-law"});
-    MaterialLawScene out{{}, Grading::power_law(3.5, 1.0, 2.0), 1.0 / 3.0, {}, 100};
+    MaterialLawScene out{{}, Grading::power_law(3.5, 1.0, 2.0), 1.0 / 3.0, {}};
     out.material.title = root.text(kTitleKey, "");
     out.material.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
     MacroSetup base = material_law_defaults();
@@ -134,9 +268,10 @@ MaterialLawScene read_material_law_scene(const Scene& scene) {
     const double shear =
         law.number({"shear_strain", "logarithmic strain to which the fines are sheared at constant volume"}, Unit::none,
                    Range{0.0, 0.5, true, false}, 0.06);
+    const MemoryStrains strains = read_memory(law, out);
     if (root.has_errors()) return out;
     out.sizes = sizes_of(base.spec);
-    make_variants(law, base, shear, out);
+    make_variants(law, base, shear, strains, out);
     require_material_memory(root.table("grains"), base);
     require_grains(law, root.table("grains"), out);
     return out;
@@ -145,7 +280,7 @@ MaterialLawScene read_material_law_scene(const Scene& scene) {
 
 void check_material_law(const MaterialLawScene& law, Findings& out) {
   check_variants(law.material, out);
-  for (std::size_t k = kFirstMixture; k < law.material.variants.size(); ++k) {
+  for (std::size_t k = law.at.first_mixture; k < law.material.variants.size(); ++k) {
     const MaterialVariant& v = law.material.variants[k];
     const GrainShares shares = shares_of(law, v, law.material.seed, 0);
     out.lines += fmt::format("  {}: {} coarse and {} fine grains\n", v.name, shares.coarse, shares.fines);
@@ -154,7 +289,10 @@ void check_material_law(const MaterialLawScene& law, Findings& out) {
                            std::min(shares.coarse, shares.fines), shares.coarse < shares.fines ? "coarse" : "fine"));
   }
   if (law.material.variants.front().setup.samples < 2) out.warn("one sample: the law will have no errors");
-  out.spend("friction of cells", friction_seconds(law.cells));
+  if (law.memory)
+    out.spend("shear memory", memory_fit_seconds(law));
+  else
+    out.spend("friction of cells", friction_seconds(law.cells));
 }
 
 }  // namespace softgrain

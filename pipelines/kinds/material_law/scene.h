@@ -12,17 +12,28 @@
 
 namespace softgrain {
 
-/// Packings that the scene makes by itself, in the order in which they run; the mixtures come after these.
-enum class LawVariant { fines, sheared_fines, coarse };
-inline constexpr std::size_t kFirstMixture = 3;
-inline constexpr std::size_t place_of(LawVariant v) { return static_cast<std::size_t>(v); }
+/// Where the packings that the scene makes by itself stand among its variants, in the order in which they run. Each
+/// packing of fines is followed by its further tests.
+struct LawPlaces {
+  std::size_t fines = 0;
+  std::size_t sheared_fines = 1;
+  std::size_t coarse = 2;
+  std::size_t first_mixture = 3;  ///< a mixture for each share from here on
+  // With shear memory.
+  std::vector<std::size_t> shear_tests{};  ///< tests of fines that shear memory is fitted to
+  std::size_t oedometer = 0;               ///< one of them: where the lateral stress is taken from
+  std::size_t collapse = 0;  ///< fines sheared at constant volume from the start pressure: what pressure stays
+};
 
 struct MaterialLawScene {
-  MaterialScene material;        ///< variants: LawVariant, then a mixture for each share
+  MaterialScene material;        ///< variants as LawPlaces says
   Grading sizes;                 ///< sizes of the whole material
   double split = 1.0 / 3.0;      ///< fines are below this share of the largest radius
   std::vector<double> mixtures;  ///< shares of fines by solid volume, ascending
   std::int64_t cells = 100;      ///< sites of the cells that friction is fitted with
+  bool memory = false;           ///< whether the law has shear memory
+  bool dense = false;            ///< with it: whether dense fines are measured too
+  LawPlaces at{};
 };
 
 /// What its tables mean where they say nothing.

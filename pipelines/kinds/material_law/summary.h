@@ -56,7 +56,7 @@ void fields(auto&& visit, Of<BandSummary> auto& s) {
 /// A test of the fines and the cell law with the fitted friction.
 struct FrictionCurve {
   std::string variant;
-  std::string measure;           ///< "lateral/axial", "q/p"
+  std::string measure;           ///< "lateral/axial", "q/p", "p/E", "(sigma_z - sigma_x)/p"
   std::vector<double> strain;    ///< strain of z since the stage began
   std::vector<double> measured;  ///< mean of the samples
   std::vector<double> error;     ///< standard error of it
@@ -83,7 +83,8 @@ struct CellLawSummary {
   double excess_deviation = 0.0;  ///< root mean square of W/V_c about its form
   double excess_widening = 1.0;   ///< factor on the intervals of w_inf and xi, as the form misses the mixtures
   std::vector<FrictionCurve> curves;
-  double friction_deviation = 0.0;  ///< root mean square of the ratios about those of the law
+  double friction_deviation = 0.0;        ///< root mean square of the ratios about those of the law
+  std::vector<std::string> undetermined;  ///< numbers of the memory that lean on each other
 };
 
 void fields(auto&& visit, Of<CellLawSummary> auto& s) {
@@ -98,6 +99,7 @@ void fields(auto&& visit, Of<CellLawSummary> auto& s) {
   visit("excess_widening", s.excess_widening);
   visit("curves", s.curves);
   visit("friction_deviation", s.friction_deviation);
+  visit("undetermined", s.undetermined, kLeftOut);
 }
 
 struct MaterialLawSummary {

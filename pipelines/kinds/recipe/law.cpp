@@ -20,7 +20,7 @@ MaterialLaw fit_coarsest(const RecipeScene& scene, const std::vector<VariantResu
   MaterialLawScene law{
       scene.material,
       pair_of(scene.levels[0], scene.levels[1], fines_over_coarse(scene, 0) / (1.0 + fines_over_coarse(scene, 0))),
-      cut_of_pair(scene.levels[0], scene.levels[1]), scene.mixtures, scene.cells};
+      cut_of_pair(scene.levels[0], scene.levels[1]), scene.mixtures, scene.cells, false, false, {}};
   std::vector<VariantResult> some{results[scene.slice[1]], results[kSheared], results[scene.slice[0]]};
   for (const std::size_t v : scene.mixed[0]) some.push_back(results[v]);
   return fit_material_law(law, some, states, seed);

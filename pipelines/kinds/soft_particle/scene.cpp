@@ -265,6 +265,8 @@ void refuse_idle_protocols(const SceneTable& measure, const std::vector<Relaxati
   if (rotates) return;
   measure.refuse({"turn_speed", "rotation_step_deg", "shell_turns", "rotation"},
                  "goes with angles_deg: nothing is rotated in this scene");
+  if (measure.has("damped"))
+    measure.table("damped").refuse({"tolerance_rotated"}, "goes with angles_deg: nothing is rotated in this scene");
 }
 
 void require_drawable(const SceneTable& t, const SoftParticleSpec& spec) {
