@@ -2,6 +2,7 @@
 // Then what runs leave behind.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -97,11 +98,14 @@ CurveLook look_of(const FrictionCurve& c) {
   if (c.measure == "lateral/axial")
     return {"cell-law-lateral", "Fines in oedometric compression", "lateral over axial stress", 0.0};
   const bool pressure = c.measure == "p/E";
+  const auto [least, most] = std::minmax_element(c.measured.begin(), c.measured.end());
+  constexpr double kDecade = 10.0;
+  const bool far = pressure && !c.measured.empty() && *least > 0.0 && *most > kDecade * *least;
   return {"cell-law-" + c.variant + (pressure ? "-pressure" : "-ratio"),
-          c.variant,
+          c.variant + (pressure ? ", pressure" : ", stress ratio"),
           c.measure,
           std::nullopt,
-          pressure ? Scale::logarithmic : Scale::linear,
+          far ? Scale::logarithmic : Scale::linear,
           "axial strain [%]"};
 }
 
