@@ -3,6 +3,7 @@
 // at what is read, seen from outside.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
@@ -42,6 +43,12 @@ const std::map<std::string, std::string> kNotInResults{
     {"law-table calibrate.min_packings", "a bound: a value above the number of packings is refused"},
     {"comparison-packing packing.shell_radius", "sizes are those of the file, and what is inside scales with them"},
     {"particles guards.escape.high", "a bound: nothing comes near it here"},
+    {"particles-drawn guards.escape.high", "a bound: nothing comes near it here"},
+    {"particles-drawn guards.escape.low", "a bound: nothing comes near it here"},
+    {"particles-drawn contact.0.beyond", "a bound: the contact stays within the law"},
+    {"particles-drawn output.every", "longer than the run"},
+    {"pipeline-crowd calibrate.multi_contact.min_packings", "a bound: there are more"},
+    {"pipeline-crowd calibrate.multi_contact.largest_error", "a bound: errors are smaller"},
     {"powder assembly.settle_kinetic", "a bound: here the forces are the last to come to rest"},
     {"powder-variants assembly.settle_kinetic", "a bound: here the forces are the last to come to rest"},
     {"powder-variants variant.0.assembly.settle_kinetic", "a bound: here the forces are the last to come to rest"},
@@ -57,12 +64,22 @@ const std::map<std::string, std::string> kNotInResults{
     {"particles-drawn contact.0.pair", "its order does not matter, and without one of the two a contact has no law"},
     {"particles-drawn particle.0.inside", "there is no sphere that they could be inside: \"none\" is all it takes"},
     {"particles-drawn particle.1.inside", "there is no sphere that they could be inside: \"none\" is all it takes"},
+    {"particles-drawn particle.2.inside", "there is no sphere that they could be inside: \"none\" is all it takes"},
 };
 
 /// Bounds that only a run which meets them shows, by the end of the path; EveryKey sees that they are taken.
 const std::set<std::string> kBounds{
     "max_passes", "preparation_passes", "max_iterations", "max_increments", "max_halvings",     "growth_passes",
     "time_max",   "increment_passes",   "sub_increments", "refresh",        "tolerance_between"};
+
+/// Tables of which nothing comes in a scene, by the beginning of their keys.
+const std::map<std::string, std::string> kNotReached{
+    {"pipeline-crowd macro.", "its law is not usable, so no macro run follows; the scene pipeline has one"}};
+
+bool is_reached(const std::string& of) {
+  return std::none_of(kNotReached.begin(), kNotReached.end(),
+                      [&](const auto& one) { return of.starts_with(one.first); });
+}
 
 bool is_bound(const std::string& path) { return kBounds.contains(path.substr(path.rfind('.') + 1)); }
 
@@ -103,7 +120,8 @@ TEST_P(SlowEveryKey, ChangesResultsOrIsRefused) {
   std::vector<std::pair<std::string, AskedKey>> all;
   for (const auto& [path, key] : keys)
     if (!kNotInResults.contains(path) && !kNotInResults.contains(GetParam().name + " " + path) && !is_bound(path) &&
-        stands_for_all(path, keys) && !given_in_a_part(path, keys) && !other_values(key, texts).empty())
+        is_reached(GetParam().name + " " + path) && stands_for_all(path, keys) && !given_in_a_part(path, keys) &&
+        !other_values(key, texts).empty())
       all.emplace_back(path, key);
   RunTally tally;
   std::mutex guard;

@@ -224,7 +224,12 @@ position = [0.03, 0.03, 0.03]
 [[particle]]
 material = "stone"
 radius = 0.02
-position = [0.07, 0.031, 0.03]
+position = [0.064, 0.031, 0.03]
+velocity = [0.0, 0.5, 0.0]
+[[particle]]
+material = "stone"
+radius = 0.02
+position = [0.1025, 0.031, 0.03]
 [particles]
 material = "stone"
 count = 10
@@ -241,7 +246,7 @@ volume_share = 0.6
 size = [0.2, 0.2, 0.2]
 periodic = [true, true, true]
 [time]
-end = 0.01
+end = 0.02
 )";
 }
 

@@ -31,6 +31,7 @@ const std::map<std::string, std::string> kElsewhere{
     {"particles-drawn particle.0.inside", "there is no sphere that they could be inside: \"none\" is all it takes"},
     {"particles-drawn particle.1.inside", "there is no sphere that they could be inside: \"none\" is all it takes"},
     {"particles-drawn contact.0.pair", "its order does not matter, and without one of the two a contact has no law"},
+    {"particles-drawn particle.2.inside", "there is no sphere that they could be inside: \"none\" is all it takes"},
 };
 
 struct KeyTally {
