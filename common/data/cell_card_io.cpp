@@ -32,7 +32,7 @@ const std::array<CardEntry<CellCard>, 9>& cell_numbers() {
       {{"K", &C::modulus, Range::positive(), "p/E = K x^n"},
        {"n", &C::exponent, Range{1.0, kLargestExponent, true, false}, "its exponent"},
        {"e_J", &C::void_ratio, Range::positive(), "void ratio of the fines alone where they jam"},
-       {"e_c", &C::excess_alone, Range::positive(), "the same of the coarse grains alone"},
+       {"e_c", &C::excess_alone, Range::positive(), "void ratio of the coarse grains alone where they jam"},
        {"w_inf", &C::excess_many, Range::not_negative(), "excess pores beside coarse grains among many fines"},
        {"xi", &C::excess_decay, Range::positive(), "ratio of fines over which they fall to that"},
        {"mu_f", &C::friction, Range::not_negative(), "friction of faces"},
