@@ -12,6 +12,12 @@ double nominal_step(double end, std::int64_t k, std::int64_t total) {
   return 1.0 - (1.0 - at(k)) / (1.0 - at(k - 1));
 }
 
+double target(const AxisDrive& drive, int axis, const std::vector<Vec3>& starts) {
+  return drive.as_at < 0 ? drive.value : starts[static_cast<std::size_t>(drive.as_at)][axis];
+}
+
+}  // namespace
+
 MacroStage short_stage(const MacroSpec& spec, StageKind kind, double strain, std::int64_t steps) {
   MacroStage stage;
   stage.record = {to_string(kind), kind, kind, spec.modulus_stress};
@@ -24,12 +30,6 @@ MacroStage short_stage(const MacroSpec& spec, StageKind kind, double strain, std
   stage.logarithmic = kind == StageKind::shear;
   return stage;
 }
-
-double target(const AxisDrive& drive, int axis, const std::vector<Vec3>& starts) {
-  return drive.as_at < 0 ? drive.value : starts[static_cast<std::size_t>(drive.as_at)][axis];
-}
-
-}  // namespace
 
 std::vector<MacroStage> stages_of(const MacroSpec& spec) {
   switch (spec.test) {

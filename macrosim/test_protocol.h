@@ -7,6 +7,9 @@
 
 namespace softgrain {
 
+/// A stage that strains by the tolerance and the increments of the spec; its name is that of its kind.
+MacroStage short_stage(const MacroSpec& spec, StageKind kind, double strain, std::int64_t steps);
+
 /// The stages of a test: those of the scene, or of a short form: one; of "shear" with a preload two, the isotropic
 /// strain first.
 std::vector<MacroStage> stages_of(const MacroSpec& spec);

@@ -191,7 +191,10 @@ CellCard read_cell_card(const Scene& file) {
   const SceneTable cell = root.table("cell");
   card.form = cell.choice<StateForm>("form");
   for (const auto& n : cell_numbers()) card.*n.estimate = read_estimate(cell.table(n.key), n.range);
-  if (root.has("memory")) card.memory = read_memory(root.table("memory"));
+  if (root.has("memory")) {
+    card.memory = read_memory(root.table("memory"));
+    if (card.form != StateForm::porosity) cell.throw_error("form", "[memory] goes with \"porosity\"");
+  }
   read_range(root.table("range"), card);
   read_measured(root.table("measured"), card);
   root.finish();

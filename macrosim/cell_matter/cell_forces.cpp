@@ -157,6 +157,8 @@ void require_valid(const CellLaw& law, const std::vector<CellContent>& content, 
           content[i].solid, content[i].pores));
   if (!law.memory) return;
   require_valid(*law.memory);
+  if (!std::holds_alternative<PorosityForm>(law.equation))
+    throw InputError("cells: shear memory goes with the porosity form of the equation of state");
   if (!(f.coefficient > 0.0 && f.stiffness > 0.0))
     throw InputError("cells: shear memory needs friction and stiffness of faces above 0");
   for (std::size_t i = 0; i < content.size(); ++i)

@@ -102,11 +102,10 @@ void add_part(const RelaxationResult& part, RelaxationResult& all) {
   all.passes = passes;
 }
 
-/// Parts of a strain of which none is larger than `largest` along any axis.
-int parts_of(const Vec3& factor, double largest) {
-  double strain = 0.0;
-  for (int k = 0; k < 3; ++k) strain = std::max(strain, std::abs(std::log(factor[k])));
-  return std::clamp(static_cast<int>(std::ceil(strain / largest * (1.0 - 1e-9))), 1, kMostParts);
+double largest_strain(const Vec3& factor) {
+  double out = 0.0;
+  for (int k = 0; k < 3; ++k) out = std::max(out, std::abs(std::log(factor[k])));
+  return out;
 }
 
 /// Stresses that are asked for when a share `done` of a strain is applied.
@@ -179,7 +178,7 @@ CellPoint CellPacking::step(const Vec3& factor, const BoxControl* control, const
   tessellations_ = faces_ = 0;
   RelaxationResult end;
   const Matrix<3> stress_before = kept_stress_;
-  int parts = law_.memory ? parts_of(factor, kMemoryStrain) : 1;
+  int parts = law_.memory ? std::min(memory_parts(largest_strain(factor)), kMostParts) : 1;
   double done = 0.0;
   for (int left = parts; left > 0;) {
     const auto sites = sites_;

@@ -86,7 +86,6 @@ class CellPacking {
 
  private:
   class Axes;
-  static constexpr double kMemoryStrain = 2.5e-3;
   static constexpr Vec3 kAsItIs{{1.0, 1.0, 1.0}};
 
   void keep();

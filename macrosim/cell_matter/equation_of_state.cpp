@@ -67,20 +67,13 @@ CellResponse PoreGuard::at(const CellContent& c, double volume, double modulus) 
 
 namespace {
 
-/// Volume of a cell in this state.
-double volume_at(const EquationOfState& equation, const CellContent& c, double state) {
-  if (std::holds_alternative<PoreForm>(equation)) return c.solid + (1.0 - state) * c.pores;
+CellResponse respond_with_tail(const PorosityForm& form, const CellContent& c, double volume, double tail) {
   const double onset = c.solid / (c.solid + c.pores);
-  return c.solid / (onset + state * (1.0 - onset));
-}
-
-CellResponse respond_with_tail(const EquationOfState& equation, const CellContent& c, double volume, double tail) {
-  const auto at = [&](double v) { return std::visit([&](const auto& form) { return form.at(c, v); }, equation); };
-  const double end = volume_at(equation, c, tail);
-  const CellResponse last = at(end);
+  const double end = c.solid / (onset + tail * (1.0 - onset));
+  const CellResponse last = form.at(c, end);
   const double energy = 2.0 * last.pressure * last.pressure / last.stiffness;
   if (volume < end) {
-    CellResponse out = at(volume);
+    CellResponse out = form.at(c, volume);
     out.energy += energy - last.energy;
     return out;
   }
@@ -98,8 +91,9 @@ CellResponse respond(const EquationOfState& equation, const PoreGuard& guard, co
     constexpr double kNone = std::numeric_limits<double>::infinity();
     return {kNone, kNone, kNone, -kNone};
   }
-  CellResponse out = tail > 0.0 ? respond_with_tail(equation, c, volume, tail)
-                                : std::visit([&](const auto& form) { return form.at(c, volume); }, equation);
+  const auto* porosity = tail > 0.0 ? std::get_if<PorosityForm>(&equation) : nullptr;
+  CellResponse out = porosity != nullptr ? respond_with_tail(*porosity, c, volume, tail)
+                                         : std::visit([&](const auto& form) { return form.at(c, volume); }, equation);
   const CellResponse more = guard.at(c, volume, modulus(equation));
   out.pressure += more.pressure;
   out.stiffness += more.stiffness;

@@ -68,9 +68,10 @@ struct PoreGuard {
   [[nodiscard]] CellResponse at(const CellContent& c, double volume, double modulus) const;
 };
 
-/// Equation and guard together. `volume` <= c.solid: energy and pressure are infinite. Beyond the volume V_r of the
-/// state `tail` > 0 the pressure does not end at the onset but falls as p_r/(1 + z/2)^2, z = (V - V_r) S_r/p_r with the
-/// pressure p_r and the stiffness S_r there: a cell that others make room for keeps some stiffness and its place.
+/// Equation and guard together. `volume` <= c.solid: energy and pressure are infinite. In the porosity form, beyond the
+/// volume V_r of the state `tail` > 0 the pressure does not end at the onset but falls as p_r/(1 + z/2)^2, z = (V -
+/// V_r) S_r/p_r with the pressure p_r and the stiffness S_r there: a cell that others make room for keeps some
+/// stiffness and its place.
 CellResponse respond(const EquationOfState& equation, const PoreGuard& guard, const CellContent& c, double volume,
                      double tail = 0.0);
 

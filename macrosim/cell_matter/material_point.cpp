@@ -13,7 +13,6 @@ namespace softgrain {
 
 namespace {
 
-constexpr double kLargestPart = 2.5e-3;
 constexpr std::size_t kAngles = 4;
 
 struct Direction {
@@ -59,14 +58,14 @@ MaterialPoint::MaterialPoint(const CellLaw& law, double solid_fraction, double o
 
 void MaterialPoint::strain(const Vec3& logarithmic) {
   const double largest = std::max({std::abs(logarithmic[0]), std::abs(logarithmic[1]), std::abs(logarithmic[2])});
-  const int parts = std::max(1, static_cast<int>(std::ceil(largest / kLargestPart * (1.0 - 1e-9))));
+  const int parts = memory_parts(largest);
   for (int k = 0; k < parts; ++k) part(logarithmic * (1.0 / parts));
 }
 
 void MaterialPoint::part(const Vec3& strain) {
   const ShearMemory& memory = *law_.memory;
   const double mu_f = law_.friction.coefficient;
-  // The matter of a volume of 1: all that the new volume holds.
+  // The content of a volume of 1 after the change of volume.
   const double denser = std::exp(strain[0] + strain[1] + strain[2]);
   const double pores = next_pores_ / content_.solid;
   const double critical = content_.critical / content_.solid;
@@ -108,7 +107,7 @@ Vec3 MaterialPoint::stress() const {
 }
 
 bool MaterialPoint::strain_at(double axial, double lateral) {
-  const int parts = std::max(1, static_cast<int>(std::ceil(std::abs(axial) / kLargestPart * (1.0 - 1e-9))));
+  const int parts = memory_parts(std::abs(axial));
   bool reached = true;
   for (int k = 0; k < parts; ++k) {
     const MaterialPoint before = *this;

@@ -1,5 +1,5 @@
-// One point of the matter of cells, without cells: all alike, faces of all directions, motion that is affine. The mean
-// field of a CellPacking of a law with ShearMemory, a thousand times cheaper.
+// A material point of the cell law with ShearMemory: cells all alike, faces of all directions, affine motion. This is
+// the mean field of a CellPacking.
 #pragma once
 
 #include <vector>
@@ -18,7 +18,7 @@ class MaterialPoint {
   /// for fractions outside (0, 1).
   MaterialPoint(const CellLaw& law, double solid_fraction, double onset, double critical);
 
-  /// Compresses by these logarithmic strains; parts of at most 0.0025 (see CellPacking).
+  /// Compresses by these logarithmic strains; in memory_parts().
   void strain(const Vec3& logarithmic);
 
   /// Compresses along z by a logarithmic strain while x and y, which strain alike, keep the stress `lateral` [Pa].

@@ -40,6 +40,11 @@ Vec3 in_plane(const Vec3& v, const Vec3& normal) { return v - normal * dot(v, no
 
 }  // namespace
 
+int memory_parts(double largest_strain) {
+  constexpr double kRounding = 1e-9;
+  return std::max(1, static_cast<int>(std::ceil(largest_strain / kMemoryStrain * (1.0 - kRounding))));
+}
+
 const Backbone& backbone() {
   static const Backbone made = make_backbone();
   return made;

@@ -1,4 +1,4 @@
-// What shear leaves behind in the matter of cells: where a cell jams moves with slip, the strength of a face follows,
+// What shear leaves behind in cells: where a cell jams moves with slip, the strength of a face follows,
 // and each face yields gradually.
 #pragma once
 
@@ -13,8 +13,9 @@ namespace softgrain {
 /// Cells jam at a solid fraction phi_J that shear moves. Compaction of a step is what friction does not use of the work
 /// (Taylor's work equation; Rowe 1962, Proc. R. Soc. A 269, 500 has another form of it):
 ///   d phi_J/phi_J = A (M dgamma_p - dW_p/p),  M = 1.5 mu_f,
-/// gamma_p and W_p the slip and the frictional work of the faces of a cell, p the pressure at the face. Faces are the stronger the denser their
-/// cells are than their critical state (the state parameter of Been and Jefferies 1985, Geotechnique 35, 99):
+/// gamma_p and W_p the slip and the frictional work of the faces of a cell, p the pressure at the face. Faces are the
+/// stronger the denser their cells are than their critical state (the state parameter of Been and Jefferies 1985,
+/// Geotechnique 35, 99):
 ///   mu = mu_f [1 + c tanh(-m psi/c)],  psi = [phi_c + lambda (phi - phi_J) - phi_J]/(1 - phi_c).
 /// phi_c belongs to the grading, whatever the preparation: pores r_c (e_J v + w) of each cell.
 struct ShearMemory {
@@ -34,6 +35,11 @@ struct ShearMemory {
   [[nodiscard]] double pores_after(double mu_f, const CellContent& content, double volume, double slip,
                                    double used) const;
 };
+
+/// A strain is applied in equal parts, none larger than this along any axis (logarithmic): what the slip of a part
+/// leaves behind counts from the next one on.
+inline constexpr double kMemoryStrain = 2.5e-3;
+int memory_parts(double largest_strain);
 
 /// A face has six springs in parallel, each with a limit: Masing's rules for reversals, and the hyperbolic backbone
 /// tau/(mu p) = g/sqrt(1 + g^2), g = k u/(mu p A), in pieces between g = 0.1, 0.3, 0.7, 1.5, 3.5 and 9. Shares of the

@@ -136,29 +136,27 @@ TEST(ShearMemory, StrengthFollowsTheDistanceFromTheCriticalState) {
 /// Pressure, stiffness, energy and hardening belong together in every part of the curve, and go on through the ends of
 /// its parts.
 TEST(ShearMemory, ACellThatIsMadeRoomForKeepsSomePressure) {
-  for (const EquationOfState& equation :
-       {EquationOfState{PorosityForm{0.034, 1.5}}, EquationOfState{PoreForm{0.03, 2.0}}}) {
-    const CellContent c{0.6, 0.4, 0.4};
-    constexpr double kTail = 0.01;
-    const PoreGuard guard{0.9};
-    const auto at = [&](double volume) { return respond(equation, guard, c, volume, kTail); };
-    for (const double v : {0.93, 0.97, 0.98, 0.99, 0.994, 0.9975, 1.0, 1.01, 1.1}) {
-      const double h = 1e-6;
-      const CellResponse up = at(v + h);
-      const CellResponse down = at(v - h);
-      const CellResponse r = at(v);
-      EXPECT_GT(r.pressure, 0.0) << v;
-      EXPECT_GT(r.stiffness, 0.0) << v;
-      EXPECT_NEAR((down.energy - up.energy) / (2.0 * h) / r.pressure, 1.0, 1e-4) << v;
-      EXPECT_NEAR((down.pressure - up.pressure) / (2.0 * h) / r.stiffness, 1.0, 1e-4) << v;
-      EXPECT_NEAR((up.stiffness - down.stiffness) / (2.0 * h) / r.hardening, 1.0, 1e-3) << v;
-    }
-    EXPECT_EQ(respond(equation, guard, c, 1.01).pressure, 0.0) << "without it";
-    EXPECT_NEAR(at(0.95).pressure, respond(equation, guard, c, 0.95).pressure, 1e-15) << "above it nothing changes";
+  const EquationOfState equation = PorosityForm{0.034, 1.5};
+  const CellContent c{0.6, 0.4, 0.4};
+  constexpr double kTail = 0.01;
+  const PoreGuard guard{0.9};
+  const auto at = [&](double volume) { return respond(equation, guard, c, volume, kTail); };
+  for (const double v : {0.93, 0.97, 0.98, 0.99, 0.9975, 1.0, 1.01, 1.1}) {
+    const double h = 1e-6;
+    const CellResponse up = at(v + h);
+    const CellResponse down = at(v - h);
+    const CellResponse r = at(v);
+    EXPECT_GT(r.pressure, 0.0) << v;
+    EXPECT_GT(r.stiffness, 0.0) << v;
+    EXPECT_NEAR((down.energy - up.energy) / (2.0 * h) / r.pressure, 1.0, 1e-4) << v;
+    EXPECT_NEAR((down.pressure - up.pressure) / (2.0 * h) / r.stiffness, 1.0, 1e-4) << v;
+    EXPECT_NEAR((up.stiffness - down.stiffness) / (2.0 * h) / r.hardening, 1.0, 1e-3) << v;
   }
+  EXPECT_EQ(respond(equation, guard, c, 1.01).pressure, 0.0) << "without it";
+  EXPECT_NEAR(at(0.95).pressure, respond(equation, guard, c, 0.95).pressure, 1e-15) << "above it nothing changes";
 }
 
-/// Cells of different onsets that lose their pressure one after another come to rest all the same.
+/// Cells of different onsets that lose their pressure one after another reach equilibrium all the same.
 TEST(ShearMemoryCells, CollapseToAPressureThatStays) {
   CellSample s = cell_sample(40, 0.42, true, 4);
   s.law.equation = PorosityForm{0.0446, 1.666};
@@ -441,6 +439,8 @@ TEST(ShearMemoryCells, RefuseNumbersThatAreNoLaw) {
   refused({1.0, 0.95, 20.0, 0.6, 0.0, 1.0});
   refused({2.7, 0.95, 20.0, 0.6, 0.0, 0.0});  // slip of the strongest faces would give energy back
   refused({1.0, 0.95, 20.0, 0.6, 0.0, 0.0}, 0.0);
+  const CellLaw pores{PoreForm{0.03, 2.0}, {}, {kMu, 3.0}, sample_memory()};
+  EXPECT_THROW(MaterialPoint(pores, 0.62, 0.6, 0.62), InputError);
 }
 
 }  // namespace

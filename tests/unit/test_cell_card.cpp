@@ -47,6 +47,7 @@ CellCard sample_card() {
 
 CellCard card_with_memory() {
   CellCard c = sample_card();
+  c.form = StateForm::porosity;
   c.memory = CellMemory{{1.18, 0.1 / 3.0, 1.1, 1.3}, {0.9496, 0.01, 0.93, 0.97},     {35.0, 5.0, 20.0, 50.0},
                         {0.666, kInf, 0.0, 1.0},     {-0.24, 0.05 / 7.0, -0.4, 0.0}, {1.6e-3, kInf, 0.0, 1.0}};
   return c;

@@ -140,6 +140,7 @@ TEST(MaterialLawScene, RefusesWhatGivesNoLaw) {
   EXPECT_NE(refusal("[law]\nmixtures = [0.2, 0.5, 0.5]\n").find("must ascend"), std::string::npos);
   EXPECT_NE(refusal("[law]\ncells = 20\n").find("from 40"), std::string::npos);
   EXPECT_NE(refusal("[law]\nmemory = true\ncells = 80\n").find("fitted without cells"), std::string::npos);
+  EXPECT_NE(refusal("[law]\nmemory = true\nform = \"pores\"\n").find("goes with \"porosity\""), std::string::npos);
   for (const char* key : {"dense = true", "isotropic_strain = 0.02", "triaxial_strain = 0.1", "unload_strain = 0.01"})
     EXPECT_NE(refusal(std::string("[law]\n") + key + "\n").find("goes with memory = true"), std::string::npos) << key;
   EXPECT_NE(refusal("", "count = 30\nratio = 6").find("too few for a periodic cell"), std::string::npos)

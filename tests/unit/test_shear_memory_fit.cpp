@@ -9,7 +9,7 @@
 namespace softgrain {
 namespace {
 
-const FinesBase kFines{StateForm::porosity, 0.04, 1.6, 0.7};
+const FinesBase kFines{0.04, 1.6, 0.7};
 
 ShearNumbers true_numbers() {
   ShearNumbers n{0.45, 2.5, {}};

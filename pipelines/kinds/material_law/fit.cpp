@@ -279,8 +279,7 @@ class MaterialLawFit {
       }
     for (const MacroCurve& c : result(scene_.at.collapse).curves)
       left.push_back((c.stress_x.back() + c.stress_y.back() + c.stress_axial.back()) / 3.0 / c.start.youngs_modulus);
-    const FinesBase fines{out_.card.form, out_.card.modulus.value, out_.card.exponent.value,
-                          out_.card.void_ratio.value};
+    const FinesBase fines{out_.card.modulus.value, out_.card.exponent.value, out_.card.void_ratio.value};
     const ShearMemoryFit fit = fit_shear_memory(fines, paths, left, scene_.dense);
     if (!fit.usable) {
       out_.problems.push_back("shear memory: " + fit.message);

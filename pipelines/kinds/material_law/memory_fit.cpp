@@ -178,10 +178,7 @@ ShearPath ShearPath::of(const MacroCurve& curve) {
 ShearPrediction predict(const FinesBase& fines, const ShearNumbers& numbers, const ShearPath& path) {
   ShearPrediction out;
   CellLaw law;
-  if (fines.form == StateForm::porosity)
-    law.equation = PorosityForm{fines.modulus, fines.exponent};
-  else
-    law.equation = PoreForm{fines.modulus, fines.exponent};
+  law.equation = PorosityForm{fines.modulus, fines.exponent};
   const CellMemory& m = numbers.memory;
   law.friction = {numbers.friction, numbers.stiffness};
   law.memory = ShearMemory{m.dilatancy.value,      m.critical_pores.value, m.strength_slope.value,
@@ -190,8 +187,7 @@ ShearPrediction predict(const FinesBase& fines, const ShearNumbers& numbers, con
   const double phi = path.fraction.front();
   if (!(pressure > 0.0)) return out;
   const double state = state_at(law.equation, pressure);
-  const double onset = fines.form == StateForm::porosity ? (phi - state) / (1.0 - state)
-                                                         : 1.0 / (1.0 + (1.0 / phi - 1.0) / (1.0 - state));
+  const double onset = (phi - state) / (1.0 - state);
   const double critical = 1.0 / (1.0 + m.critical_pores.value * fines.void_ratio);
   if (!(state < 1.0) || !(onset > 0.0)) return out;
   try {

@@ -30,9 +30,8 @@ struct ShearNumbers {
   CellMemory memory;       ///< values of the estimates alone
 };
 
-/// What is known before: the equation of state and the void ratio of the fines where they jam.
+/// What is known before: the equation of state (porosity form) and the void ratio of the fines where they jam.
 struct FinesBase {
-  StateForm form = StateForm::porosity;
   double modulus = 0.0;
   double exponent = 0.0;
   double void_ratio = 0.0;
@@ -56,10 +55,10 @@ struct ShearMemoryFit {
   std::vector<std::string> undetermined;  ///< pairs of numbers that lean on each other, in words
 };
 
-/// Least squares over all paths for mu_f, chi, r_c, m and, with `dense`, A and c (else 1 and 2/3; lambda = 0): ln p and the
-/// deviator over p, in units of 8 and 5 %; under constant lateral stress the solid fraction in units of 0.008 in place
-/// of p. Every path weighs the same. Errors are Student's over fits to single samples. x_r: from the mean pressure at
-/// the ends of the collapse tests. Not usable, with the reason: no convergence, a number at its bound.
+/// Least squares over all paths for mu_f, chi, r_c, m and, with `dense`, A and c (else 1 and 2/3; lambda = 0): ln p and
+/// the deviator over p, in units of 8 and 5 %; under constant lateral stress the solid fraction in units of 0.008 in
+/// place of p. Every path weighs the same. Errors are Student's over fits to single samples. x_r: from the mean
+/// pressure at the ends of the collapse tests. Not usable, with the reason: no convergence, a number at its bound.
 ShearMemoryFit fit_shear_memory(const FinesBase& fines, const std::vector<ShearPath>& paths,
                                 const std::vector<double>& left_pressures, bool dense);
 

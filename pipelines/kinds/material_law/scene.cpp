@@ -9,6 +9,7 @@
 #include "common/core/particles.h"
 #include "common/packing/grading.h"
 #include "macrosim/preparation.h"
+#include "macrosim/test_protocol.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/material_law/fit.h"
 #include "pipelines/kinds/material_law/memory_fit.h"
@@ -85,6 +86,7 @@ MemoryStrains read_memory(const SceneTable& law, MaterialLawScene& out) {
     return s;
   }
   law.refuse({"cells"}, "shear memory is fitted without cells");
+  if (out.material.equation.form != StateForm::porosity) law.add_error("form", "memory = true goes with \"porosity\"");
   out.dense = law.flag({"dense",
                         "with `memory`: whether fines of preparation `\"dense\"` are tested too, without which "
                         "A = 1 and c = 2/3 are taken"},
@@ -102,21 +104,6 @@ MemoryStrains read_memory(const SceneTable& law, MaterialLawScene& out) {
                          "compression"},
                         Unit::none, range, s.unload);
   return s;
-}
-
-MacroStage stage_of(const MacroSpec& spec, StageKind kind, double strain, std::int64_t steps) {
-  MacroStage stage;
-  stage.record.name = to_string(kind);
-  stage.record.kind = stage.record.way = kind;
-  stage.steps = steps;
-  stage.increments_per_step = spec.increments_per_step;
-  stage.tolerance = spec.tolerance;
-  stage.axis[2].value = strain;
-  if (kind == StageKind::isotropic) stage.axis[0].value = stage.axis[1].value = strain;
-  if (kind == StageKind::shear) stage.axis[0].value = -strain;
-  stage.logarithmic = kind == StageKind::shear;
-  stage.isotropic = kind == StageKind::isotropic;
-  return stage;
 }
 
 /// The same packings as the variant before, in stages.
@@ -140,27 +127,27 @@ void add_memory_tests(const MaterialVariant& packing, const MemoryStrains& strai
     out.at.shear_tests.push_back(variants.size() - 1);
   };
   const auto triaxial = [&](std::int64_t number) {
-    MacroStage stage = stage_of(spec, StageKind::triaxial, strains.triaxial, spec.steps);
+    MacroStage stage = short_stage(spec, StageKind::triaxial, strains.triaxial, spec.steps);
     for (const std::size_t k : {0U, 1U}) stage.axis[k] = {true, 0.0, number};
     return stage;
   };
-  MacroStage preload = stage_of(spec, StageKind::isotropic, spec.preload, spec.preload_steps);
+  MacroStage preload = short_stage(spec, StageKind::isotropic, spec.preload, spec.preload_steps);
   preload.record.name = "preload";
   if (loose) {
     MacroStage unload =
-        stage_of(spec, StageKind::oedometric, -strains.unload, std::max<std::int64_t>(spec.steps / 2, 1));
+        short_stage(spec, StageKind::oedometric, -strains.unload, std::max<std::int64_t>(spec.steps / 2, 1));
     unload.record.name = "unload";
     unload.record.kind = StageKind::unload;
     out.at.oedometer = variants.size();
-    add("oedometric", {stage_of(spec, StageKind::oedometric, spec.strain_end, spec.steps), unload});
+    add("oedometric", {short_stage(spec, StageKind::oedometric, spec.strain_end, spec.steps), unload});
   }
   add("triaxial", {triaxial(0)});
   add("preload-triaxial", {preload, triaxial(1)});
-  add("preload-shear", {preload, stage_of(spec, StageKind::shear, shear, spec.steps)});
+  add("preload-shear", {preload, short_stage(spec, StageKind::shear, shear, spec.steps)});
   if (!loose) return;
   out.at.collapse = variants.size();
   variants.push_back(
-      test_of(packing, packing.name + "-collapse", {stage_of(spec, StageKind::shear, shear, spec.steps)}));
+      test_of(packing, packing.name + "-collapse", {short_stage(spec, StageKind::shear, shear, spec.steps)}));
 }
 
 /// All packings of a law with shear memory: compressed isotropically, which hardly moves onsets.
