@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <tuple>
 
 #include "calibrate/bootstrap.h"
@@ -43,6 +44,9 @@ Estimate estimate(const LeastSquaresFit& fit, std::size_t j, const std::vector<d
   double sd = fit.standard_deviations.empty() ? HUGE_VAL : fit.standard_deviations[j];
   const bool positive = kind == NumberKind::positive;
   auto [low, high] = interval95(replicates);
+  if (!std::isfinite(sd) && !(scatter_of(replicates) > 0.0))  // refits that all stay where they start tell nothing
+    return kind == NumberKind::logarithm ? Estimate{std::exp(value), kInfinity, 0.0, kInfinity}
+                                         : Estimate{value, kInfinity, positive ? 0.0 : -kInfinity, kInfinity};
   if (replicates.size() < kEnoughReplicates) {
     std::tie(low, high) = student_interval(value, sd, static_cast<double>(packings) - 1.0);
     if (positive) low = std::max(0.0, low);
@@ -52,6 +56,14 @@ Estimate estimate(const LeastSquaresFit& fit, std::size_t j, const std::vector<d
   }
   if (kind != NumberKind::logarithm) return {value, sd, low, high};
   return {std::exp(value), std::exp(value) * sd, std::exp(low), std::exp(high)};
+}
+
+/// Packings that something was measured on; there may be more to draw from.
+std::set<std::int64_t> measured_packings(const MultiContactMeasurements& data) {
+  std::set<std::int64_t> out;
+  for (const MultiContactRun& run : data.runs)
+    if (!run.points.empty()) out.insert(run.packing);
+  return out;
 }
 
 class Filler {
@@ -157,8 +169,9 @@ void judge(MultiContactLaw& law, const FormFit& fit, const std::vector<MultiCont
     ConfigurationError e{c.configuration->name,   c.use,    multi_contact_error(fit.model, c),
                          end_ratio(fit.model, c), noise(c), loading_states(c).back()->packings};
     e.in_proportion = c.configuration->in_proportion();
-    if (c.use != MultiContactUse::repeated && law.form != LawForm::pair && !c.for_multi_contact)
-      e.use = MultiContactUse::apart;
+    const bool foreign =
+        law.form == LawForm::pair ? c.use == MultiContactUse::fitted && !serves(c, law.form) : !c.for_multi_contact;
+    if (c.use != MultiContactUse::repeated && foreign) e.use = MultiContactUse::apart;
     if (e.use == MultiContactUse::predicted) e.offset = form_offset(fit.model, c, discrepancy);
     law.errors.push_back(e);
     if (e.use == MultiContactUse::repeated || e.use == MultiContactUse::apart) continue;
@@ -240,7 +253,7 @@ FittedLaw make_law(const MultiContactMeasurements& data, const std::vector<Multi
   law.parameters = static_cast<int>(fit.planes.parameters.size());
   const FormRefits refits = refit_form(data, states, form, fit, options);
   law.replicates_failed = refits.failed;
-  const Filler filler(fit, refits.columns, data.packings.size());
+  const Filler filler(fit, refits.columns, measured_packings(data).size());
   filler.planes(law);
   for (const PartnerFit& own : fit.partners) filler.partners(law, states, own);
   law.replicates = replicate_rows(law, fit, refits.columns);
@@ -280,6 +293,9 @@ void require_data(const MultiContactMeasurements& data, const std::vector<MultiC
   if (static_cast<int>(data.packings.size()) < o.min_packings)
     throw InputError(fmt::format("multi-contact laws: {} packings are too few, at least {} are needed",
                                  data.packings.size(), o.min_packings));
+  if (const std::size_t measured = measured_packings(data).size(); measured < static_cast<std::size_t>(o.min_packings))
+    throw UnusableResult(
+        fmt::format("multi-contact laws: {} packings were measured, at least {} are needed", measured, o.min_packings));
   double force = 0.0;
   for (const MultiContactStates* c : plane_selection(states, LawForm::pair))
     force = std::max(force, c->largest_force());
@@ -291,13 +307,16 @@ void require_data(const MultiContactMeasurements& data, const std::vector<MultiC
 
 void describe_packings(const MultiContactMeasurements& data, LawTableEntry& entry) {
   Tally fractions;
-  for (const PackingInfo& p : data.packings) fractions.add(p.solid_fraction);
+  const std::set<std::int64_t> measured = measured_packings(data);
+  for (const std::int64_t k : measured) {
+    const PackingInfo& p = data.packings[static_cast<std::size_t>(k)];
+    fractions.add(p.solid_fraction);
+    entry.grains += static_cast<double>(p.grains) / static_cast<double>(measured.size());
+  }
   const MeanError m = fractions.statistics();
   entry.solid_fraction = m.mean;
   entry.solid_fraction_error = m.error;
-  entry.packings = static_cast<int>(data.packings.size());
-  for (const PackingInfo& p : data.packings)
-    entry.grains += static_cast<double>(p.grains) / static_cast<double>(data.packings.size());
+  entry.packings = static_cast<int>(measured.size());
 }
 
 void describe_range(const std::vector<MultiContactStates>& states, const MultiContactModel& model,

@@ -106,8 +106,8 @@ std::vector<double> number_slopes(const MultiContactSlopes& forces, const MultiC
 /// Runs a fit whose residuals are those of a model that `set` fills from the parameters.
 template <class Set>
 LeastSquaresFit fit_model(const MultiContactModel& model, const StateSelection& selection, double discrepancy,
-                          const std::vector<double>& start, const std::vector<ParameterBounds>& bounds, bool thorough,
-                          const Set& set) {
+                          const std::vector<std::vector<double>>& starts, const std::vector<ParameterBounds>& bounds,
+                          bool thorough, const Set& set) {
   const WeighedForces selects = weighed_forces(selection, discrepancy);
   const MultiContactSlopes forces(model.multi_contact, selects.states);
   const auto numbers_at = [&](std::span<const double> p) {
@@ -142,7 +142,7 @@ LeastSquaresFit fit_model(const MultiContactModel& model, const StateSelection& 
   options.thorough = thorough;
   options.max_iterations = 300;
   stop_if_interrupted("fitting");
-  return fit_least_squares(problem, {start}, options);
+  return fit_least_squares(problem, starts, options);
 }
 
 }  // namespace
@@ -179,7 +179,7 @@ FormOffset form_offset(const MultiContactModel& model, const MultiContactStates&
   constexpr double kFar = 3.0;
   constexpr double kDeepest = 0.5;
   const LeastSquaresFit fit =
-      fit_model(model, {&states}, discrepancy, {0.0, law.delta}, {{-kFar, kFar}, {0.0, kDeepest}}, false, set);
+      fit_model(model, {&states}, discrepancy, {{0.0, law.delta}}, {{-kFar, kFar}, {0.0, kDeepest}}, false, set);
   return {fit.parameters[0], fit.parameters[1] - law.delta};
 }
 
@@ -190,10 +190,19 @@ LeastSquaresFit fit_planes(MultiContactModel& model, const StateSelection& selec
   std::vector<double> start{std::log(p.a), p.b, p.delta};
   if (coupling_parameters(model.multi_contact) > 0) start.insert(start.end(), {m.m0, m.m1, m.m2});
   LeastSquaresFit fit =
-      fit_model(model, selection, discrepancy, start, plane_bounds(model.multi_contact), thorough, set_planes);
+      fit_model(model, selection, discrepancy, {start}, plane_bounds(model.multi_contact), thorough, set_planes);
   set_planes(model, fit.parameters);
   return fit;
 }
+
+namespace {
+
+bool any_undetermined(const LeastSquaresFit& fit) {
+  return std::any_of(fit.standard_deviations.begin(), fit.standard_deviations.end(),
+                     [](double sd) { return !std::isfinite(sd); });
+}
+
+}  // namespace
 
 LeastSquaresFit fit_partners(MultiContactModel& model, PartnerKind kind, const std::vector<double>& ratios,
                              const StateSelection& selection, double discrepancy, bool thorough) {
@@ -204,9 +213,18 @@ LeastSquaresFit fit_partners(MultiContactModel& model, PartnerKind kind, const s
   start.back() = kind == PartnerKind::soft ? 1.2 : 1.0;
   const std::vector<ParameterBounds> bounds = partner_bounds(ratios.size());
   set(model, start);
-  LeastSquaresFit fit = fit_model(model, selection, discrepancy, start, bounds, false, set);
+  LeastSquaresFit fit = fit_model(model, selection, discrepancy, {start}, bounds, false, set);
+  if (any_undetermined(fit)) {
+    // Where a weight leaves every state below the threshold, nothing changes with it: such a fit stays where it starts.
+    std::vector<std::vector<double>> starts{start};
+    for (const double more : {1.0, 2.0}) {
+      starts.push_back(start);
+      for (std::size_t k = 0; k < ratios.size(); ++k) starts.back()[k] += more;
+    }
+    fit = fit_model(model, selection, discrepancy, starts, bounds, false, set);
+  }
   if (thorough && fit.end != FitEnd::converged)
-    fit = fit_model(model, selection, discrepancy, start, bounds, true, set);
+    fit = fit_model(model, selection, discrepancy, {start}, bounds, true, set);
   set(model, fit.parameters);
   return fit;
 }
@@ -278,7 +296,7 @@ void fit_together(FormFit& form, const StateSelection& selection, double discrep
   const auto set = [&](MultiContactModel& tried, std::span<const double> p) {
     set_all(tried, form.partners, planes, p);
   };
-  const LeastSquaresFit all = fit_model(form.model, selection, discrepancy, form.parameters(), bounds, false, set);
+  const LeastSquaresFit all = fit_model(form.model, selection, discrepancy, {form.parameters()}, bounds, false, set);
   if (all.end == FitEnd::failed || all.end == FitEnd::capped) return;
   set(form.model, all.parameters);
   form.planes = part_of(all, 0, planes);

@@ -16,7 +16,7 @@
 namespace softgrain {
 
 /// The law of a card for grains of modulus E [Pa].
-CellLaw cell_law_of(const CellCard& card, double youngs_modulus);
+CellLaw cell_law_of(const CellCard& card, const MacroSpec& spec);
 FinesLaw fines_law_of(const CellCard& card, double youngs_modulus);
 
 /// Solid volume of the fines between coarse grains of this volume [m^3].
@@ -37,6 +37,9 @@ struct CellSpecimen {
   CellStart start;
 };
 CellSpecimen make_cells(const MacroSpec& spec, const MacroPacking& bodies);
+
+/// Which stages of a test a card without shear memory does not serve; empty where it has one, or serves them all.
+std::string compression_only_text(const MacroSpec& spec);
 
 /// What to mind about a start: empty when nothing.
 std::string start_remark(const MacroSpec& spec, const CellStart& start);

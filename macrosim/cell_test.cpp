@@ -126,6 +126,7 @@ CellTestState begin_cell_test(const MacroSpec& spec, const MacroPacking& bodies,
   const CellCard& card = spec.cells->card;
   state.curve.law = {std::nullopt, 0.0, spec.youngs_modulus, card.poisson_ratio, card.grain_friction, hash_of(card)};
   state.curve.note = start_remark(spec, specimen.start);
+  state.curve.warning = compression_only_text(spec);
   return state;
 }
 

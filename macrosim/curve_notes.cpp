@@ -24,6 +24,31 @@ std::string off_text(const MacroCurve& c, const MacroStage& stage, const Vec3& a
   return text;
 }
 
+/// Axes that a stage holds at the stress with which it began although there was none.
+void note_free_sides(MacroCurve& c, const MacroStage& stage, std::int64_t number, const Vec3& began) {
+  std::string axes;
+  for (int a = 0; a < 3; ++a) {
+    const AxisDrive& drive = stage.axis[static_cast<std::size_t>(a)];
+    if (drive.by_stress && drive.as_at == number && began[a] == 0.0) append_part(axes, std::string(1, "xyz"[a]), ", ");
+  }
+  if (axes.empty()) return;
+  append_part(c.note, fmt::format("stage '{}' began without stress along {}, which it holds: its sides are free",
+                                  stage.record.name, axes));
+}
+
+/// A stage that loads under the name of an unloading, or the other way round.
+void note_wrong_way(MacroCurve& c, const MacroStage& stage, const Vec3& began) {
+  const std::optional<double> target = stage.target_stress();
+  const StageKind kind = stage.record.kind;
+  if (!target || (kind != StageKind::unload && kind != StageKind::reload)) return;
+  const double from = stage.goes_to_mean() ? (began[0] + began[1] + began[2]) / 3.0 : began[2];
+  if (kind == StageKind::unload ? *target <= from : *target >= from) return;
+  c.usable = false;
+  append_part(c.note, fmt::format("stage '{}' goes from {:.4g} Pa to {:.4g} Pa: it {}, and its modulus is not that of "
+                                  "what its kind says",
+                                  stage.record.name, from, *target, *target > from ? "loads" : "unloads"));
+}
+
 }  // namespace
 
 void note_out_of_reach(MacroCurve& c, const MacroStage& stage, const Vec3& asked) {
@@ -59,21 +84,14 @@ void note_unrest(MacroCurve& c, const IncrementRest& worst, const MacroStage& st
       one ? "" : fmt::format(", increment {} of the {} before it", worst.number, stage.increments_per_step));
 }
 
-void note_free_sides(MacroCurve& c, const std::vector<MacroStage>& stages) {
+void note_stages(MacroCurve& c, const std::vector<MacroStage>& stages) {
   for (std::size_t k = 0; k < stages.size(); ++k) {
     const auto number = static_cast<std::int64_t>(k);
     const auto first = static_cast<std::size_t>(first_point(stages, number));
     if (first + 1 >= c.strain.size()) return;
     const Vec3 began{{c.stress_x[first], c.stress_y[first], c.stress_axial[first]}};
-    std::string axes;
-    for (int a = 0; a < 3; ++a) {
-      const AxisDrive& drive = stages[k].axis[static_cast<std::size_t>(a)];
-      if (drive.by_stress && drive.as_at == number && began[a] == 0.0)
-        append_part(axes, std::string(1, "xyz"[a]), ", ");
-    }
-    if (axes.empty()) continue;
-    append_part(c.note, fmt::format("stage '{}' began without stress along {}, which it holds: its sides are free",
-                                    stages[k].record.name, axes));
+    note_free_sides(c, stages[k], number, began);
+    note_wrong_way(c, stages[k], began);
   }
 }
 

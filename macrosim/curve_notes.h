@@ -36,9 +36,10 @@ void note_unrest(MacroCurve& curve, const IncrementRest& worst, const MacroStage
 /// stress, what there is, and where. After note_relaxation().
 void note_out_of_reach(MacroCurve& curve, const MacroStage& stage, const Vec3& asked);
 
-/// Notes at the end of a test which stages hold axes at the stress with which they began although it was zero. Their
-/// sides are free, which is another test than in a sample under stress.
-void note_free_sides(MacroCurve& curve, const std::vector<MacroStage>& stages);
+/// Notes at the end of a test which stages are not what their names say. Stages that hold axes at the stress with which
+/// they began, although it was zero, have free sides: another test than in a sample under stress. Stages that unload to
+/// a higher stress, or reload to a lower one, make the curve not usable.
+void note_stages(MacroCurve& curve, const std::vector<MacroStage>& stages);
 
 /// What is to be said of a law without unloading branch in a test that unloads; empty where nothing is unloaded.
 std::string no_unloading_text(const MacroSpec& spec, const std::string& law);

@@ -64,6 +64,9 @@ struct AxisDrive {
   bool by_stress = false;
   double value = 0.0;  ///< nominal strain from the start of the stage (shear: logarithmic), or stress at its end [Pa]
   std::int64_t as_at{-1};  ///< stress as it was when this stage began, in place of the value; -1: none
+
+  /// Whether it goes to a stress that is given.
+  [[nodiscard]] bool to_stress() const { return by_stress && as_at < 0; }
 };
 
 /// A part of a test: equal increments of strain, or of stress, from what it is when the stage begins.
@@ -77,6 +80,13 @@ struct MacroStage {
   double tolerance = 1e-2;  ///< largest net force over mean contact force; a third for stress, of the largest asked
 
   [[nodiscard]] bool by_stress() const { return axis[0].by_stress || axis[1].by_stress || axis[2].by_stress; }
+  /// Whether all axes go to stresses that are given, as in isotropic stages: their mean is what the stage goes to.
+  [[nodiscard]] bool goes_to_mean() const { return axis[0].to_stress() && axis[1].to_stress() && axis[2].to_stress(); }
+  /// The given stress to which a stage goes: mean stress, or else that along z; none where z does not go to one.
+  [[nodiscard]] std::optional<double> target_stress() const {
+    if (!axis[2].to_stress()) return std::nullopt;
+    return goes_to_mean() ? (axis[0].value + axis[1].value + axis[2].value) / 3.0 : axis[2].value;
+  }
 };
 
 /// Fines that are not bodies: they fill the radical cells of the bodies and resist by the law of a card, in place of

@@ -23,8 +23,9 @@ void write_grid(const h5::Group& group, const MultiContactLaw& law, double overl
   std::vector<MultiContactPartner> partners{{PartnerKind::plane, 0.0, {{1.0, 0.0, 0.0}}}};
   std::vector<double> reach{overlap_max};
   for (const PartnerRow& row : law.partners) {
-    partners.push_back({row.kind, row.ratio, {{1.0, 0.0, 0.0}}});
-    reach.push_back(row.overlap_max * std::min(1.0, row.ratio));
+    const bool smooth = row.kind == PartnerKind::plane;  // the row of planes is that of planes without friction
+    partners.push_back({row.kind, row.ratio, {{1.0, 0.0, 0.0}}, smooth});
+    reach.push_back(row.overlap_max * (smooth ? 1.0 : std::min(1.0, row.ratio)));
   }
   std::vector<double> overlap;
   std::vector<double> force;
@@ -38,7 +39,9 @@ void write_grid(const h5::Group& group, const MultiContactLaw& law, double overl
       force.push_back(multi_contact_forces(model, {partners[k]}, {overlap.back()}).front());
     }
   }
-  group.attribute("rows", "neighbours: kind 0 plane, 1 solid, 2 soft; ratio of radii, 0 for planes");
+  group.attribute(
+      "rows",
+      "neighbours: kind 0 plane (a second such row: without friction), 1 solid, 2 soft; ratio of radii, 0 for planes");
   group.attribute("units", "overlap h/Rs, force F/(E Rs^2) of one contact alone");
   group.write("kind", kind);
   group.write("ratio", ratio);

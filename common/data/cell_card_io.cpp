@@ -50,7 +50,8 @@ const std::array<CardEntry<CellMemory>, 6>& memory_numbers() {
        {"c", &M::strength_range, Range{0.0, 1.0, true, true}, "strengths lie within mu_f (1 -+ c)"},
        {"lambda", &M::density_slope, Range{-kLargestExponent, kLargestExponent, false, false},
         "change of the critical solid fraction with phi - phi_J"},
-       {"x_r", &M::least_state, Range{0.0, 1.0, false, true}, "shear compacts no cell below this x"}}};
+       {"x_r", &M::least_state, Range{0.0, 1.0, true, true},
+        "a cell below this x counts as unloaded; not of the material"}}};
   return numbers;
 }
 
@@ -194,6 +195,7 @@ CellCard read_cell_card(const Scene& file) {
   if (root.has("memory")) {
     card.memory = read_memory(root.table("memory"));
     if (card.form != StateForm::porosity) cell.throw_error("form", "[memory] goes with \"porosity\"");
+    if (!(card.friction.value > 0.0)) cell.throw_error("mu_f", "must be above 0 with [memory]");
   }
   read_range(root.table("range"), card);
   read_measured(root.table("measured"), card);

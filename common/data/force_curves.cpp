@@ -281,11 +281,20 @@ std::vector<std::string> implausible_forces(const ForceCurves& curves) {
 std::vector<ForceCurves> read_force_curve_files(const std::vector<std::string>& paths,
                                                 const ForceCurveOptions& options) {
   std::vector<ForceCurves> out;
+  std::vector<std::pair<std::string, ForceCurves>> before;  // as read, with their files
   for (const std::string& path : paths) {
-    if (std::count(paths.begin(), paths.end(), path) > 1) throw InputError(path + ": the file is given twice");
     ForceCurves one = read_force_curves(path, options);
+    for (const auto& [file, read] : before) {
+      std::error_code ignored;
+      if (file == path || std::filesystem::equivalent(file, path, ignored))
+        throw InputError(path + ": the file is given twice");
+      require_same(file, path, read.spec, one.spec);
+      if (read.kind == one.kind && read.has_errors != one.has_errors)
+        one.remarks.push_back(fmt::format("standard errors of {} are not used: {} gives none",
+                                          read.has_errors ? file : path, read.has_errors ? path : file));
+    }
+    before.emplace_back(path, one);
     const auto same = std::find_if(out.begin(), out.end(), [&](const ForceCurves& c) { return c.kind == one.kind; });
-    for (const ForceCurves& before : out) require_same(paths.front(), path, before.spec, one.spec);
     if (same == out.end()) {
       out.push_back(std::move(one));
       continue;

@@ -172,8 +172,11 @@ MultiContactLaw read_law(const SceneTable& t) {
                           read_offset(e), e.flag("in_proportion", true)});
   for (const PartnerKind kind : {PartnerKind::plane, PartnerKind::solid, PartnerKind::soft}) {
     const auto rows = law.rows(kind);
-    for (std::size_t k = 1; k < rows.size(); ++k)
+    for (std::size_t k = 1; k < rows.size(); ++k) {
       if (!(rows[k - 1].ratio < rows[k].ratio)) t.throw_error("partner", "ratios of one kind must ascend");
+      if (rows[k - 1].exponent.value != rows[k].exponent.value)
+        t.throw_error("partner", "all rows of one kind have the same exponent");
+    }
     if (kind == PartnerKind::soft && !rows.empty() && rows.front().ratio < 1.0)
       t.throw_error("partner", "soft neighbours: the ratio is larger over smaller, at least 1");
   }

@@ -35,7 +35,7 @@ inline constexpr auto enum_names<ParticleRole> = enum_name_list<ParticleRole>({{
                                                                                {ParticleRole::inner, "inner"}});
 
 struct SnapshotParticle {
-  Vec3 position{};  ///< centre; in a periodic cell as it is, not folded into the cell
+  Vec3 position{};  ///< centre; along periodic axes folded into the cell when lists were made last
   double radius = 0.0;
   Vec3 velocity{};  ///< zero unless Snapshot::has_velocity
   std::int64_t id = 0;

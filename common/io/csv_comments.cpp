@@ -145,7 +145,8 @@ void CsvFile::read_setting(const std::string& text, int number) {
   const CsvColumn named = csv::column_of(s.title);
   s.unit = named.unit;
   const std::string name = named.unit.empty() ? s.title : trimmed(s.title.substr(0, s.title.find_first_of("[(")));
-  if (!is_name(name, !s.unit.empty())) return;
+  if (!is_name(name, !s.unit.empty()) && (!equals || name.empty()))
+    return;  // with "=" it may say a value none the less
   s.key = csv::plain_name(name);
   settings_.push_back(std::move(s));
 }

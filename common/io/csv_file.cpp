@@ -81,9 +81,15 @@ std::vector<std::string> split(const std::string& line, char separator) {
   return cells;
 }
 
+/// What a spreadsheet writes into a cell that it could not compute.
+bool is_spreadsheet_error(const std::string& cell) {
+  constexpr std::array kErrors{"#n/a", "#div/0!", "#ref!", "#value!", "#num!", "#name?", "#null!"};
+  return std::ranges::find(kErrors, csv::lower(cell)) != kErrors.end();
+}
+
 bool is_missing(const std::string& cell) {
   constexpr std::array kMissing{"", "-", "nan", "na", "n/a"};
-  return std::ranges::find(kMissing, csv::lower(cell)) != kMissing.end();
+  return std::ranges::find(kMissing, csv::lower(cell)) != kMissing.end() || is_spreadsheet_error(cell);
 }
 
 /// What looks like a blank or a minus sign in a spreadsheet and is another character.
@@ -126,7 +132,8 @@ CsvFile CsvFile::parse(const std::string& bytes, const std::string& path) {
 void CsvFile::read_line(const std::string& line, int number) {
   const std::string words = trimmed(line);
   if (words.find_first_not_of(";, \t\"\x1a") == std::string::npos) return;
-  if (words.front() == '#') return read_comment(words, number);
+  if (words.front() == '#' && (columns_.empty() || !is_spreadsheet_error(split(words, separator_).front())))
+    return read_comment(words, number);
   if (words.starts_with("\"#")) {  // a spreadsheet quotes cells that hold the separator
     const std::size_t end = words.find('"', 1);
     return read_comment(words.substr(1, end == std::string::npos ? end : end - 1), number);

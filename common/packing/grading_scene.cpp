@@ -137,12 +137,19 @@ std::size_t passing_column(const CsvFile& csv) {
 /// What a column says that is none of those that count; masses and what is retained only say the same another way.
 void require_sieve_columns(const CsvFile& csv) {
   CsvNames known{"opening", "passing"};
-  for (const CsvColumn& c : csv.columns()) {
-    const bool same = is_retained(c) || c.name.starts_with("mass") || c.name.starts_with("mesh");
-    const bool counts =
-        std::ranges::find(kPassing, c.name) != kPassing.end() || std::ranges::find(kOpening, c.name) != kOpening.end();
-    if (same || counts) known.push_back(c.name);
+  for (const CsvNames* names : {&kPassing, &kOpening}) {
+    const CsvColumn* first = nullptr;
+    for (const CsvColumn& c : csv.columns()) {
+      if (std::ranges::find(*names, c.name) == names->end()) continue;
+      if (first != nullptr)
+        throw InputError(fmt::format("{}columns \"{}\" and \"{}\" both say {}: remove one", head_of(csv), first->title,
+                                     c.title, names == &kPassing ? "what passes" : "the opening"));
+      first = &c;
+      known.push_back(c.name);
+    }
   }
+  for (const CsvColumn& c : csv.columns())
+    if (is_retained(c) || c.name.starts_with("mass") || c.name.starts_with("mesh")) known.push_back(c.name);
   csv.require_known_columns(known, "a sieve curve");
 }
 

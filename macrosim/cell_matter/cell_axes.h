@@ -59,9 +59,11 @@ class CellPacking::Axes {
   void took(const Vec3& factors) {
     for (int k = 0; k < 3; ++k) strained_[k] -= std::log(factors[k]);
   }
-  [[nodiscard]] bool out_of_reach() const {
-    return std::max({std::abs(strained_[0]), std::abs(strained_[1]), std::abs(strained_[2])}) > control_.farthest;
+  /// Largest logarithmic strain of an axis so far.
+  [[nodiscard]] double strained() const {
+    return std::max({std::abs(strained_[0]), std::abs(strained_[1]), std::abs(strained_[2])});
   }
+  [[nodiscard]] bool out_of_reach() const { return strained() > control_.farthest; }
 
   /// Largest error of the stress over its tolerance.
   [[nodiscard]] double residual(const CellPacking& p) const {

@@ -182,29 +182,41 @@ CellPoint CellPacking::step(const Vec3& factor, const BoxControl* control, const
   double done = 0.0;
   for (int left = parts; left > 0;) {
     const auto sites = sites_;
+    const auto periods = periods_;
     const CellRoom room = room_;
+    const auto take_back = [&] {
+      sites_ = sites;
+      periods_ = periods;
+      room_ = room;
+      evaluate();
+      parts *= 2;
+      left *= 2;
+    };
     for (std::size_t i = 0; i < next_pores_.size(); ++i) content_[i].pores = next_pores_[i];
     Vec3 part;
     for (int k = 0; k < 3; ++k) part[k] = std::pow(factor[k], 1.0 / parts);
     stretch(part);
     if (!evaluate()) {
-      sites_ = sites;
-      room_ = room;
-      evaluate();
-      parts *= 2;
-      left *= 2;
+      take_back();
       if (parts > kMostParts) {
         *this = before;
         throw UnusableResult("cells: even a small part of this strain leaves a cell without pores");
       }
       continue;
     }
-    --left;
-    done += (1.0 - done) / (left + 1);
+    const double next = done + (1.0 - done) / left;
     std::optional<Axes> axes;
-    if (control != nullptr && (left == 0 || law_.memory))
-      axes.emplace(*this, left == 0 ? *control : on_the_way(*control, stress_before, done));
-    add_part(rest(options, axes ? &*axes : nullptr), end);
+    if (control != nullptr && (left == 1 || law_.memory))
+      axes.emplace(*this, left == 1 ? *control : on_the_way(*control, stress_before, next));
+    const RelaxationResult part_end = rest(options, axes ? &*axes : nullptr);
+    if (law_.memory && axes && part_end.end == RelaxationEnd::converged && axes->strained() > 2.0 * kMemoryStrain &&
+        2 * parts <= kMostParts) {
+      take_back();
+      continue;
+    }
+    --left;
+    done = next;
+    add_part(part_end, end);
     keep();
   }
   CellPoint point = now();

@@ -53,7 +53,8 @@ struct CellState {
 /// relaxation ends, so what is kept depends on the end alone. A move that would leave a cell without pores, or a site
 /// outside planes, is taken back, and smaller ones follow; a strain whose affine guess would do so is applied in
 /// smaller parts.
-/// With ShearMemory a strain is applied in parts of at most kMemoryStrain; axes held by stress follow in each part.
+/// With ShearMemory a strain is applied in parts of at most kMemoryStrain; axes held by stress follow in each part, and
+/// parts in which they strain by more than twice that are taken back and halved.
 /// What the slip of a part does to phi_J and to strengths counts from the next part on, so that every state is at rest
 /// as it is reported. There is no randomness, and the results are bitwise the same for any number of threads.
 class CellPacking {

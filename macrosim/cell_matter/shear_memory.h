@@ -24,7 +24,9 @@ struct ShearMemory {
   double strength_slope = 0.0;  ///< m: 0: all faces are equally strong
   double strength_range = 0.5;  ///< c, below 1: strengths lie within mu_f (1 -+ c)
   double density_slope = 0.0;   ///< lambda
-  double least_state = 0.0;     ///< x_r: shear compacts no cell below this state, and pressures end slowly beyond it
+  /// x_r: a cell below this state counts as unloaded: shear compacts it no further, and pressures end slowly. Not of
+  /// the material: loose grains sheared at constant volume lose all pressure that a solver resolves.
+  double least_state = 0.0;
 
   /// mu of a cell at the solid fraction phi. Where the cell is nearly unjammed (x < 3 x_r), a strength below mu_f goes
   /// linearly to mu_f at x_r: there volume no longer changes.
@@ -40,6 +42,9 @@ struct ShearMemory {
 /// leaves behind counts from the next one on.
 inline constexpr double kMemoryStrain = 2.5e-3;
 int memory_parts(double largest_strain);
+
+/// Cells whose pressure is below this share of the start pressure count as unloaded: where x_r lies.
+inline constexpr double kUnloadedPressure = 1e-3;
 
 /// A face has six springs in parallel, each with a limit: Masing's rules for reversals, and the hyperbolic backbone
 /// tau/(mu p) = g/sqrt(1 + g^2), g = k u/(mu p A), in pieces between g = 0.1, 0.3, 0.7, 1.5, 3.5 and 9. Shares of the

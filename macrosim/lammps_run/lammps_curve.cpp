@@ -139,7 +139,7 @@ void add_points(const std::vector<PointRow>& rows, const MacroSpec& spec, MacroC
   const std::vector<MacroStage> stages = stages_of(spec);
   for (const PointRow& row : rows) add_point(row, spec, stages, curve);
   if (!rows.empty() && curve.soft > 0) note_law_use(curve, law_use(rows.back()), curve.strain.back());
-  note_free_sides(curve, stages);
+  note_stages(curve, stages);
 }
 
 std::vector<double> normal_forces(const std::vector<DumpedContact>& contacts) {

@@ -165,6 +165,11 @@ void write_spec(const h5::Group& g, const GrainBoxSpec& spec) {
   g.attribute("generation_pressure_Pa", spec.generation.pressure);
   if (!spec.generation.lower_pressures.empty())
     g.write("generation_lower_pressures_Pa", std::span<const double>(spec.generation.lower_pressures));
+  g.attribute("youngs_modulus_Pa", spec.material.youngs_modulus);
+  g.attribute("poisson_ratio", spec.material.poisson_ratio);
+  const double radii[] = {spec.material.radius_min, spec.material.radius_max};
+  g.write("radii", std::span<const double>(radii));
+  g.attribute_of("radii", "unit", "m");
   g.attribute("test", spec.loading.test);
   g.write("increments", std::span<const double>(spec.loading.increments));
 }
@@ -177,9 +182,20 @@ void write_result(const h5::Group& g, const GrainBoxResult& result) {
   write_state(g, result.state);
 }
 
+/// Files of earlier versions do not say it.
+void read_material(const h5::Group& g, GrainBoxMaterial& material) {
+  const std::vector<double> radii = g.doubles("radii");
+  if (radii.size() != 2) throw IoError("data set 'radii' has a wrong length");
+  material.radius_min = radii[0];
+  material.radius_max = radii[1];
+  material.youngs_modulus = g.number("youngs_modulus_Pa");
+  material.poisson_ratio = g.number("poisson_ratio");
+}
+
 GrainBoxResult read_result(const h5::Group& g) {
   GrainBoxResult result;
   GrainBoxSpec& spec = result.spec;
+  spec.material.youngs_modulus = kNaN;
   spec.name = g.text("name");
   spec.of = g.has_attribute("arrangement_of") ? g.text("arrangement_of") : spec.name;
   spec.grains = g.integer("grains");
@@ -188,6 +204,7 @@ GrainBoxResult read_result(const h5::Group& g) {
   spec.generation.pressure = g.number("generation_pressure_Pa");
   if (g.has("generation_lower_pressures_Pa"))
     spec.generation.lower_pressures = g.doubles("generation_lower_pressures_Pa");
+  if (g.has("radii")) read_material(g, spec.material);
   spec.loading.test = g.text("test");
   spec.loading.increments = g.doubles("increments");
   const std::vector<double> ranges = g.open("fits").doubles("ranges");

@@ -195,6 +195,7 @@ ParticlesSceneOf<D> read_particles_scene(const Scene& scene, const std::optional
     root.table_or_empty({"cell", "box with edges, periodic along some or all axes"}).section([&] {
       s.cell = read_cell(root, bodies);
     });
+    if (!root.has_errors()) require_distinct_centres(bodies, s.cell);
     s.particles = std::move(bodies.particles);
     if (bodies.sizes) out.law_files += bodies.sizes->text();
     out.sizes = std::move(bodies.sizes);

@@ -1,5 +1,7 @@
 #include "microsim/particles/scene_bodies.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -158,20 +160,6 @@ void add_drawn(Builder<D>& b, const SceneTable& root, const SceneTable& t, const
 }
 
 template <int D>
-void require_distinct_centres(const Builder<D>& b) {
-  std::vector<Slot> order(b.grains.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto centre = [&](Slot k) -> const auto& { return b.grains[static_cast<std::size_t>(k)].x.v; };
-  std::sort(order.begin(), order.end(),
-            [&](Slot a, Slot c) { return centre(a) != centre(c) ? centre(a) < centre(c) : a < c; });
-  for (std::size_t k = 1; k < order.size(); ++k)
-    if (centre(order[k - 1]) == centre(order[k]))
-      throw InputError(b.out.where_of(order[k]) + ": position: particle " + std::to_string(order[k]) +
-                       " has the same centre as particle " + std::to_string(order[k - 1]) + " (" +
-                       b.out.where_of(order[k - 1]) + ")");
-}
-
-template <int D>
 void require_fits(const Builder<D>& b, Slot k) {
   const NewBody<D>& grain = b.grains[static_cast<std::size_t>(k)];
   const SceneWall<D>& wall = b.walls[static_cast<std::size_t>(b.wall_of[static_cast<std::size_t>(k)])];
@@ -246,7 +234,6 @@ void place_all(Builder<D>& b) {
     throw InputError(b.scene.path() +
                      ":1: the scene has no particle: give [[particle]] tables or [particles] file, or "
                      "count and sizes");
-  require_distinct_centres(b);
   place_grains(b, wall_slots(b));
   place_walls(b);
 }
@@ -278,6 +265,31 @@ SceneBodies<D> read_bodies(const Scene& scene, const std::vector<Material>& mate
   return std::move(b.out);
 }
 
+template <int D>
+void require_distinct_centres(const SceneBodies<D>& bodies, const Cell<D>& cell) {
+  std::vector<Vec<D>> centre;
+  for (Slot i = 0; i < bodies.particles.grains; ++i) {
+    Vec<D> x = bodies.particles.sphere[static_cast<std::size_t>(i)].x;
+    for (int k = 0; k < D; ++k)
+      if (cell.periodic[static_cast<std::size_t>(k)]) x[k] -= cell.edges[k][k] * std::floor(x[k] / cell.edges[k][k]);
+    centre.push_back(x);
+  }
+  std::vector<std::size_t> order(centre.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t c) {
+    return centre[a].v != centre[c].v ? centre[a].v < centre[c].v : a < c;
+  });
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    const auto first = static_cast<Slot>(order[k - 1]);
+    const auto second = static_cast<Slot>(order[k]);
+    if (centre[order[k - 1]].v == centre[order[k]].v)
+      throw InputError(fmt::format("{}: position: particle {} has the same centre as particle {} ({})",
+                                   bodies.where_of(second), second, first, bodies.where_of(first)));
+  }
+}
+
+template void require_distinct_centres<2>(const SceneBodies<2>&, const Cell<2>&);
+template void require_distinct_centres<3>(const SceneBodies<3>&, const Cell<3>&);
 template struct SceneBodies<2>;
 template struct SceneBodies<3>;
 template SceneBodies<2> read_bodies<2>(const Scene&, const std::vector<Material>&, const std::optional<std::uint64_t>&);

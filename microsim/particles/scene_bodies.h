@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/cell.h"
 #include "common/core/particles.h"
 #include "common/core/vec.h"
 #include "common/io/scene.h"
@@ -77,5 +78,9 @@ struct SceneBodies {
 template <int D>
 SceneBodies<D> read_bodies(const Scene& scene, const std::vector<Material>& materials,
                            const std::optional<std::uint64_t>& seed);
+
+/// Throws InputError for two particles at one place, or at places that periods of the cell bring together.
+template <int D>
+void require_distinct_centres(const SceneBodies<D>& bodies, const Cell<D>& cell);
 
 }  // namespace softgrain

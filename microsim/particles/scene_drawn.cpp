@@ -90,7 +90,8 @@ class PlacedParticles {
  private:
   [[nodiscard]] std::int64_t index(const Vec<D>& x, std::size_t k) const {
     const auto a = static_cast<int>(k);
-    const double share = (x[a] - region_.low[a]) / (region_.high[a] - region_.low[a]);
+    double share = (x[a] - region_.low[a]) / (region_.high[a] - region_.low[a]);
+    if (region_.periodic[k]) share -= std::floor(share);
     return std::clamp<std::int64_t>(static_cast<std::int64_t>(share * static_cast<double>(count_[k])), 0,
                                     count_[k] - 1);
   }

@@ -19,7 +19,9 @@ namespace softgrain {
 namespace {
 
 void check_scene(const std::string& path, const CommonOptions& options, Findings& out) {
-  const Scene scene = Scene::load(path, options.overrides);
+  std::vector<std::string> overrides = options.overrides;
+  if (options.seed_given) overrides.push_back(fmt::format("seed={}", options.seed));
+  const Scene scene = Scene::load(path, overrides);
   const SceneKind& kind = kind_of(scene);
   out.add("kind", kind.name, std::string("scene of kind ") + kind.name);
   if (!options.law.empty() && !kind.takes_law) throw InputError("check: --law goes with scenes of kind \"macro\"");
@@ -32,7 +34,11 @@ bool holds_laws(const std::string& path) { return Scene::load(path).root().has("
 void check_file(const std::string& path, const CommonOptions& options, Findings& out) {
   std::error_code ignored;
   const auto form = file_form(path);
-  if (std::filesystem::is_directory(path, ignored))
+  const bool directory = std::filesystem::is_directory(path, ignored);
+  const bool scene = !directory && (!form || form == FileForm::toml) && !holds_laws(path);
+  if (!scene && !options.overrides.empty()) throw InputError("--set: " + path + " is no scene");
+  if (!scene && options.seed_given) throw InputError("--seed: " + path + " is no scene");
+  if (directory)
     check_directory(path, out);
   else if (form == FileForm::hdf5)
     check_data(path, out);
@@ -40,10 +46,10 @@ void check_file(const std::string& path, const CommonOptions& options, Findings&
     check_summary(path, out);
   else if (form && form != FileForm::toml)
     check_table(path, out);
-  else if (holds_laws(path))
-    check_laws(path, out);
-  else
+  else if (scene)
     check_scene(path, options, out);
+  else
+    check_laws(path, out);
 }
 
 /// What people read, without the indentation.

@@ -63,6 +63,9 @@ void check_directory(const std::string& path, Findings& out);
 /// work.
 void require_observables(const std::string& scene, const std::vector<std::string>& overrides);
 
+/// Removes what an earlier run observed under this prefix.
+void forget_observables(const std::string& prefix);
+
 /// Writes PREFIX_sim.txt and PREFIX_param.txt.
 ///   A run with a macro part: strain, stress [Pa], lateral_stress [Pa], coordination, means over samples of the law's
 ///   curves. Other runs: Delta, Fn [N], Fn_error [N] (standard error over packings); of soft-solid contacts where they

@@ -10,6 +10,7 @@
 #include "common/io/interrupt.h"
 #include "common/io/text_file.h"
 #include "pipelines/commands/law_options.h"
+#include "pipelines/compare/compare_inputs.h"
 #include "pipelines/kinds/kinds.h"
 #include "pipelines/kinds/law_table/law_plan.h"
 #include "pipelines/kinds/law_table/scene.h"
@@ -27,8 +28,8 @@ using nlohmann::json;
 std::vector<std::string> curve_files(const std::string& directory) {
   std::vector<std::string> out;
   for (const fs::directory_entry& e : fs::directory_iterator(directory)) {
-    const std::string name = e.path().filename().string();
-    const bool curves = name == "macro.h5" || (name.starts_with("macro_") && !name.starts_with("macro_initial"));
+    const std::string name = e.path().stem().string();
+    const bool curves = name == "macro" || (name.starts_with("macro_") && !holds_packings(name, "macro"));
     if (curves && e.path().extension() == ".h5") out.push_back(e.path().string());
   }
   std::sort(out.begin(), out.end());

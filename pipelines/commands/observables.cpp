@@ -142,6 +142,11 @@ void require_observables(const std::string& scene, const std::vector<std::string
                      "\" has none; kinds pipeline, soft-particle and macro do");
 }
 
+void forget_observables(const std::string& prefix) {
+  std::error_code ignored;
+  for (const char* end : {"_param.txt", "_sim.txt"}) std::filesystem::remove(prefix + end, ignored);
+}
+
 void write_observables(const std::string& directory, const std::vector<std::string>& overrides,
                        const std::string& prefix) {
   const std::string macro = directory + "/macro.h5";

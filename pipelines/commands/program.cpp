@@ -196,6 +196,17 @@ void require_inputs(const Command& command, const CommonOptions& options) {
                                command.inputs, given, command.name));
 }
 
+/// Options that all commands know and that this one has no use for.
+void refuse_idle_options(const Command& command, const CommonOptions& options) {
+  const auto is = [&](auto... functions) { return ((command.function == functions) || ...); };
+  if (options.resume && !command.saves)
+    throw InputError(
+        fmt::format("--resume: {} saves nothing on its way; run, microsim, macrosim and sweep go on", command.name));
+  if (!is(command_compare, command_report, command_export)) return;
+  if (!options.overrides.empty()) throw InputError(fmt::format("--set: {} reads no scene", command.name));
+  if (options.seed_given) throw InputError(fmt::format("--seed: {} draws no random numbers", command.name));
+}
+
 /// A first word that is no command: names the nearest.
 void require_command(int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
@@ -218,6 +229,23 @@ ExitStatus run_or_leave_nothing(const Command& command, const CommonOptions& opt
     out.remove_if_empty();
     throw;
   }
+}
+
+/// What an earlier run observed goes where this one ends without a result, unless it was refused.
+ExitStatus run_observed(const Command& command, const CommonOptions& options, const FreshDirectory& out,
+                        const std::string& observables) {
+  ExitStatus status = ExitStatus::good;
+  try {
+    status = run_or_leave_nothing(command, options, out);
+  } catch (const InputError&) {
+    throw;
+  } catch (const Error&) {
+    forget_observables(observables);
+    throw;
+  }
+  forget_observables(observables);
+  write_observables(options.out, options.overrides, observables);
+  return status;
 }
 
 /// Parses and runs. CLI::ParseError (help, version, mistakes) and Error go up.
@@ -252,8 +280,10 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   require_inputs(*chosen, options);
   if (!observables.empty()) {
     require_observables(options.inputs.front(), options.overrides);
+    if (options.write_only) throw InputError("--observables: nothing is observed with --write-only");
     if (options.out.empty()) options.out = observables + "_run";
   }
+  refuse_idle_options(*chosen, options);
   const FreshDirectory out(options.out);
   if (!options.out.empty()) require_writable_directory(options.out);
   for (const std::string& cache : {options.law_cache, options.packing_cache, options.twin_cache})
@@ -261,9 +291,8 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   if (!observables.empty() && !options.seeds.empty())
     throw InputError("--observables: goes with one run, not with --seeds");
   if (chosen->saves) install_interrupt_handler();
-  const ExitStatus status = run_or_leave_nothing(*chosen, options, out);
-  if (!observables.empty()) write_observables(options.out, options.overrides, observables);
-  return status;
+  return observables.empty() ? run_or_leave_nothing(*chosen, options, out)
+                             : run_observed(*chosen, options, out, observables);
 }
 
 /// Help and version go to standard output with status 0, mistakes to standard error with status 2.

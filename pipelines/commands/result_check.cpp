@@ -82,7 +82,8 @@ void check_summary(const std::string& path, Findings& out) {
   out.facts["run_status"] = known.status;
   out.facts["command"] = known.command;
   if (!is_good(known.status)) out.warn("the run says of itself: " + known.status);
-  for (const std::string& remark : known.remarks.value_or(std::vector<std::string>{})) out.warn(remark);
+  for (const std::string& warning : warnings_of(known)) out.warn(warning);
+  for (const std::string& note : notes_of(known)) out.lines += "  note: " + note + "\n";
 }
 
 namespace {

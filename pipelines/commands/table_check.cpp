@@ -26,7 +26,6 @@ bool has_column(const CsvFile& table, std::initializer_list<const char*> begins)
 /// What the file may leave to the command line gets a value here, and a word about it.
 ForceCurveOptions assumed_values(const CsvFile& table, Findings& out) {
   ForceCurveOptions options;
-  options.unloading = Unloading::drop;
   const SaidByFile said = said_by_comments(table);
   const auto missing = [&](bool is_said, const char* option) {
     if (!is_said) out.warn(fmt::format("the file does not say it: softgrain calibrate needs {}", option));
@@ -38,9 +37,21 @@ ForceCurveOptions assumed_values(const CsvFile& table, Findings& out) {
   return options;
 }
 
+/// An unloading branch, which calibrate refuses unless it is told to leave it out, is left out here with a warning.
+ForceCurves curves_of(const CsvFile& table, ForceCurveOptions& options, Findings& out) {
+  try {
+    return read_force_curves(table.path(), options);
+  } catch (const InputError& e) {
+    options.unloading = Unloading::drop;
+    ForceCurves curves = read_force_curves(table.path(), options);
+    out.warn(fmt::format("softgrain calibrate needs --set unloading=drop: {}", e.what()));
+    return curves;
+  }
+}
+
 void check_force_curves(const CsvFile& table, Findings& out) {
-  const ForceCurveOptions options = assumed_values(table, out);
-  ForceCurves curves = read_force_curves(table.path(), options);
+  ForceCurveOptions options = assumed_values(table, out);
+  ForceCurves curves = curves_of(table, options, out);
   (void)subtract_offsets(curves);  // its remarks say it
   std::size_t points = 0;
   double largest_delta = 0.0;

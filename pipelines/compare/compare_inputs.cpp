@@ -19,7 +19,7 @@ std::vector<MacroCurve> load_materials(const std::string& path) {
   std::map<std::string, std::string> files;
   for (const auto& entry : fs::directory_iterator(path)) {
     const std::string file = entry.path().stem().string();
-    if (entry.path().extension() != ".h5" || !file.starts_with(kind) || file.starts_with(kind + "_initial")) continue;
+    if (entry.path().extension() != ".h5" || !file.starts_with(kind) || holds_packings(file, kind)) continue;
     if (file == kind || file[kind.size()] == '_') files[file] = entry.path().string();
   }
   std::vector<MacroCurve> curves;
@@ -30,6 +30,14 @@ std::vector<MacroCurve> load_materials(const std::string& path) {
     }
   return curves;
 }
+
+}  // namespace
+
+bool holds_packings(const std::string& name, const std::string& kind) {
+  return name == kind + "_initial" || name.starts_with(kind + "_initial_");
+}
+
+namespace {
 
 CompareSide load_directory(const std::string& path) {
   CompareSide side;

@@ -39,6 +39,10 @@ struct CompareSide {
   std::optional<LawCard> card;
 };
 
+/// Whether a file of results of this kind ("macro", "material"), named so without its ending, holds packings before
+/// their tests: KIND_initial or KIND_initial_NAME. KIND_initially-loose holds the results of a variant of that name.
+bool holds_packings(const std::string& name, const std::string& kind);
+
 /// `path` is a run directory, or a file named like macro*.h5, material*.h5, law*.toml or another .h5 with measurements.
 /// Throws IoError when it does not exist or is damaged, InputError when it is none of these or holds nothing to
 /// compare.

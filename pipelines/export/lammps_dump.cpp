@@ -61,12 +61,9 @@ std::string head(const Snapshot& s, const char* what, std::size_t number) {
   return text + fmt::format("ITEM: TIMESTEP\n{}\nITEM: NUMBER OF {}\n{}\n", s.frame, what, number) + box_text(s);
 }
 
-/// Positions are not folded into the cell: of periodic ones LAMMPS says "unwrapped".
 std::string particles_dump(const Snapshot& s) {
-  const bool periodic = s.periodic[0] || s.periodic[1] || s.periodic[2];
   std::string text = head(s, "ATOMS", s.particles.size());
-  text += fmt::format("ITEM: ATOMS id type mol {} radius{}\n", periodic ? "xu yu zu" : "x y z",
-                      s.has_velocity ? " vx vy vz" : "");
+  text += fmt::format("ITEM: ATOMS id type mol x y z radius{}\n", s.has_velocity ? " vx vy vz" : "");
   for (const SnapshotParticle& p : s.particles) {
     fmt::format_to(std::back_inserter(text), "{} {} {} {} {} {} {}", p.id + 1, static_cast<int>(p.role) + 1, p.body + 1,
                    p.position[0], p.position[1], p.position[2], p.radius);

@@ -128,6 +128,11 @@ std::string default_directory(const std::string& name) {
   return std::filesystem::exists(directory + "/README.md", ignored) ? directory + "_run" : directory;
 }
 
+bool began_with(const std::string& directory, const std::string& beside) {
+  const nlohmann::json run = read_object(directory + "/" + kRunFile);
+  return run.value("beside", short_hash(beside)) == short_hash(beside);
+}
+
 RunContext::RunContext(const CommonOptions& options, const std::string& command, const std::string& default_name,
                        const std::vector<std::string>& read)
     : options_(options),
@@ -170,10 +175,15 @@ RunContext RunContext::part(const std::string& name) const {
 }
 
 void RunContext::begin(const Scene& scene, std::uint64_t seed, const std::string& beside) const {
-  const nlohmann::json now{{"scene", scene.text()}, {"seed", seed}, {"beside", short_hash(beside)}};
+  const nlohmann::json now{{"scene", scene.text()},
+                           {"seed", seed},
+                           {"beside", short_hash(beside)},
+                           {"engine", options_.engine.empty() ? "softgrain" : options_.engine},
+                           {"bands", options_.bands}};
   if (!part_ && resume()) {
     const nlohmann::json before = earlier_run(path(kRunFile), path("summary.json"));
-    for (const auto& [key, what] : {std::pair{"scene", "text"}, {"seed", "seed"}, {"beside", "law"}})
+    for (const auto& [key, what] :
+         {std::pair{"scene", "text"}, {"seed", "seed"}, {"beside", "law"}, {"engine", "engine"}, {"bands", "--bands"}})
       if (before.contains(key) && before[key] != now[key])
         throw FingerprintMismatch(
             fmt::format("{}: belongs to another scene (its {} is another); run without --resume to start anew, or "

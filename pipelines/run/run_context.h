@@ -65,6 +65,10 @@ struct FingerprintMismatch : InputError {
 /// not write among kept results unless it is told to.
 std::string default_directory(const std::string& name);
 
+/// Whether the run in this directory began with the same content beside scene and seed (RunContext::begin); true where
+/// the directory does not say it.
+bool began_with(const std::string& directory, const std::string& beside);
+
 /// A run directory in use: made, proved writable and held against other runs, with a log file; writes the summary at
 /// the end.
 class RunContext {

@@ -380,6 +380,24 @@ TEST(ShearMemoryCells, HoldTheStressThatIsAsked) {
   EXPECT_GT(point.stress[2][2], 1.3e-3);
 }
 
+/// A stress asked for at once is gone to in parts that strain little: strength does not depend on the steps.
+TEST(ShearMemoryCells, AStressInOneStepGivesTheStrainOfMany) {
+  const auto axial_strain = [](int steps) {
+    CellPacking p = packing_with(sample_memory(), 0.605, 1e-3);
+    const double before = p.room().high()[2] - p.room().low()[2];
+    BoxControl control;
+    control.by_stress = {true, true, true};
+    for (int n = 1; n <= steps; ++n) {
+      control.stress = {{1e-3, 1e-3, 1e-3 + 5e-4 * n / steps}};
+      EXPECT_EQ(p.press({{1.0, 1.0, 1.0}}, control).relaxation.end, RelaxationEnd::converged) << n << " of " << steps;
+    }
+    return std::log(before / (p.room().high()[2] - p.room().low()[2]));
+  };
+  const double many = axial_strain(16);
+  EXPECT_GT(many, 4.0 * kMemoryStrain) << "else nothing is tested";
+  EXPECT_NEAR(axial_strain(1) / many, 1.0, 0.1);
+}
+
 /// A material point against an independent program of the same equations, whose parts of a strain follow each other in
 /// another way.
 TEST(MaterialPoint, GivesTheNumbersOfAnotherProgram) {

@@ -215,6 +215,36 @@ TEST_F(CellsMacro, SayWhatDoesNotFit) {
   expect(run("bad"), 2, {"measured with nu = 0.3, mu = 0.3 and serves no grains of nu = 0.3, mu = 0.5"});
 }
 
+TEST_F(CellsMacro, WithoutShearMemoryWarnOfTestsThatShear) {
+  expect(run("compressed"), 0, {});
+  EXPECT_TRUE(curve("compressed").warning.empty());
+  scene("test = \"shear\"\nstrain = 0.01\n");
+  const std::string text = read_text(file("scene.toml"));
+  write_text_atomic(file("scene.toml"), std::string(text).erase(text.find("strain = 0.06\n"), 14));
+  expect(run("sheared"), 0, {"no shear memory and serves compression"});
+  expect(run_the_program("check '" + file("scene.toml") + "'"), 0, {"no shear memory"});
+}
+
+/// Cells count as unloaded far below the pressure at which a specimen starts, however low that is.
+TEST_F(CellsMacro, WithShearMemoryStartAtThePressureThatIsAsked) {
+  scene("", "share = 0.4\n", "law = \"" SOFTGRAIN_SOURCE_DIR "/results/material_law/cell_law_memory.toml\"\n");
+  for (const double pressure : {1e-4, 1e-7, 1e-8}) {
+    ASSERT_EQ(run("low", fmt::format("--set macro.start_pressure={} --set macro.strain=0.002", pressure)).status, 0);
+    const MacroCurve c = curve("low");
+    const double p = (c.stress_x.front() + c.stress_y.front() + c.stress_axial.front()) / 3.0;
+    EXPECT_NEAR(p / (pressure * c.start.youngs_modulus), 1.0, 0.05) << pressure;
+  }
+}
+
+/// What a run refuses at once, check refuses too.
+TEST_F(CellsMacro, HaveNoBandsAndCheckSaysSo) {
+  const std::string checked = "check '" + file("scene.toml") + "' ";
+  expect(run_the_program(checked), 0, {});
+  expect(run("bad", "--bands 8"), 2, {"keeps no refits"});
+  expect(run_the_program(checked + "--bands 8"), 2, {"keeps no refits"});
+  expect(run_the_program(checked + "--set macro.bands=8"), 2, {"keeps no refits"});
+}
+
 TEST_F(CellsMacro, TheirCardIsShownAndChecked) {
   const std::string card = "'" + file("cells.toml") + "'";
   expect(run_the_program("law show " + card), 0, {"material without shells", "mu_f", "0.588 .. 0.612"});

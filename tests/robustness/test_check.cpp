@@ -272,6 +272,15 @@ TEST_F(Check, SummariesAndRunDirectories) {
   EXPECT_TRUE(warned(whole, "summary.json: the run says of itself: not usable"));
   EXPECT_TRUE(warned(whole, "a point is off"));
   EXPECT_EQ(facts(run + "/summary.json")["run_status"], "not usable");
+  write_text_atomic(run + "/summary.json",
+                    R"({"status": "good", "command": "macrosim", "version": "0.1.0", "warnings": ["mind this"],
+                        "remarks": ["as an aside"]})");
+  EXPECT_TRUE(warned(facts(run), "summary.json: mind this"));
+  EXPECT_FALSE(warned(facts(run), "as an aside"));
+  const auto said = run_the_program("check '" + run + "/summary.json'");
+  EXPECT_NE(said.output.find("note: as an aside"), std::string::npos) << said.output;
+  EXPECT_EQ(run_the_program("check '" + run + "' --set macro.bodies=3").status, 2);
+  EXPECT_EQ(run_the_program("check '" + run + "' --seed 3").status, 2);
   write_text_atomic(run + "/summary.json", "[1]");
   EXPECT_EQ(run_the_program("check '" + run + "/summary.json'").status, 2);
   write_text_atomic(run + "/summary.json", "{");

@@ -68,6 +68,10 @@ TEST(CommandLine, BadOptionsAreBadInput) {
   expect("compare absent_a absent_b absent_c", 4, "absent_a: no such file or directory");
   expect("sweep x.toml y.toml --over a=1", 2, "sweep needs 1 SCENE.toml, 2 given");
   expect("calibrate x.csv --seeds 1..2", 2, "--seeds");
+  expect("calibrate x.csv --resume", 2, "--resume: calibrate saves nothing on its way");
+  expect("compare a b --set macro.bodies=3", 2, "--set: compare reads no scene");
+  expect("report a --seed 3", 2, "--seed: report draws no random numbers");
+  expect("check absent.csv --set unloading=drop", 2, "--set: absent.csv is no scene");
   expect("run x.toml --law l.toml", 2, "--law");
 }
 

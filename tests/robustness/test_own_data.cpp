@@ -390,6 +390,10 @@ TEST_F(OwnData, ObservablesAreWrittenAsCalibrationToolsReadThem) {
                         "'packing.shell_radius=\"20 mm\"' --set measure.relaxation=damped --observables '" + units +
                         "'");
   EXPECT_EQ(read_text(units + "_param.txt"), "# E shell_radius\n5e+10 0.02\n");
+  // Without --set there are no parameters, and those of the run before do not pass for its own.
+  (void)run_the_program("microsim '" + file("scene.toml") + "' --quiet --observables '" + units + "'");
+  EXPECT_TRUE(std::filesystem::exists(units + "_sim.txt"));
+  EXPECT_FALSE(std::filesystem::exists(units + "_param.txt"));
   write("grains.toml", "kind = \"particles\"\n");
   expect(run_the_program("microsim '" + file("grains.toml") + "' --observables '" + file("p") + "'"), 2, {"particles"});
 }

@@ -111,6 +111,13 @@ TEST_F(ParticlesBadInput, Particles) {
          {"scene.toml:23: unknown key 'mass'"});
 }
 
+TEST_F(ParticlesBadInput, CentresOnePeriodApart) {
+  std::string text = kGood;
+  const std::size_t wall = text.find("[[wall]]");
+  text.replace(wall, text.find("[time]") - wall, "[cell]\nsize = [0.1, 0.1, 0.05]\nperiodic = [true, true, true]\n");
+  expect_text(text, {"position", "has the same centre as particle 0"});
+}
+
 TEST_F(ParticlesBadInput, EmptyScenes) {
   expect_text("kind = \"particles\"\n[time]\nend = 1.0\n", {"scene.toml:1", "no particle"});
   expect_text("kind = \"particle\"\n", {"scene.toml:1: kind", "nearest is \"particles\""});

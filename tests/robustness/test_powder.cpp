@@ -2,11 +2,13 @@
 // rest is said, what cannot be is refused.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "common/io/text_file.h"
+#include "pipelines/kinds/cohesive_powder/powder_data.h"
 #include "tests/support/process.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
@@ -164,6 +166,62 @@ TEST_F(Powder, StatesOfAnEarlierRunAreAnalysedAgain) {
   expect_refused(states + " --set contact.mu=0.4", "other [disks], [contact]");
   expect_refused(states + " --set samples=3", "sample_2");
   expect_refused("--set assembly.method=1 --set assembly.aggregation_kappa=1e2", "only method 2");
+}
+
+/// A sample that ended while its contacts were soft keeps that stiffness, and nothing goes on with it.
+TEST_F(Powder, AnUnfinishedSampleStaysAsItIs) {
+  write_text_atomic(scene(), kSeriesB);
+  const json first = run("first", "--set assembly.time_max=5 --set assembly.edge_speed_cap=0 --set samples=1", 3);
+  const PowderRun kept = load_powder(out("first") + "/powder.h5");
+  double sum = 0.0;
+  for (const ContactRecord<2>& c : kept.samples.at(0).contacts) sum += c.normal_force;
+  ASSERT_FALSE(kept.samples[0].contacts.empty());
+  const double mean = first["samples"][0]["mean_normal"].get<double>();
+  EXPECT_NEAR(sum / static_cast<double>(kept.samples[0].contacts.size()), mean, 1e-6 * std::abs(mean));
+  const json again = run(
+      "again",
+      "--set assembly.edge_speed_cap=0 --set samples=1 --set analysis.states='\"" + out("first") + "/powder.h5\"'", 3);
+  EXPECT_EQ(again["samples"][0]["steps"], first["samples"][0]["steps"]);
+  EXPECT_EQ(again["samples"][0]["Phi"], first["samples"][0]["Phi"]);
+}
+
+constexpr const char* kSized = R"(kind = "cohesive-powder"
+[disks]
+count = 20
+solid_fraction = 0.4
+[disks.sizes]
+form = "list"
+file = "radii.csv"
+[contact]
+kappa = 100.0
+cohesive = false
+mu = 0.3
+[analysis]
+rigidity = false
+[[variant]]
+name = "a"
+[[variant]]
+name = "b"
+contact = { mu = 0.15 }
+)";
+
+/// Variants of other sizes are not those of this run, though the scene names the same file.
+TEST_F(Powder, VariantsOfAnotherSizeFileAreRunAgain) {
+  write_text_atomic(scene(), kSized);
+  write_text_atomic(out("radii.csv"), "radius [mm]\n1\n0.9\n0.8\n0.7\n0.6\n");
+  const auto fractions = [&](const std::string& more) {
+    (void)run_the_program("microsim '" + scene() + "' --quiet --out '" + out("v") + "' " + more);
+    std::vector<double> phi;
+    for (const char* name : {"a", "b"})
+      phi.push_back(json::parse(read_text(out("v") + "/" + name + "/summary.json"))["samples"][0]["Phi"].get<double>());
+    return phi;
+  };
+  const std::vector<double> before = fractions("");
+  EXPECT_EQ(fractions("--resume"), before);
+  write_text_atomic(out("radii.csv"), "radius [mm]\n1\n0.8\n0.7\n0.7\n0.6\n");
+  const std::vector<double> after = fractions("--resume");
+  EXPECT_NE(after[0], before[0]);
+  EXPECT_NE(after[1], before[1]);
 }
 
 }  // namespace

@@ -27,6 +27,13 @@ std::string message_of(const std::function<void()>& action) {
   return "";
 }
 
+TEST(CompareSides, OnlyFilesOfPackingsAreLeftOut) {
+  EXPECT_TRUE(holds_packings("material_initial", "material"));
+  EXPECT_TRUE(holds_packings("macro_initial_dry", "macro"));
+  EXPECT_FALSE(holds_packings("material_initially-loose", "material"));
+  EXPECT_FALSE(holds_packings("macro_initial-state", "macro"));
+}
+
 TEST(RelativeDifference, IdenticalCurvesDoNotDiffer) {
   const Values x{0, 1, 3};
   const Values y{1, 5, 2};

@@ -54,6 +54,16 @@ TEST(CsvFile, WhatSpreadsheetsWriteIsRead) {
   EXPECT_EQ(CsvFile::parse("h [\xb5m],F [N]\n1,2\n", "t").columns()[0].unit, "µm") << "Windows-1252";
 }
 
+/// A row does not become a comment because its first cell could not be computed.
+TEST(CsvFile, ErrorsOfASpreadsheetAreMissingCells) {
+  const CsvFile csv = CsvFile::parse("# free text\na [m];b\n#N/A;1\n#DIV/0!;2\n3;#WERT!\n# 4;5\n1;#VALUE!\n", "t");
+  ASSERT_EQ(csv.rows().size(), 4U);
+  EXPECT_FALSE(csv.number(csv.rows()[0], 0, Unit::length));
+  EXPECT_FALSE(csv.number(csv.rows()[1], 0, Unit::length));
+  EXPECT_FALSE(csv.number(csv.rows()[3], 1, Unit::none));
+  EXPECT_THROW((void)csv.number(csv.rows()[2], 1, Unit::none), InputError);
+}
+
 TEST(CsvFile, PercentsAreHundredths) {
   const CsvFile csv = CsvFile::parse("a [%],b,c\n60,60%,0.6\n100.0 ,100 %,1\n", "t");
   for (std::size_t k = 0; k < 3; ++k) {
@@ -112,6 +122,11 @@ TEST(CsvFile, CommentsThatCountForNothingAreRefused) {
            {"# Rss [mm] = 16", "nearest is \"rs\""},
            {"# knid = soft-solid", "nearest is \"kind\""},
            {"# radiu [mm] 16", "comment \"radiu [mm] 16\" is not understood; nearest is \"radius\""},
+           {"# density, kg/m^3 = 1234", "comment \"density, kg/m^3 = 1234\" is not understood"},
+           {"# density of all the grains = 1234", "comment \"density of all the grains = 1234\" is not understood"},
+           {"# density := 1234", "nearest is \"density\""},
+           {"# E* = 5 MPa", "comment \"E* = 5 MPa\" is not understood"},
+           {"# nu, mu = 0.1, 0.9", "comment \"nu, mu = 0.1, 0.9\" is not understood"},
            {"# Rs = 16 mm\n# radius [mm] = 17", "t.csv:2: radius [mm] = 17: contradicts line 1, Rs = 16 mm"},
            {"# kind = a\n# kind = b", "t.csv:2: kind = b: line 1 says a"},
            {"# Rs [m] = 16 mm", "the name says the unit m, the value mm"},

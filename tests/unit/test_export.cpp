@@ -146,7 +146,7 @@ TEST(ExportFiles, DumpsAreAsLammpsWritesThem) {
   EXPECT_EQ(atoms["TIMESTEP"], std::vector<std::string>{"12"});
   EXPECT_EQ(atoms["TIME"], std::vector<std::string>{"0.25"});
   EXPECT_EQ(atoms["NUMBER OF ATOMS"], std::vector<std::string>{"3"});
-  const auto rows = atoms["ATOMS id type mol xu yu zu radius vx vy vz"];
+  const auto rows = atoms["ATOMS id type mol x y z radius vx vy vz"];
   ASSERT_EQ(rows.size(), 3U);
   EXPECT_TRUE(rows[1].starts_with("2 3 6 0.24 0.5 0.1 0.11 ")) << rows[1];
   const auto box = atoms["BOX BOUNDS xy xz yz pp pp ff"];

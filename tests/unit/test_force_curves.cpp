@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <ctime>
+#include <filesystem>
 
 #include "common/core/error.h"
 #include "common/io/csv_file.h"
@@ -240,6 +241,35 @@ TEST_F(ForceCurveFile, FilesOfOneExperimentAreJoined) {
   const std::string other = write(replaced(kGood, "16 mm", "17 mm"), "d.csv");
   EXPECT_THROW(read_force_curve_files({a, other}, {}), InputError);
   EXPECT_THROW(read_force_curve_files({a, a}, {}), InputError);
+  const std::filesystem::path path(a);
+  EXPECT_THROW(read_force_curve_files({a, (path.parent_path() / "." / path.filename()).string()}, {}), InputError);
+}
+
+/// A file is named for what it says itself.
+TEST_F(ForceCurveFile, FilesThatContradictEachOtherAreNamed) {
+  const std::string a = write(kGood, "a.csv");
+  const std::string b = write("# nu = 0.3\n" + std::string(kGood), "b.csv");
+  const std::string c = write("# nu = 0.2\n" + std::string(kGood), "c.csv");
+  try {
+    (void)read_force_curve_files({a, b, c}, {});
+    ADD_FAILURE();
+  } catch (const InputError& e) {
+    EXPECT_TRUE(std::string(e.what()).starts_with(b + " and " + c)) << e.what();
+  }
+}
+
+TEST_F(ForceCurveFile, StandardErrorsOfSomeFilesAreSaidToBeOfNoUse) {
+  const std::string head = "# Rs = 16 mm\n# E = 0.5 MPa\n# kind = soft-solid\n";
+  const std::string with =
+      write(head + "hn [mm],Fn [N],se [N]\n1,0.1,0.01\n2,0.3,0.01\n3,0.9,0.01\n4,1.8,0.01\n5,3,0.01\n", "with.csv");
+  const std::string without = write(head + "hn [mm],Fn [N]\n1,0.1\n2,0.3\n3,0.9\n4,1.8\n5,3\n", "without.csv");
+  for (const auto& files : {std::vector{with, without}, std::vector{without, with}}) {
+    const auto joined = read_force_curve_files(files, {});
+    ASSERT_EQ(joined.size(), 1U);
+    EXPECT_FALSE(joined[0].has_errors);
+    ASSERT_FALSE(joined[0].remarks.empty());
+    EXPECT_EQ(joined[0].remarks.back(), "standard errors of " + with + " are not used: " + without + " gives none");
+  }
 }
 
 }  // namespace

@@ -13,8 +13,8 @@
 #include "microsim/filled_shell.h"
 #include "microsim/multi_contact_arrangements.h"
 #include "pipelines/kinds/hierarchy/level.h"
+#include "tests/support/known_multi_contact.h"
 #include "tests/support/multi_contact.h"
-#include "tests/support/synthetic_multi_contact.h"
 
 namespace softgrain {
 namespace {
@@ -154,6 +154,34 @@ TEST(LevelErrors, DrawsOfTheLawBelowGoIntoThoseOfTheLevel) {
   EXPECT_GT(strength_error(level, LawForm::isotropic), 0.08);
   EXPECT_NEAR(law_strength(*scaled_law(below, 1.25).find(LawForm::isotropic), 0.2),
               1.25 * law_strength(*below.find(LawForm::isotropic), 0.2), 1e-12);
+}
+
+/// Orientations of one packing are one sample, and a configuration that bears nothing says nothing.
+TEST(LevelChange, CountsPackingsAndWhatBearsForce) {
+  synthetic::MultiContactOptionsKnown o;
+  o.noise = 0.1;
+  const std::vector<MultiContactConfiguration> list{
+      synthetic::multi_contact_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.3),
+      synthetic::multi_contact_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.01)};
+  const MultiContactModel model = synthetic::known(LawForm::isotropic);
+  MultiContactMeasurements below = synthetic::multi_contact_measurements(model, list, o);
+  o.noise = 0.0;
+  MultiContactMeasurements above = synthetic::multi_contact_measurements(model, list, o);
+  const auto once = level_change(above, below, 0);
+  ASSERT_TRUE(once);
+  EXPECT_GT(once->error, 0.0);
+  EXPECT_FALSE(level_change(above, below, 1)) << "below its threshold";
+  for (MultiContactMeasurements* data : {&above, &below}) {
+    const std::vector<MultiContactRun> runs = data->runs;
+    for (MultiContactRun run : runs) {
+      run.orientation = 1;
+      data->runs.push_back(run);
+    }
+  }
+  const auto twice = level_change(above, below, 0);
+  ASSERT_TRUE(twice);
+  EXPECT_NEAR(twice->ratio, once->ratio, 1e-12);
+  EXPECT_NEAR(twice->error, once->error, 1e-12);
 }
 
 TEST(LawDistance, IsZeroForTheSameLawAndGrowsWithTheDifference) {

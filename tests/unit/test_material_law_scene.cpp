@@ -85,11 +85,10 @@ TEST(MaterialLawScene, WithShearMemoryTestsFinesInMoreWays) {
       read_law_scene("[law]\nmemory = true\nmixtures = [0.25, 0.5, 0.75]\nisotropic_strain = 0.025\n");
   const auto& variants = scene.material.variants;
   const auto name = [&](std::size_t k) { return variants.at(k).name; };
-  ASSERT_EQ(variants.size(), 14U);
+  ASSERT_EQ(variants.size(), 13U);
   EXPECT_EQ(name(scene.at.fines), "fines");
   EXPECT_EQ(name(scene.at.coarse), "coarse");
   EXPECT_EQ(name(scene.at.oedometer), "fines-oedometric");
-  EXPECT_EQ(name(scene.at.collapse), "fines-collapse");
   EXPECT_EQ(name(scene.at.first_mixture), "mix-25");
   std::vector<std::string> tests;
   for (const std::size_t k : scene.at.shear_tests) tests.push_back(name(k));
@@ -116,7 +115,7 @@ TEST(MaterialLawScene, WithShearMemoryTestsFinesInMoreWays) {
   EXPECT_EQ(oedometer.stages[1].axis[2].value, -0.02);
   EXPECT_EQ(oedometer.stages[1].record.kind, StageKind::unload);
   const MaterialLawScene loose = read_law_scene("[law]\nmemory = true\ndense = false\nmixtures = [0.25, 0.5, 0.75]\n");
-  EXPECT_EQ(loose.material.variants.size(), 10U);
+  EXPECT_EQ(loose.material.variants.size(), 9U);
 }
 
 std::string refusal(const std::string& law, const std::string& grains = "count = 600\nratio = 6") {

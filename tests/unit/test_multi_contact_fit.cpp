@@ -315,6 +315,53 @@ TEST(MultiContactFit, BelowTheThresholdThereIsNoLaw) {
                UnusableResult);
 }
 
+/// With the weight at which a fit starts, the neighbours below press nowhere, so that nothing changes with it.
+TEST(MultiContactFit, AWeightWhoseStartBearsNothingIsFound) {
+  MultiContactModel model = known(LawForm::isotropic);
+  set_partners(model, PartnerKind::solid, {0.25}, {0.0}, 1.0);
+  const std::vector<MultiContactPartner> cube =
+      multi_contact_configuration(Arrangement::cube, PartnerKind::solid, 0.25, 0.2).partners;
+  const auto bears = [&](double x) {
+    return multi_contact_forces(model, cube, std::vector<double>(cube.size(), x)).front() > 0.0;
+  };
+  double deepest = 0.01;
+  while (!bears(deepest + 0.005)) deepest += 0.005;
+  set_partners(model, PartnerKind::solid, {0.25}, {std::log(2.5)}, 1.0);
+  ASSERT_TRUE(bears(0.8 * deepest));
+  auto list = arrangements();
+  list.resize(5);  // planes
+  list.push_back(multi_contact_configuration(Arrangement::cube, PartnerKind::solid, 0.25, deepest));
+  MultiContactOptionsKnown o;
+  o.noise = 0.02;
+  const LawTableEntry entry = fit_multi_contact_laws(multi_contact_measurements(model, list, o), quick());
+  const MultiContactLaw& law = *entry.find(LawForm::isotropic);
+  ASSERT_EQ(law.partners.size(), 1U);
+  EXPECT_NEAR(law.partners[0].weight.value, 2.5, 0.25);
+  EXPECT_TRUE(std::isfinite(law.partners[0].weight.standard_error));
+}
+
+/// The pool of packings may be larger than what was measured.
+TEST(MultiContactFit, PackingsThatNothingWasMeasuredOnDoNotCount) {
+  MultiContactOptionsKnown o;
+  o.noise = 0.05;
+  auto list = arrangements();
+  list.resize(5);
+  MultiContactMeasurements data = multi_contact_measurements(known(LawForm::isotropic), list, o);
+  const LawTableEntry own = fit_multi_contact_laws(data, quick());
+  const std::size_t measured = data.packings.size();
+  for (int k = 0; k < 20; ++k) {
+    data.packings.push_back(data.packings.front());
+    data.packings.back().solid_fraction = 0.6;
+  }
+  const LawTableEntry entry = fit_multi_contact_laws(data, quick());
+  EXPECT_EQ(entry.packings, static_cast<int>(measured));
+  EXPECT_EQ(entry.solid_fraction, own.solid_fraction);
+  EXPECT_EQ(entry.find(LawForm::isotropic)->a.low, own.find(LawForm::isotropic)->a.low);
+  MultiContactFitOptions many = quick();
+  many.min_packings = static_cast<int>(measured) + 5;
+  EXPECT_THROW((void)fit_multi_contact_laws(data, many), UnusableResult);
+}
+
 TEST(MultiContactFit, TooFewPackingsAreBadInput) {
   MultiContactOptionsKnown o;
   o.packings = 3;

@@ -39,19 +39,20 @@ void expect(const std::vector<HandDisk>& disks, Contact contact, std::int64_t h,
   EXPECT_FALSE(r.free.has_value()) << "free space has no strains";
 }
 
-constexpr double kTouch = 0.9999;  ///< distance of two disks of diameter 1 that overlap by F0/K_N
-const double kRise = kTouch * std::sqrt(0.75);
+constexpr double kTouching = 0.9999;  ///< distance of two disks of diameter 1 that overlap by F0/K_N
+const double kRise = kTouching * std::sqrt(0.75);
 
 std::vector<HandDisk> chain(int n) {
   std::vector<HandDisk> out;
-  for (int k = 0; k < n; ++k) out.push_back({{{kTouch * k, 0.1 * kTouch * (k % 2)}}});
+  for (int k = 0; k < n; ++k) out.push_back({{{kTouching * k, 0.1 * kTouching * (k % 2)}}});
   for (int k = 0; k < n; ++k) out[static_cast<std::size_t>(k)].x[0] *= std::sqrt(0.99);
   return out;
 }
-const std::vector<HandDisk> kTriangle{{{{0.0, 0.0}}}, {{{kTouch, 0.0}}}, {{{0.5 * kTouch, kRise}}}};
+const std::vector<HandDisk> kTriangle{{{{0.0, 0.0}}}, {{{kTouching, 0.0}}}, {{{0.5 * kTouching, kRise}}}};
 const std::vector<HandDisk> kDoubleTriangle{
-    {{{0.0, 0.0}}}, {{{kTouch, 0.0}}}, {{{0.5 * kTouch, kRise}}}, {{{1.5 * kTouch, kRise}}}};
-const std::vector<HandDisk> kRing{{{{0.0, 0.0}}}, {{{kTouch, 0.0}}}, {{{kTouch, kTouch}}}, {{{0.0, kTouch}}}};
+    {{{0.0, 0.0}}}, {{{kTouching, 0.0}}}, {{{0.5 * kTouching, kRise}}}, {{{1.5 * kTouching, kRise}}}};
+const std::vector<HandDisk> kRing{
+    {{{0.0, 0.0}}}, {{{kTouching, 0.0}}}, {{{kTouching, kTouching}}}, {{{0.0, kTouching}}}};
 
 TEST(PowderRigidity, OfFewDisksIsKnownByHand) {
   for (const int n : {2, 3, 7}) {
@@ -85,10 +86,10 @@ TEST(PowderRigidity, RollersAndRadiiOfAllSizes) {
   expect({{{{0.0, 0.0}}, r1}, {{{a, 0.0}}, r2}, {{{x, std::sqrt(b * b - x * x)}}, r3}}, Contact::rough, 0, 3);
 }
 
-std::vector<HandDisk> square_lattice(int n, double across = kTouch) {
+std::vector<HandDisk> square_lattice(int n, double across = kTouching) {
   std::vector<HandDisk> out;
   for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) out.push_back({{{0.5 + kTouch * i, 0.5 + across * j}}});
+    for (int j = 0; j < n; ++j) out.push_back({{{0.5 + kTouching * i, 0.5 + across * j}}});
   return out;
 }
 
@@ -96,7 +97,7 @@ std::vector<HandDisk> square_lattice(int n, double across = kTouch) {
 /// free, when the period lets them: k = 3 for even n, 2 for odd.
 TEST(PowderRigidity, OfThePeriodicSquareLattice) {
   for (const int n : {3, 4, 5, 6}) {
-    const PowderRigidity r = rigidity(disks_by_hand(spec_of(Contact::rough), square_lattice(n), kTouch * n));
+    const PowderRigidity r = rigidity(disks_by_hand(spec_of(Contact::rough), square_lattice(n), kTouching * n));
     const std::int64_t k = n % 2 == 0 ? 3 : 2;
     EXPECT_EQ(r.fixed.floppy, k) << n;
     EXPECT_EQ(r.fixed.indeterminacy, 4 * n * n + k - 3 * n * n) << n;
@@ -183,9 +184,9 @@ TEST(PowderRigidity, IdentitiesOfEveryVariant) {
 System<2> triangular_lattice(Contact contact) {
   std::vector<HandDisk> disks;
   for (int j = 0; j < 4; ++j)
-    for (int i = 0; i < 4; ++i) disks.push_back({{{kTouch * (i + 0.5 * (j % 2)), kRise * j}}});
+    for (int i = 0; i < 4; ++i) disks.push_back({{{kTouching * (i + 0.5 * (j % 2)), kRise * j}}});
   System<2> s = disks_by_hand(spec_of(contact), disks, 1.0);
-  s.cell = box_cell<2>({{4.0 * kTouch, 4.0 * kRise}}, {true, true});
+  s.cell = box_cell<2>({{4.0 * kTouching, 4.0 * kRise}}, {true, true});
   return s;
 }
 
@@ -216,11 +217,11 @@ TEST(PowderRigidity, DefinitenessIsThatOfTheSpectrum) {
   for (const Contact contact : {Contact::smooth, Contact::rough, Contact::rolling})
     for (const bool cell_free : {false, true}) {
       for (const std::uint64_t seed : {1U, 2U}) check(broken_lattice(contact, seed), cell_free);
-      check(disks_by_hand(spec_of(contact), square_lattice(5), kTouch * 5), cell_free);
+      check(disks_by_hand(spec_of(contact), square_lattice(5), kTouching * 5), cell_free);
       check(triangular_lattice(contact), cell_free);
     }
   System<2> rows = disks_by_hand(spec_of(Contact::rolling), square_lattice(5, 1.0005), 1.0);
-  rows.cell = box_cell<2>({{5.0 * kTouch, 5.0 * 1.0005}}, {true, true});
+  rows.cell = box_cell<2>({{5.0 * kTouching, 5.0 * 1.0005}}, {true, true});
   check(rows, false);  // rows that attract each other: rigid without being stable
   EXPECT_GT(positive, 0);
   EXPECT_GT(negative, 0);
@@ -231,8 +232,8 @@ TEST(PowderRigidity, BackboneLeavesRattlersOut) {
   PowderSpec spec = spec_of(Contact::rough);
   spec.cohesive = false;
   std::vector<HandDisk> disks = square_lattice(5);
-  disks.push_back({{{0.5 + 0.5 * kTouch, 0.5 + 0.5 * kTouch}}, 0.1});
-  const PowderRigidity r = rigidity(disks_by_hand(spec, disks, kTouch * 5), false);
+  disks.push_back({{{0.5 + 0.5 * kTouching, 0.5 + 0.5 * kTouching}}, 0.1});
+  const PowderRigidity r = rigidity(disks_by_hand(spec, disks, kTouching * 5), false);
   EXPECT_EQ(r.fixed.floppy, 5);
   EXPECT_FALSE(r.fixed.stiffness.positive);
   ASSERT_TRUE(r.backbone.has_value());

@@ -132,6 +132,25 @@ sizes = { form = "power-law", exponent = 3.5, radius_min = "0.3 mm", radius_max 
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
+TEST(RecipeScene, RefusesWhatCannotAct) {
+  const std::string densities = R"(
+[material]
+density = 2500
+[[constituent]]
+name = "sand"
+mass_share = 0.6
+density = 2000
+sizes = { form = "power-law", exponent = 3.5, radius_min = "1 mm", radius_max = "3 mm" }
+[[constituent]]
+name = "filler"
+mass_share = 0.4
+density = 4000
+sizes = { form = "power-law", exponent = 3.5, radius_min = "0.4 mm", radius_max = "1 mm" }
+)";
+  EXPECT_NE(refusal(densities, "count = 900").find("every [[constituent]] gives its own"), std::string::npos);
+  EXPECT_NE(refusal("[check]\ngrains = 0\nsamples = 2\n").find("there is no check with grains = 0"), std::string::npos);
+}
+
 TEST(RecipeScene, RefusesSharesThatDoNotAddUp) {
   const std::string text = refusal(R"(
 [[constituent]]

@@ -9,7 +9,8 @@
 namespace softgrain {
 namespace {
 
-const FinesBase kFines{0.04, 1.6, 0.7};
+/// Where x_r is 1e-3.
+const FinesBase kFines{0.04, 1.6, 0.7, 1e3 * 0.04 * std::pow(1e-3, 1.6)};
 
 ShearNumbers true_numbers() {
   ShearNumbers n{0.45, 2.5, {}};
@@ -53,10 +54,8 @@ std::vector<ShearPath> all_paths(bool dense) {
   return out;
 }
 
-double pressure_left() { return kFines.modulus * std::pow(1e-3, kFines.exponent); }
-
 TEST(ShearMemoryFit, FindsTheNumbersThatMadeTheCurves) {
-  const ShearMemoryFit fit = fit_shear_memory(kFines, all_paths(true), {pressure_left(), pressure_left()}, true);
+  const ShearMemoryFit fit = fit_shear_memory(kFines, all_paths(true), true);
   ASSERT_TRUE(fit.usable) << fit.message;
   const ShearNumbers n = true_numbers();
   EXPECT_NEAR(fit.friction.value / n.friction, 1.0, 0.01);
@@ -72,22 +71,23 @@ TEST(ShearMemoryFit, FindsTheNumbersThatMadeTheCurves) {
 }
 
 TEST(ShearMemoryFit, WithoutDenseFinesTwoNumbersAreTaken) {
-  const ShearMemoryFit fit = fit_shear_memory(kFines, all_paths(false), {pressure_left()}, false);
+  const ShearMemoryFit fit = fit_shear_memory(kFines, all_paths(false), false);
   EXPECT_NEAR(fit.memory.strength_range.value, 2.0 / 3.0, 1e-12);
   EXPECT_TRUE(std::isinf(fit.memory.strength_range.standard_error));
   EXPECT_EQ(fit.memory.dilatancy.value, 1.0);
   EXPECT_TRUE(std::isinf(fit.memory.dilatancy.standard_error));
-  EXPECT_TRUE(std::isinf(fit.memory.least_state.standard_error)) << "one sample";
+  EXPECT_TRUE(std::isinf(fit.memory.least_state.standard_error)) << "not measured";
+  EXPECT_EQ(fit.memory.dilatancy.low, -kInfinity) << "no interval where nothing was fitted";
 }
 
 TEST(ShearMemoryFit, SaysWhyThereIsNone) {
   std::vector<ShearPath> none = all_paths(false);
   none.front().strain.resize(1);
-  EXPECT_FALSE(fit_shear_memory(kFines, none, {}, false).usable);
+  EXPECT_FALSE(fit_shear_memory(kFines, none, false).usable);
   // A start without pressure.
   std::vector<ShearPath> floating = all_paths(false);
   for (ShearPath& path : floating) path.stress.front() = {};
-  const ShearMemoryFit fit = fit_shear_memory(kFines, floating, {}, false);
+  const ShearMemoryFit fit = fit_shear_memory(kFines, floating, false);
   EXPECT_FALSE(fit.usable);
   EXPECT_NE(fit.message, "fitted");
 }

@@ -6,6 +6,7 @@
 
 #include "common/core/error.h"
 #include "common/io/scene.h"
+#include "macrosim/curve_notes.h"
 #include "macrosim/test_protocol.h"
 #include "pipelines/kinds/macro/stages.h"
 
@@ -99,11 +100,50 @@ TEST(Stages, CyclesAreUnloadingsAndReloadings) {
   EXPECT_EQ(spec.stages[3].record.name, "cycle 2 unload");
 }
 
+/// Results of stages are known by their names: no two are alike.
+TEST(Stages, NamesAreUnlike) {
+  const auto names = [](const std::string& stages) {
+    std::vector<std::string> out;
+    for (const MacroStage& s : read(stages).stages) out.push_back(s.record.name);
+    return out;
+  };
+  const std::string load = "[[stage]]\nkind = \"oedometric\"\nstrain = 0.1\n";
+  const std::string cycles = "[[stage]]\nkind = \"cycles\"\ncount = 1\nstrain = 0.01\n";
+  const std::vector<std::string> counted{"oedometric",     "cycle 1 unload", "cycle 1 reload", "cycle 2 unload",
+                                         "cycle 2 reload", "small 1 unload", "small 1 reload"};
+  EXPECT_EQ(names(load + cycles + cycles + cycles + "name = \"small\"\n"), counted);
+  const std::vector<std::string> numbered{"oedometric 3", "oedometric 2", "oedometric 4"};
+  EXPECT_EQ(names(load + "name = \"oedometric 3\"\n" + load + load), numbered);
+}
+
+/// Where a stage begins is known only in the run if the one before it goes by strain.
+TEST(Stages, AnUnloadingThatLoadsIsNotUsable) {
+  const auto curve_of = [](const std::string& back, double ends) {
+    const MacroSpec spec =
+        read("[[stage]]\nkind = \"oedometric\"\nstrain = 0.1\nsteps = 1\n[[stage]]\nsteps = 1\n" + back);
+    MacroCurve c;
+    c.strain = {0.0, 0.1, 0.11};
+    c.stress_x = c.stress_y = {0.0, 10.0, 10.0};
+    c.stress_axial = {0.0, 20.0, ends};
+    note_stages(c, spec.stages);
+    return c;
+  };
+  EXPECT_TRUE(curve_of("kind = \"unload\"\nstress = 5", 5.0).usable);
+  EXPECT_TRUE(curve_of("kind = \"unload\"\nstrain = 0.01", 5.0).usable);
+  EXPECT_TRUE(curve_of("kind = \"oedometric\"\nstress = 5", 5.0).usable);
+  EXPECT_TRUE(curve_of("kind = \"reload\"\nstress = 60", 60.0).usable);
+  EXPECT_FALSE(curve_of("kind = \"reload\"\nstress = 5", 5.0).usable);
+  const MacroCurve loaded = curve_of("kind = \"unload\"\nstress = 60", 60.0);
+  EXPECT_FALSE(loaded.usable);
+  EXPECT_NE(loaded.note.find("stage 'unload' goes from 20 Pa to 60 Pa: it loads"), std::string::npos) << loaded.note;
+}
+
 TEST(Stages, WithoutAnyTheTestIsThatOfTheTable) { EXPECT_EQ(read("", "strain = 0.1").test, MacroTest::oedometric); }
 
 TEST(Stages, WhatContradictsIsNamed) {
   const std::string load = "[[stage]]\nkind = \"oedometric\"\nstrain = 0.1\n";
   const std::string axes = "[[stage]]\nkind = \"axes\"\nstrain_x = 0.01\n";
+  const std::string stress = "[[stage]]\nkind = \"oedometric\"\nstress = 20\n";
   const auto stage = [](const std::string& keys) { return "[[stage]]\n" + keys; };
   const std::vector<std::pair<std::string, std::string>> cases{
       {stage("kind = \"oedometric\""), "give strain or stress"},
@@ -129,6 +169,10 @@ TEST(Stages, WhatContradictsIsNamed) {
       {axes + stage("kind = \"unload\"\nstrain = 0.01"), "another stage of that kind"},
       {load + stage("kind = \"unload\"\nstrain = 0.01\ncount = 3"), "goes with kind = \"cycles\""},
       {load + stage("kind = \"unload\"\nstrain = 0.01\nstepps = 3"), "steps"},
+      {load + "name = \"a\"\n" + load + "name = \"a\"\n", "a stage before it is called 'a' too"},
+      {load + stage("kind = \"cycles\"\ncount = 1\nstrain = 0.01\nname = \"a\\nb\""), "one line of text"},
+      {stress + stage("kind = \"unload\"\nstress = 60"), "must be below the 20 Pa of stage 'oedometric'"},
+      {stress + stage("kind = \"hold\"\n") + stage("kind = \"reload\"\nstress = 10"), "must be above the 20 Pa"},
   };
   for (const auto& [text, expected] : cases) {
     try {

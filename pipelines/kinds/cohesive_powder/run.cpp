@@ -31,8 +31,10 @@ double imposed_pressure(const std::vector<PowderPhase>& phases, const PowderStat
   return phases[std::min(static_cast<std::size_t>(state.phase), phases.size() - 1)].pressure;
 }
 
-/// The sample of this number of an earlier run. Throws InputError when that run was of other disks.
-void take_state(const PowderSetup& setup, std::int64_t number, PowderState& state) {
+/// The sample of this number of an earlier run, as it ended; whether it was at rest. Throws InputError when that run
+/// was of other disks, or ended under another pressure.
+bool take_state(const PowderSetup& setup, const std::vector<PowderPhase>& phases, std::int64_t number,
+                PowderState& state) {
   const std::lock_guard lock(h5::library_mutex());
   const h5::Group file = h5::open_file(setup.states);
   const std::string sample = fmt::format("sample_{}", number);
@@ -40,6 +42,13 @@ void take_state(const PowderSetup& setup, std::int64_t number, PowderState& stat
   if (!(read_powder_spec(file.open("spec")) == setup.spec))
     throw InputError(setup.states + ": holds samples of other [disks], [contact] or [assembly] than the scene");
   read_powder_state(file.open(sample), state);
+  const double imposed = state.stages.empty() ? 0.0 : state.stages.back().pressure;
+  const bool rests = file.open(sample).integer("usable") != 0;
+  if (rests && imposed != phases.back().pressure)
+    throw InputError(fmt::format("{}: its states are under P* = {:g}, the scene asks for {:g} ([assembly] pressure)",
+                                 setup.states, imposed, phases.back().pressure));
+  state.phase = static_cast<std::int64_t>(phases.size());  // nothing is assembled any more
+  return rests;
 }
 
 Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t number, const TaskStore& store,
@@ -47,11 +56,12 @@ Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t num
   Sample sample;
   sample.state = start_powder(setup.spec, seed, static_cast<std::uint64_t>(number));
   const std::string task = fmt::format("powder-{}", number);
+  const auto phases = setup.phases();
+  bool rests = true;
   if (setup.states.empty())
     store.load(task, [&](const h5::Group& g) { read_powder_state(g, sample.state); });
   else
-    take_state(setup, number, sample.state);
-  const auto phases = setup.phases();
+    rests = take_state(setup, phases, number, sample.state);
   TaskProgress mine(progress);
   const Stopwatch watch;
   const double seconds_before = sample.state.system.cost.seconds;
@@ -64,6 +74,10 @@ Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t num
   control.progress = [&](const PowderState&, double share) { mine.reach(share); };
   sample.result = run_powder(sample.state, setup.spec, phases, setup.options, control);
   count_time();
+  if (!rests) {
+    sample.result.usable = false;
+    sample.result.reason = "the run that left the state ended before it was";
+  }
   stop_if_interrupted("analysing packs");
   sample.analysis =
       analyse_powder(sample.state.system, setup.spec, imposed_pressure(phases, sample.state), setup.rigidity);
@@ -203,10 +217,7 @@ namespace {
 ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options) {
   if (has_powder_variants(scene)) return run_powder_variants(scene, options);
   const PowderSetup setup = read_powder(scene);
-  // A run goes on only with the states that it began with.
-  const std::string states = setup.states.empty() ? "" : short_hash(read_text(setup.states));
-  return run_powder_ensemble(
-      setup, Run(scene, options, "microsim", {setup.seed, {setup.states}, powder_text(setup) + states}));
+  return run_powder_ensemble(setup, Run(scene, options, "microsim", {setup.seed, {setup.states}, powder_text(setup)}));
 }
 
 void read_any_powder(const Scene& scene) {

@@ -218,7 +218,8 @@ double PowderSetup::largest_stress() const {
 }
 
 std::string powder_text(const PowderSetup& setup) {
-  return sizes_text(setup.spec) + (setup.protocol.method == 2 ? "V0 per component\n" : "");
+  const std::string states = setup.states.empty() ? "" : short_hash(read_text(setup.states));
+  return sizes_text(setup.spec) + (setup.protocol.method == 2 ? "V0 per component\n" : "") + states;
 }
 
 std::vector<DrawnSizes> drawn_sizes(const PowderSetup& setup, std::uint64_t seed) {

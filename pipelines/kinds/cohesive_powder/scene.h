@@ -34,8 +34,8 @@ struct PowderSetup {
   [[nodiscard]] double largest_stress() const;
 };
 
-/// What determines a run beside its scene and seed: sizes, and the meaning of V0. A run that began with V0 of |v| does
-/// not go on.
+/// What determines a run beside its scene and seed: sizes, the meaning of V0, and states that are analysed. A run that
+/// began with V0 of |v| does not go on.
 std::string powder_text(const PowderSetup& setup);
 
 /// Disks whose sizes a distribution says.

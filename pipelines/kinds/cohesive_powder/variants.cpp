@@ -129,11 +129,12 @@ std::optional<VariantRun> ended_run(const PowderVariant& variant, const RunConte
   return VariantRun{record_of<AnySummary>(summary), record_of<PowderSummary>(summary)};
 }
 
-/// Whether that summary is of the same scene and seed, so that another run would end in the same.
+/// Whether that summary is of the same scene, seed and files, so that another run would end in the same.
 bool belongs(const VariantRun& ended, const PowderVariant& variant, const RunContext& context) {
   const auto& provenance = ended.run.provenance;
   return provenance && !ended.powder.samples.empty() && provenance->scene == variant.scene.text() &&
          provenance->seed == context.seed(variant.setup.seed) &&
+         began_with(context.path(variant.name), powder_text(variant.setup)) &&
          std::filesystem::exists(context.path(variant.name + "/powder.h5"));
 }
 
@@ -158,6 +159,8 @@ VariantEntry entry_of(const PowderVariant& variant, const RunContext& context) {
     complete_ended_run(context.path(variant.name));
     return powder_variant_entry(variant, &*earlier);
   }
+  std::error_code ignored;  // what is no longer true must not outlive a run that fails
+  if (!known) std::filesystem::remove(context.path(variant.name + "/summary.json"), ignored);
   run_variant(variant, context);
   const auto ended = ended_run(variant, context);
   return powder_variant_entry(variant, ended ? &*ended : nullptr);

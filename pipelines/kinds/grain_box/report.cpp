@@ -328,7 +328,8 @@ std::vector<HeadLine> lines_of(const RunData& run) {
   const auto* boxes = run.file("grain_box.h5", load_grain_boxes);
   if (boxes == nullptr) return {};
   std::vector<HeadLine> lines;
-  if (!boxes->empty()) lines.push_back(grains_line(boxes->front().spec.material));
+  if (!boxes->empty() && is_known(boxes->front().spec.material.youngs_modulus))
+    lines.push_back(grains_line(boxes->front().spec.material));
   if (boxes->size() > 3) {
     lines.emplace_back("Packs", fmt::format("{} packs of grains.", boxes->size()));
     return lines;

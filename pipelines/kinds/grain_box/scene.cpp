@@ -180,10 +180,11 @@ void read_end(const SceneTable& t, GrainBoxLoading& l, const std::string& usual 
   l.end_stress =
       t.number({"end_stress", "the loading ends at this sigma_c, or at `end_strain`; give at least one", usual},
                Unit::pressure, Range::positive(), l.end_stress);
-  l.end_strain =
-      t.number({"end_strain",
-                "the loading ends at this largest strain of an axis, or at `end_stress`; give at least one", usual},
-               Unit::none, Range{0.0, 0.4, true, false}, l.end_strain);
+  l.end_strain = t.number(
+      {"end_strain",
+       "the loading ends at this largest strain of an axis since its start, or at `end_stress`; give at least one",
+       usual},
+      Unit::none, Range{0.0, 0.4, true, false}, l.end_strain);
 }
 
 Vec3 along(int axis, double axial, double lateral) {

@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <optional>
 
 #include "calibrate/bootstrap.h"
 #include "common/contact/make_laws.h"
 #include "common/core/cost.h"
+#include "common/core/limits.h"
 #include "common/core/particles.h"
 #include "common/data/multi_contact_replicates.h"
 #include "common/packing/void_filling.h"
@@ -66,35 +69,42 @@ const std::string& name_of(const MultiContactMeasurements& data, const MultiCont
   return data.configurations[static_cast<std::size_t>(run.configuration)].name;
 }
 
-/// Ratio of mean end forces on the packings that both levels have, with its error by linear propagation of the paired
-/// residuals.
-LevelChange change_of(const MultiContactMeasurements& data, const MultiContactMeasurements& below,
-                      std::int64_t configuration) {
+}  // namespace
+
+std::optional<LevelChange> level_change(const MultiContactMeasurements& data, const MultiContactMeasurements& below,
+                                        std::int64_t configuration) {
   const MultiContactConfiguration& c = data.configurations[static_cast<std::size_t>(configuration)];
-  std::vector<std::pair<double, double>> pairs;
+  std::map<std::int64_t, std::pair<double, double>> pairs;  // by packing, sums over its orientations
   for (const MultiContactRun& a : data.runs)
     for (const MultiContactRun& b : below.runs)
       if (a.configuration == configuration && name_of(below, b) == c.name && a.packing == b.packing &&
           a.orientation == b.orientation) {
         const double here = summed_end_force(c, a);
         const double there = summed_end_force(c, b);
-        if (here >= 0.0 && there >= 0.0) pairs.emplace_back(here, there);
+        if (!(here >= 0.0 && there >= 0.0)) continue;
+        pairs[a.packing].first += here;
+        pairs[a.packing].second += there;
       }
   LevelChange change{c.name, 1.0, 0.0};
   double here = 0.0;
   double there = 0.0;
-  for (const auto& [a, b] : pairs) {
-    here += a;
-    there += b;
+  for (const auto& [packing, forces] : pairs) {
+    here += forces.first;
+    there += forces.second;
   }
-  if (!(there > 0.0)) return change;
+  if (!(there > 0.0)) return std::nullopt;
   change.ratio = here / there;
   double square = 0.0;
-  for (const auto& [a, b] : pairs) square += (a - change.ratio * b) * (a - change.ratio * b);
+  for (const auto& [packing, forces] : pairs) {
+    const double off = forces.first - change.ratio * forces.second;
+    square += off * off;
+  }
   const auto n = static_cast<double>(pairs.size());
   if (n > 1.0) change.error = std::sqrt(square * n / (n - 1.0)) / there;
   return change;
 }
+
+namespace {
 
 Cost cost_of(const MultiContactMeasurements& data) {
   Cost cost;
@@ -114,15 +124,16 @@ MultiContactLevel multi_contact_level(const HierarchySetup& setup, LevelContents
   return multi_contact;
 }
 
+bool of_planes(const MultiContactConfiguration& c) {
+  return !c.held_out && std::all_of(c.partners.begin(), c.partners.end(), [](const MultiContactPartner& p) {
+    return p.kind == PartnerKind::plane && !p.smooth;
+  });
+}
+
 /// Planes alone, one and as many as there are: what shows how the law follows that of the level below.
 MultiContactSetup planes_of(const MultiContactSetup& setup) {
   MultiContactSetup out = setup;
-  const auto planes = [](const MultiContactConfiguration& c) {
-    return !c.held_out && std::all_of(c.partners.begin(), c.partners.end(), [](const MultiContactPartner& p) {
-      return p.kind == PartnerKind::plane && !p.smooth;
-    });
-  };
-  std::erase_if(out.configurations, [&](const MultiContactConfiguration& c) { return !planes(c); });
+  std::erase_if(out.configurations, [](const MultiContactConfiguration& c) { return !of_planes(c); });
   std::stable_sort(out.configurations.begin(), out.configurations.end(),
                    [](const auto& a, const auto& b) { return a.partners.size() < b.partners.size(); });
   if (out.configurations.size() > 2)
@@ -146,27 +157,34 @@ Sensitivity sensitivity_of(const HierarchySetup& setup, LevelContents& contents,
   Sensitivity out;
   double weights = 0.0;
   for (std::size_t c = 0; c < moved.configurations.size(); ++c) {
-    const LevelChange change = change_of(moved, data, static_cast<std::int64_t>(c));
-    const double error = std::max(change.error, 1e-3);
-    out.value += std::log(change.ratio) / std::log(kStronger) / (error * error);
+    const std::optional<LevelChange> change = level_change(moved, data, static_cast<std::int64_t>(c));
+    if (!change) continue;
+    const double error = std::max(change->error, 1e-3);
+    out.value += std::log(change->ratio) / std::log(kStronger) / (error * error);
     weights += 1.0 / (error * error);
   }
-  out.value = std::max(0.0, out.value / weights);
-  out.error = 1.0 / std::sqrt(weights) / std::log(kStronger);
+  out.value = weights > 0.0 ? std::max(0.0, out.value / weights) : 1.0;  // not known: all of it goes on
+  out.error = weights > 0.0 ? 1.0 / std::sqrt(weights) / std::log(kStronger) : kInfinity;
   level.cost += cost_of(moved);
   return out;
 }
 
-/// How far the law has moved from one level to the next, and how much of that packings alone would make.
+/// How far the law has moved from one level to the next, and how much of that packings alone would make of the forces
+/// of planes, which the distance is of.
 void compare_with_below(HierarchyLevel& level, const HierarchyLevel& below, const MultiContactMeasurements& data,
                         const MultiContactMeasurements& data_below, LawForm form) {
   double noise = 0.0;
+  int planes = 0;
   for (std::size_t c = 0; c < data.configurations.size(); ++c) {
-    level.changes.push_back(change_of(data, data_below, static_cast<std::int64_t>(c)));
-    noise += level.changes.back().error * level.changes.back().error;
+    const std::optional<LevelChange> change = level_change(data, data_below, static_cast<std::int64_t>(c));
+    if (!change) continue;
+    level.changes.push_back(*change);
+    if (!of_planes(data.configurations[c])) continue;
+    noise += change->error * change->error;
+    ++planes;
   }
   level.distance = law_distance(level.entry, below.entry, form);
-  level.distance_noise = std::sqrt(noise / static_cast<double>(level.changes.size()));
+  level.distance_noise = planes > 0 ? std::sqrt(noise / planes) : 0.0;
 }
 
 /// Draws of the law below go into the draws of this one.

@@ -83,6 +83,12 @@ HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, s
                          const HierarchyLevel* below, const MultiContactMeasurements* data_below,
                          MultiContactMeasurements& data, const Run& run);
 
+/// Ratio of mean end forces of a configuration on the packings that both levels have, with its error by linear
+/// propagation of the paired residuals; orientations of one packing are no further packings. None where nothing is
+/// there, or bears no force.
+std::optional<LevelChange> level_change(const MultiContactMeasurements& data, const MultiContactMeasurements& below,
+                                        std::int64_t configuration);
+
 /// Root mean square of the difference of two laws over that of the one below, along one plane and along six planes.
 double law_distance(const LawTableEntry& law, const LawTableEntry& below, LawForm form);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "calibrate/next_measurements.h"
 #include "common/core/error.h"
@@ -297,15 +298,24 @@ std::string plan_text(const LawPlan& plan) {
 
 std::string plan_scene_text(const LawPlan& plan) {
   std::string text = fmt::format(
-      "# What `softgrain law plan` found for the error bars of {} curves: packings on top of those of [multi_contact], "
-      "so "
-      "deep.\n",
+      "# What `softgrain law plan` found for the error bars of {} curves: packings in all of each configuration, "
+      "so deep.\n",
       plan.curves);
-  for (const PlanStep& s : plan.steps) {
+  // `packings` of a table is a total: that of the tables before it, deepest first, counts.
+  std::vector<const PlanStep*> steps;
+  for (const PlanStep& s : plan.steps) steps.push_back(&s);
+  std::stable_sort(steps.begin(), steps.end(), [&](const PlanStep* a, const PlanStep* b) {
+    return plan.candidates[a->candidate].depth > plan.candidates[b->candidate].depth;
+  });
+  std::map<std::string, std::int64_t> total;
+  for (const PlanStep* one : steps) {
+    const PlanStep& s = *one;
     const PlanCandidate& c = plan.candidates[s.candidate];
+    std::int64_t& all = total.try_emplace(c.configuration, c.packings).first->second;
+    all += s.packings;
     text += fmt::format("[[plan]]\nconfiguration = {}\n", quoted(c.configuration));
     if (c.depth < 1.0) text += fmt::format("depth = {}\n", c.depth);
-    text += fmt::format("packings = {}\n", c.packings + s.packings);
+    text += fmt::format("packings = {}\n", all);
   }
   return text;
 }

@@ -221,10 +221,12 @@ std::vector<BandedEnd> banded_ends(const std::vector<MacroCurve>& curves) {
       std::vector<double> stress;
       double low[2] = {0.0, 0.0};
       double high[2] = {0.0, 0.0};
+      double noise_of = 0.0;
       for (const MacroCurve& c : curves_of(curves, first.engine)) {
         const auto law = band_of(c, of, BandPart::law);
         const auto off = band_of(c, of, BandPart::discrepancy);
         if (!c.usable || !law || !off) continue;
+        if (const auto part = band_of(c, of, BandPart::noise)) noise_of = 0.5 * (part->high.back() - part->low.back());
         const double own = banded_stress(c, of).back();
         stress.push_back(own);
         end.strain = c.strain.back();
@@ -242,9 +244,10 @@ std::vector<BandedEnd> banded_ends(const std::vector<MacroCurve>& curves) {
       end.discrepancy = 0.5 * (low[1] + high[1]) / n;
       end.samples = students(stress.size()) * mean.error;
       const double spread = std::isfinite(end.samples) ? end.samples : 0.0;
-      const double below = std::hypot(low[0] / n, low[1] / n, spread);
+      const double noise = stress.size() == 1 ? noise_of : 0.0;  // several samples show it by their spread
+      const double below = std::hypot(std::hypot(low[0] / n, low[1] / n), std::hypot(spread, noise));
       end.low = end.stress - below;
-      end.high = end.stress + std::hypot(high[0] / n, high[1] / n, spread);
+      end.high = end.stress + std::hypot(std::hypot(high[0] / n, high[1] / n), std::hypot(spread, noise));
       end.determined = below < end.stress || !(end.stress > 0.0);
       if (!end.determined) end.low = end.high = kNaN;
       if (end.determined) end.low = std::max(0.0, end.low);

@@ -205,15 +205,6 @@ void check_table_law(const LawTable& table, const LawSources& given, WantedForm 
   check_volume(table, laws, named.form, entry.solid_fraction, spec, out);
 }
 
-/// Whether a test does more than compress.
-bool shears(const MacroSpec& spec) {
-  const std::vector<MacroStage> stages = stages_of(spec);
-  return std::any_of(stages.begin(), stages.end(), [](const MacroStage& s) {
-    const StageKind kind = s.record.kind;
-    return kind == StageKind::shear || kind == StageKind::triaxial || kind == StageKind::unload;
-  });
-}
-
 /// What the card says of the specimen before anything is placed.
 void check_cells(const CellMatter& matter, const MacroSpec& spec, Findings& out) {
   const CellCard& card = matter.card;
@@ -236,11 +227,7 @@ void check_cells(const CellMatter& matter, const MacroSpec& spec, Findings& out)
   if (mixture > card.mixture_high)
     out.warn(fmt::format("fines are {:.3g} times the volume of coarse grains; the card was measured up to {:.3g}",
                          mixture, card.mixture_high));
-  if (!card.memory && shears(spec))
-    out.warn(
-        "the card has no shear memory and serves compression: in tests with its own fines an unloading modulus was a "
-        "third too low, and stresses of loose fines sheared at constant volume were 3 to 9 times too high; kind "
-        "\"material-law\" measures a card with it ([law] memory = true)");
+  if (const std::string text = compression_only_text(spec); !text.empty()) out.warn(text);
   if (!card.preparation.empty() && card.preparation != to_string(spec.preparation))
     out.warn(fmt::format("the fines of the card were prepared '{}', this specimen is prepared '{}'", card.preparation,
                          to_string(spec.preparation)));
@@ -437,8 +424,7 @@ void check_macro(const MacroSetup& setup, MacroContent content, const LawSources
   spend_on_macro(setup, content, laws, seed, out);
 }
 
-void check_macro_scene(const Scene& scene, const std::string& law, Findings& out) {
-  const MacroScene macro = read_macro_scene(scene, law);
+void check_macro_scene(const MacroScene& macro, Findings& out) {
   if (const std::string assumed = assumed_text(macro.setup); !assumed.empty()) out.warn(assumed);
   if (const std::string doubt = room_doubt(macro.setup, macro.seed, "bodies"); !doubt.empty())
     out.warn(doubt + " (key macro.bodies)");

@@ -33,9 +33,8 @@ struct MacroContent {
 void spend_on_macro(const MacroSetup& setup, const MacroContent& content, const LawSources* laws, std::uint64_t seed,
                     Findings& out);
 
-/// A kind = "macro" scene; `law` replaces its key of that name, and the law is opened when there is one. Throws
-/// InputError, IoError.
-void check_macro_scene(const Scene& scene, const std::string& law, Findings& out);
+/// A kind = "macro" scene, and what it asks of its law if it has one. Throws InputError, IoError.
+void check_macro_scene(const MacroScene& macro, Findings& out);
 
 /// What the first `count` packings of a seed bring into the soft particles of a scene, the first of them tried already;
 /// all are made unless that takes more than a moment.

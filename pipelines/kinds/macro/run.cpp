@@ -163,13 +163,19 @@ struct ReadyMacro {
   std::optional<LammpsEngine> lammps;
 };
 
-ReadyMacro ready_macro(const Scene& scene, const CommonOptions& options) {
-  ReadyMacro ready{read_macro_scene(scene, options.law), std::nullopt};
-  MacroScene& macro = ready.macro;
+/// With the bands and the law of the command line.
+MacroScene read_with_options(const Scene& scene, const CommonOptions& options) {
+  MacroScene macro = read_macro_scene(scene, options.law);
   if (options.bands > 0) macro.setup.bands = options.bands;
   if (macro.setup.bands == 0 && scene.root().table("macro").has("band_estimator"))
     scene.root().table("macro").throw_error("band_estimator",
                                             "goes with bands, the number of draws of the law, or --bands");
+  return macro;
+}
+
+ReadyMacro ready_macro(const Scene& scene, const CommonOptions& options) {
+  ReadyMacro ready{read_with_options(scene, options), std::nullopt};
+  MacroScene& macro = ready.macro;
   if (macro.law_file.empty())
     scene.root().throw_error(
         "law", "no law: give --law law.toml (a card) or --law law_table.toml (a table), or the key law in the scene");
@@ -215,14 +221,20 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
   return run.finish(json_of(summary), console_summary(identity, curves) + bands_text(bands, summary.band_ends));
 }
 
+void check_with_options(const Scene& scene, const CommonOptions& options, Findings& out) {
+  const MacroScene macro = read_with_options(scene, options);
+  if (macro.setup.bands > 0 && !macro.law_file.empty())
+    require_draws(macro, macro.setup.spec.preparation == Preparation::lammps);
+  check_macro_scene(macro, out);
+}
+
 }  // namespace
 
 SceneKind macro_kind() {
   return {.name = "macro",
           .command = "macrosim",
           .run = run_macro_scene,
-          .check = [](const Scene& scene, const CommonOptions& options,
-                      Findings& out) { check_macro_scene(scene, options.law, out); },
+          .check = check_with_options,
           .read = [](const Scene& scene) { (void)read_macro_scene_alone(scene); },
           .refuse = [](const Scene& scene, const CommonOptions& options) { (void)ready_macro(scene, options); },
           .results = macro_results(),

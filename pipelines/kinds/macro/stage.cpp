@@ -132,7 +132,7 @@ struct CellRun {
   void read(const h5::Group& group, State& s) const {
     read_place(group, s);
     s.curve = read_macro_curve(group.open("curve"));
-    s.packing = CellPacking(cell_law_of(spec.cells->card, spec.youngs_modulus), read_cell_state(group.open("cells")),
+    s.packing = CellPacking(cell_law_of(spec.cells->card, spec), read_cell_state(group.open("cells")),
                             spec.boundary == Boundary::periodic);
   }
   static Snapshot picture(const State& s, const MacroPacking& packing, const std::string& runs) {

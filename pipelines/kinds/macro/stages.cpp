@@ -88,16 +88,30 @@ class StageReader {
     return StageKind::oedometric;
   }
 
-  std::string name_of(const SceneTable& t, const std::string& word) const {
-    std::string name = t.text(kNameKey, "");
+  static std::string given_name(const SceneTable& t, const char* usual) {
+    const std::string name = t.text(kNameKey, usual);
     if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < ' '; }))
       t.add_error("name", "must be one line of text");
-    if (!name.empty()) return name;
+    return name;
+  }
+
+  /// Results of stages are known by their names.
+  [[nodiscard]] bool is_taken(const std::string& name) const {
+    return std::any_of(stages_.begin(), stages_.end(), [&](const MacroStage& s) { return s.record.name == name; });
+  }
+
+  std::string name_of(const SceneTable& t, const std::string& word) const {
+    if (const std::string name = given_name(t, ""); !name.empty()) {
+      if (is_taken(name)) t.add_error("name", fmt::format("a stage before it is called '{}' too", name));
+      return name;
+    }
     const auto same = [&](const MacroStage& s) {
       return s.record.name == word || s.record.name.starts_with(word + " ");
     };
-    const auto before = std::count_if(stages_.begin(), stages_.end() - 1, same);
-    return before == 0 ? word : fmt::format("{} {}", word, before + 1);
+    auto number = std::count_if(stages_.begin(), stages_.end() - 1, same) + 1;
+    const auto numbered = [&] { return number == 1 ? word : fmt::format("{} {}", word, number); };
+    while (is_taken(numbered())) ++number;
+    return numbered();
   }
 
   static void refuse_foreign_keys(const SceneTable& t, const std::string& word) {
@@ -219,14 +233,34 @@ class StageReader {
   }
 
   void unload(const SceneTable& t) {
-    if (!refuse_axes(t)) drive(t, stages_.back().record.way, -1.0);
+    if (refuse_axes(t)) return;
+    drive(t, stages_.back().record.way, -1.0);
+    require_way(t, -1.0);
+  }
+
+  /// A stress to unload to lies below that of the stage before, one to reload to above it. Where that stage goes by
+  /// strain, this is known in the run alone (note_stages).
+  void require_way(const SceneTable& t, double sign) const {
+    const std::optional<double> target = stages_.back().target_stress();
+    std::int64_t before = here() - 1;
+    while (before >= 0 && stages_[static_cast<std::size_t>(before)].record.kind == StageKind::hold) --before;
+    if (before < 0 || !target) return;
+    const MacroStage& from = stages_[static_cast<std::size_t>(before)];
+    const std::optional<double> there = from.target_stress();
+    if (!there || from.goes_to_mean() != stages_.back().goes_to_mean() || sign * (*target - *there) > 0.0) return;
+    t.add_error("stress",
+                fmt::format("must be {} the {:.6g} Pa of stage '{}', from which it {}", sign < 0.0 ? "below" : "above",
+                            *there, from.record.name, sign < 0.0 ? "unloads" : "reloads"));
   }
 
   /// Back to where the unloading before it began, unless it says how far.
   void reload(const SceneTable& t) {
     if (refuse_axes(t)) return;
     MacroStage& stage = stages_.back();
-    if (t.has("strain") || t.has("stress")) return drive(t, stage.record.way, 1.0);
+    if (t.has("strain") || t.has("stress")) {
+      drive(t, stage.record.way, 1.0);
+      return require_way(t, 1.0);
+    }
     std::int64_t from = here() - 1;
     while (from >= 0 && stages_[static_cast<std::size_t>(from)].record.kind == StageKind::hold) --from;
     if (from < 0 || stages_[static_cast<std::size_t>(from)].record.kind != StageKind::unload) {
@@ -259,8 +293,10 @@ class StageReader {
   void read_cycles(const SceneTable& t) {
     refuse_foreign_keys(t, kCycles);
     const std::int64_t count = t.count({"count", "of `\"cycles\"`: number of cycles"}, 1, 1000);
-    const std::string name = t.text(kNameKey, "cycle");
-    for (std::int64_t k = 1; k <= count; ++k) {
+    const std::string name = given_name(t, "cycle");
+    std::int64_t first = 1;  // cycles of an earlier table of this name come before
+    while (is_taken(fmt::format("{} {} unload", name, first))) ++first;
+    for (std::int64_t k = first; k < first + count; ++k) {
       stages_.push_back(begin(t, StageKind::unload));
       stages_.back().record.name = fmt::format("{} {} unload", name, k);
       unload(t);

@@ -352,9 +352,9 @@ MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantR
 
 std::array<double, 2> pressure_range(const std::vector<VariantResult>& results) {
   std::array<double, 2> range{kInfinity, 0.0};
-  for (const VariantResult& r : results)
-    for (const MacroCurve& c : r.curves)
-      for (const double p : state_curve(c, r.variant->name, 1.0).pressure) {
+  for (const VariantResult* r : first_compressed(results))
+    for (const MacroCurve& c : r->curves)
+      for (const double p : state_curve(c, r->variant->name, 1.0).pressure) {
         if (p > 0.0) range[0] = std::min(range[0], p);
         range[1] = std::max(range[1], p);
       }

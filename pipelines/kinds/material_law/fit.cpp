@@ -267,7 +267,6 @@ class MaterialLawFit {
 
   void fit_memory() {
     std::vector<ShearPath> paths;
-    std::vector<double> left;
     for (const std::size_t test : scene_.at.shear_tests)
       for (const MacroCurve& c : result(test).curves) {
         if (!c.usable) {
@@ -277,10 +276,9 @@ class MaterialLawFit {
         }
         paths.push_back(ShearPath::of(c));
       }
-    for (const MacroCurve& c : result(scene_.at.collapse).curves)
-      left.push_back((c.stress_x.back() + c.stress_y.back() + c.stress_axial.back()) / 3.0 / c.start.youngs_modulus);
-    const FinesBase fines{out_.card.modulus.value, out_.card.exponent.value, out_.card.void_ratio.value};
-    const ShearMemoryFit fit = fit_shear_memory(fines, paths, left, scene_.dense);
+    const FinesBase fines{out_.card.modulus.value, out_.card.exponent.value, out_.card.void_ratio.value,
+                          out_.card.start_pressure};
+    const ShearMemoryFit fit = fit_shear_memory(fines, paths, scene_.dense);
     if (!fit.usable) {
       out_.problems.push_back("shear memory: " + fit.message);
       return;
@@ -290,9 +288,9 @@ class MaterialLawFit {
     out_.card.memory = fit.memory;
     out_.summary.friction_deviation = fit.deviation;
     out_.summary.undetermined = fit.undetermined;
-    for (const CellCardNumber& n : numbers_of(out_.card))
-      if (std::ranges::none_of(out_.summary.numbers, [&](const LawNumber& known) { return known.name == n.key; }))
-        out_.summary.numbers.push_back({n.key, n.estimate});
+    const std::vector<CellCardNumber> all = numbers_of(out_.card);
+    for (auto n = std::ranges::find(all, "mu_f", &CellCardNumber::key); n != all.end(); ++n)
+      if (n->key != "K0") out_.summary.numbers.push_back({n->key, n->estimate});
     add_memory_curves(fines, fit);
   }
 

@@ -15,6 +15,7 @@
 #include "common/io/interrupt.h"
 #include "macrosim/body_contacts.h"
 #include "macrosim/cell_matter/material_point.h"
+#include "macrosim/cell_matter/shear_memory.h"
 #include "macrosim/test_protocol.h"
 
 namespace softgrain {
@@ -43,7 +44,7 @@ struct FittedNumber {
 
 constexpr std::array<FittedNumber, 6> kFitted{{{"mu_f", true, true, 0.02, 3.0, 0.5},
                                                {"chi", true, true, 0.05, 30.0, 3.0},
-                                               {"r_c", true, false, 0.5, 1.1, 0.95},
+                                               {"r_c", true, false, 0.5, 1.6, 0.95},
                                                {"m", false, true, 0.5, 200.0, 20.0},
                                                // Loose fines alone do not tell these two from r_c and m.
                                                {"A", true, false, 0.05, 2.0, 1.0},
@@ -129,10 +130,12 @@ class PathFit {
   LeastSquaresProblem problem_;
 };
 
+Estimate not_fitted(double value) { return {value, kInfinity, -kInfinity, kInfinity}; }
+
 /// The estimate of a number: fits to single samples scatter about the fit to all.
 Estimate estimate_of(const FittedNumber& number, double all, const std::vector<double>& single) {
   const double value = outward(number, all);
-  if (single.size() < 2) return {value, kInfinity, number.low, number.high};
+  if (single.size() < 2) return not_fitted(value);
   const MeanError mean = mean_error(single);
   const double slope = number.logarithmic ? value : 1.0;
   const Estimate e = student_estimate(all, mean.error, static_cast<double>(single.size() - 1),
@@ -209,15 +212,10 @@ ShearPrediction predict(const FinesBase& fines, const ShearNumbers& numbers, con
   return out;
 }
 
-ShearMemoryFit fit_shear_memory(const FinesBase& fines, const std::vector<ShearPath>& paths,
-                                const std::vector<double>& left_pressures, bool dense) {
+ShearMemoryFit fit_shear_memory(const FinesBase& fines, const std::vector<ShearPath>& paths, bool dense) {
   ShearMemoryFit out;
-  std::vector<double> left;
-  for (const double p : left_pressures)
-    left.push_back(p > 0.0 ? std::pow(p / fines.modulus, 1.0 / fines.exponent) : 0.0);
-  out.memory.least_state =
-      left.empty() ? Estimate{0.0, kInfinity, 0.0, 1.0} : mean_estimate(mean_error(left), 0.0, 1.0);
-  const double least_state = out.memory.least_state.value;
+  const double least_state = std::pow(kUnloadedPressure * fines.start_pressure / fines.modulus, 1.0 / fines.exponent);
+  out.memory.least_state = not_fitted(least_state);
   std::vector<const ShearPath*> all;
   std::size_t samples = 0;
   for (const ShearPath& path : paths) {
@@ -231,10 +229,13 @@ ShearMemoryFit fit_shear_memory(const FinesBase& fines, const std::vector<ShearP
   std::vector<double> start;
   for (std::size_t k = 0; k < count_of(dense); ++k) start.push_back(inward(kFitted[k], kFitted[k].start));
   const LeastSquaresFit fit = PathFit(fines, all, least_state, dense).run(start);
-  if (fit.parameters.empty() || fit.end == FitEnd::failed) {
-    out.message = fit.message;
+  if (fit.parameters.empty() || fit.end == FitEnd::failed || fit.end == FitEnd::capped || fit.rank_deficient) {
+    out.message = fit.rank_deficient ? "the tests do not determine all numbers: " + fit.message : fit.message;
     return out;
   }
+  constexpr double kNegligible = 0.1;  // standard deviations
+  if (fit.end == FitEnd::stalled && fit.step_left > kNegligible)
+    out.undetermined.push_back("the fit, which " + fit.message);
   std::vector<std::vector<double>> single(count_of(dense));
   for (std::size_t s = 0; s < samples; ++s) {
     std::vector<const ShearPath*> own;
@@ -250,10 +251,10 @@ ShearMemoryFit fit_shear_memory(const FinesBase& fines, const std::vector<ShearP
   out.stiffness = estimate(1);
   out.memory.critical_pores = estimate(2);
   out.memory.strength_slope = estimate(3);
-  out.memory.dilatancy = dense ? estimate(4) : Estimate{kFitted[4].start, kInfinity, 0.0, kInfinity};
-  out.memory.strength_range = dense ? estimate(5) : Estimate{kFitted[5].start, kInfinity, 0.0, 1.0};
-  out.memory.density_slope = {0.0, kInfinity, -kInfinity, kInfinity};
-  out.undetermined = leaning(fit);
+  out.memory.dilatancy = dense ? estimate(4) : not_fitted(kFitted[4].start);
+  out.memory.strength_range = dense ? estimate(5) : not_fitted(kFitted[5].start);
+  out.memory.density_slope = not_fitted(0.0);
+  for (std::string& one : leaning(fit)) out.undetermined.push_back(std::move(one));
   double sum = 0.0;
   std::size_t count = 0;
   const ShearNumbers numbers = numbers_at(fit.parameters, least_state);

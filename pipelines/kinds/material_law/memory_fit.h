@@ -30,11 +30,13 @@ struct ShearNumbers {
   CellMemory memory;       ///< values of the estimates alone
 };
 
-/// What is known before: the equation of state (porosity form) and the void ratio of the fines where they jam.
+/// What is known before: the equation of state (porosity form), the void ratio of the fines where they jam, and the
+/// pressure at which tests start.
 struct FinesBase {
   double modulus = 0.0;
   double exponent = 0.0;
   double void_ratio = 0.0;
+  double start_pressure = 0.0;  ///< over E
 };
 
 /// The law along a path: stress over E and solid fraction at its points. The onset at the start is that of the density
@@ -57,10 +59,10 @@ struct ShearMemoryFit {
 
 /// Least squares over all paths for mu_f, chi, r_c, m and, with `dense`, A and c (else 1 and 2/3; lambda = 0): ln p and
 /// the deviator over p, in units of 8 and 5 %; under constant lateral stress the solid fraction in units of 0.008 in
-/// place of p. Every path weighs the same. Errors are Student's over fits to single samples. x_r: from the mean
-/// pressure at the ends of the collapse tests. Not usable, with the reason: no convergence, a number at its bound.
-ShearMemoryFit fit_shear_memory(const FinesBase& fines, const std::vector<ShearPath>& paths,
-                                const std::vector<double>& left_pressures, bool dense);
+/// place of p. Every path weighs the same. Errors are Student's over fits to single samples. x_r is where the
+/// pressure is kUnloadedPressure of the start pressure. Not usable, with the reason: no convergence, a number at its
+/// bound.
+ShearMemoryFit fit_shear_memory(const FinesBase& fines, const std::vector<ShearPath>& paths, bool dense);
 
 /// About how long the fit takes [s of one core].
 double memory_fit_seconds(const MaterialLawScene& scene);

@@ -75,7 +75,7 @@ struct MemoryStrains {
   double unload = 0.02;
 };
 
-MemoryStrains read_memory(const SceneTable& law, MaterialLawScene& out) {
+MemoryStrains read_memory(const SceneTable& law, Preparation preparation, MaterialLawScene& out) {
   MemoryStrains s;
   out.memory = law.flag({"memory",
                          "whether cells remember shear: faces that yield gradually, onsets and strengths that "
@@ -87,10 +87,11 @@ MemoryStrains read_memory(const SceneTable& law, MaterialLawScene& out) {
   }
   law.refuse({"cells"}, "shear memory is fitted without cells");
   if (out.material.equation.form != StateForm::porosity) law.add_error("form", "memory = true goes with \"porosity\"");
+  if (preparation == Preparation::dense) law.refuse({"dense"}, "all fines are prepared so");
   out.dense = law.flag({"dense",
                         "with `memory`: whether fines of preparation `\"dense\"` are tested too, without which "
                         "A = 1 and c = 2/3 are taken"},
-                       true);
+                       preparation != Preparation::dense);
   const Range range{0.0, 0.3, true, false};
   s.isotropic = law.number({"isotropic_strain",
                             "with `memory`: nominal strain along each axis to which all packings are "
@@ -117,7 +118,7 @@ MaterialVariant test_of(const MaterialVariant& packing, const std::string& name,
   return v;
 }
 
-/// Fines in tests that shear memory is fitted to: `loose` ones also oedometrically, and until they collapse.
+/// Fines in tests that shear memory is fitted to: `loose` ones also oedometrically.
 void add_memory_tests(const MaterialVariant& packing, const MemoryStrains& strains, double shear, bool loose,
                       MaterialLawScene& out) {
   auto& variants = out.material.variants;
@@ -144,10 +145,6 @@ void add_memory_tests(const MaterialVariant& packing, const MemoryStrains& strai
   add("triaxial", {triaxial(0)});
   add("preload-triaxial", {preload, triaxial(1)});
   add("preload-shear", {preload, short_stage(spec, StageKind::shear, shear, spec.steps)});
-  if (!loose) return;
-  out.at.collapse = variants.size();
-  variants.push_back(
-      test_of(packing, packing.name + "-collapse", {short_stage(spec, StageKind::shear, shear, spec.steps)}));
 }
 
 /// All packings of a law with shear memory: compressed isotropically, which hardly moves onsets.
@@ -255,7 +252,7 @@ MaterialLawScene read_material_law_scene(const Scene& scene) {
     const double shear =
         law.number({"shear_strain", "logarithmic strain to which the fines are sheared at constant volume"}, Unit::none,
                    Range{0.0, 0.5, true, false}, 0.06);
-    const MemoryStrains strains = read_memory(law, out);
+    const MemoryStrains strains = read_memory(law, base.spec.preparation, out);
     if (root.has_errors()) return out;
     out.sizes = sizes_of(base.spec);
     make_variants(law, base, shear, strains, out);

@@ -22,7 +22,6 @@ struct LawPlaces {
   // With shear memory.
   std::vector<std::size_t> shear_tests{};  ///< tests of fines that shear memory is fitted to
   std::size_t oedometer = 0;               ///< one of them: where the lateral stress is taken from
-  std::size_t collapse = 0;  ///< fines sheared at constant volume from the start pressure: what pressure stays
 };
 
 struct MaterialLawScene {

@@ -50,6 +50,14 @@ Constituent read_constituent(const SceneTable& t, double density) {
   return c;
 }
 
+/// The density of the material is that of constituents that do not say their own.
+void refuse_idle_density(const SceneTable& root) {
+  const std::vector<SceneTable> all = root.tables("constituent");
+  if (all.empty() || !root.has("material")) return;
+  if (std::all_of(all.begin(), all.end(), [](const SceneTable& t) { return t.has("density"); }))
+    root.table("material").refuse({"density"}, "every [[constituent]] gives its own");
+}
+
 std::vector<Constituent> read_constituents(const SceneTable& root, double density) {
   std::vector<Constituent> out;
   double sum = 0.0;
@@ -290,6 +298,7 @@ void read_rest(const SceneTable& root, RecipeScene& out) {
                                   "grains of the check; it holds the coarsest levels: as many as possible with at "
                                   "least 60 grains above a third of the largest radius; 0: no check"},
                                  0, 10000000, out.check.grains);
+  if (out.check.grains == 0) check.refuse({"samples"}, "there is no check with grains = 0");
   out.check.samples = check.count({"samples", "samples of the check"}, 1, 1000, out.check.samples);
   const SceneTable macro = root.table_or_empty({"macro", "level 1, which is loaded with the cell law"});
   out.macro.grains =
@@ -365,6 +374,7 @@ RecipeScene read_recipe_scene(const Scene& scene) {
     base.samples = root.count({"samples", "samples of each packing"}, 1, 10000, base.samples);
     base.kept_states = read_kept_states(root, 0);
     out.constituents = read_constituents(root, base.spec.density);
+    refuse_idle_density(root);
     if (!out.constituents.empty())
       grains.refuse({"sizes", "exponent", "radius_max", "ratio"},
                     "goes without [[constituent]], which have sizes of their own");

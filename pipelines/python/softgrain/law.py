@@ -122,7 +122,8 @@ class CardLaw(Law):
         return self._values(kind, "stiffness", delta, radius, modulus, False, beyond)
 
     def tangential_stiffness(self, delta, kind="soft-solid", *, slope="initial", radius=None, modulus=None, beyond=None):
-        """kt [N/m]: slope at no rotation ("initial") or the secant at 1 degree ("secant")."""
+        """kt [N/m]: slope at no rotation ("initial") or the secant ("secant"), at 1 degree on a plane and 0.5 degree between soft
+        particles unless the law was measured otherwise."""
         return self._values(kind, "tangential", delta, radius, modulus, _is_secant(slope), beyond)
 
     def force_interval(self, delta, kind="soft-solid", *, radius=None, modulus=None, beyond=None):
