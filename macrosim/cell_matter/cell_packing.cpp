@@ -14,8 +14,9 @@ namespace softgrain {
 
 namespace {
 
-/// Parts of a strain step, the smallest: 2^-10.
+/// The smallest part of a strain step is this share of a usual one.
 constexpr int kMostParts = 1024;
+
 CellRoom room_of(const CellState& state, bool periodic) {
   if (periodic) return box_cell(state.high, {true, true, true});
   return PlaneBox{state.low, state.high};
@@ -114,6 +115,20 @@ BoxControl on_the_way(BoxControl control, const Matrix<3>& before, double done) 
   return control;
 }
 
+/// Parts in which a stress is gone to that is held: a large change of it at once may be far beyond what is borne on the
+/// way, where a relaxation wanders.
+int stress_parts(const BoxControl* control, const Matrix<3>& before) {
+  constexpr double kChange = 0.15;  // of the logarithm
+  constexpr double kMost = 64.0;
+  double largest = 0.0;
+  for (int k = 0; control != nullptr && k < 3; ++k) {
+    const bool pressed = control->by_stress[static_cast<std::size_t>(k)] && control->stress[k] > 0.0;
+    if (pressed && before[k][k] > 0.0)
+      largest = std::max(largest, std::abs(std::log(control->stress[k] / before[k][k])));
+  }
+  return static_cast<int>(std::clamp(std::ceil(largest / kChange), 1.0, kMost));
+}
+
 }  // namespace
 
 /// What a trial leaves behind.
@@ -178,46 +193,51 @@ CellPoint CellPacking::step(const Vec3& factor, const BoxControl* control, const
   tessellations_ = faces_ = 0;
   RelaxationResult end;
   const Matrix<3> stress_before = kept_stress_;
-  int parts = law_.memory ? std::min(memory_parts(largest_strain(factor)), kMostParts) : 1;
-  double done = 0.0;
-  for (int left = parts; left > 0;) {
+  const int parts =
+      law_.memory ? std::max(memory_parts(largest_strain(factor)), stress_parts(control, stress_before)) : 1;
+  const int whole = parts * kMostParts;
+  int size = kMostParts;
+  for (int left = whole; left > 0;) {
+    size = std::min(size, left);
     const auto sites = sites_;
     const auto periods = periods_;
     const CellRoom room = room_;
-    const auto take_back = [&] {
+    const auto halve = [&] {
       sites_ = sites;
       periods_ = periods;
       room_ = room;
       evaluate();
-      parts *= 2;
-      left *= 2;
+      size /= 2;
     };
     for (std::size_t i = 0; i < next_pores_.size(); ++i) content_[i].pores = next_pores_[i];
+    const double share = static_cast<double>(size) / static_cast<double>(whole);
     Vec3 part;
-    for (int k = 0; k < 3; ++k) part[k] = std::pow(factor[k], 1.0 / parts);
+    for (int k = 0; k < 3; ++k) part[k] = std::pow(factor[k], share);
     stretch(part);
     if (!evaluate()) {
-      take_back();
-      if (parts > kMostParts) {
-        *this = before;
-        throw UnusableResult("cells: even a small part of this strain leaves a cell without pores");
-      }
-      continue;
+      halve();
+      if (size > 0) continue;
+      *this = before;
+      throw UnusableResult("cells: even a small part of this strain leaves a cell without pores");
     }
-    const double next = done + (1.0 - done) / left;
+    const bool last = left == size;
     std::optional<Axes> axes;
-    if (control != nullptr && (left == 1 || law_.memory))
-      axes.emplace(*this, left == 1 ? *control : on_the_way(*control, stress_before, next));
+    if (control != nullptr && (last || law_.memory)) {
+      const double done = 1.0 - static_cast<double>(left - size) / static_cast<double>(whole);
+      axes.emplace(*this, last ? *control : on_the_way(*control, stress_before, done));
+    }
     const RelaxationResult part_end = rest(options, axes ? &*axes : nullptr);
-    if (law_.memory && axes && part_end.end == RelaxationEnd::converged && axes->strained() > 2.0 * kMemoryStrain &&
-        2 * parts <= kMostParts) {
-      take_back();
+    const bool steered = law_.memory && axes;
+    const bool rested = part_end.end == RelaxationEnd::converged;
+    if (steered && rested && axes->strained() > 2.0 * kMemoryStrain && size > 1) {
+      halve();
       continue;
     }
-    --left;
-    done = next;
+    left -= size;
     add_part(part_end, end);
     keep();
+    if (steered && !rested) break;  // a stress that is not borne: what comes after would start from nowhere
+    if (steered && axes->strained() < kMemoryStrain) size = std::min(2 * size, kMostParts);
   }
   CellPoint point = now();
   point.relaxation = end;

@@ -44,7 +44,7 @@ inline constexpr double kMemoryStrain = 2.5e-3;
 int memory_parts(double largest_strain);
 
 /// Cells whose pressure is below this share of the start pressure count as unloaded: where x_r lies.
-inline constexpr double kUnloadedPressure = 1e-3;
+inline constexpr double kUnloadedPressure = 1e-2;
 
 /// A face has six springs in parallel, each with a limit: Masing's rules for reversals, and the hyperbolic backbone
 /// tau/(mu p) = g/sqrt(1 + g^2), g = k u/(mu p A), in pieces between g = 0.1, 0.3, 0.7, 1.5, 3.5 and 9. Shares of the

@@ -10,7 +10,7 @@ namespace softgrain {
 namespace {
 
 /// Where x_r is 1e-3.
-const FinesBase kFines{0.04, 1.6, 0.7, 1e3 * 0.04 * std::pow(1e-3, 1.6)};
+const FinesBase kFines{0.04, 1.6, 0.7, 1e2 * 0.04 * std::pow(1e-3, 1.6)};
 
 ShearNumbers true_numbers() {
   ShearNumbers n{0.45, 2.5, {}};
