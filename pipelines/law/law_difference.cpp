@@ -1,5 +1,7 @@
 #include "pipelines/law/law_difference.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -16,6 +18,7 @@ struct Source {
   double low = 0.0;
   double high = 0.0;
   std::function<std::vector<LawPoint>(const std::vector<double>&)> values;
+  std::string secant{};  ///< what its secant of the tangential force is of
 };
 
 bool comparable(const PairLaw& law) {
@@ -25,9 +28,11 @@ bool comparable(const PairLaw& law) {
 std::optional<Source> card_source(const LawCard& card, PairKind kind) {
   const PairLaw* law = card.find(kind);
   if (law == nullptr || !comparable(*law)) return std::nullopt;
-  return Source{law->delta_min, law->delta_max, [&card, kind](const std::vector<double>& deltas) {
+  return Source{law->delta_min, law->delta_max,
+                [&card, kind](const std::vector<double>& deltas) {
                   return card_values(card, kind, deltas, Extrapolation::extrapolate);
-                }};
+                },
+                fmt::format("at {:g} degree{}", law->secant_angle_deg, law->secant_angle_deg > 1.0 ? "s" : "")};
 }
 
 std::optional<Source> table_source(const LawTable& table, PairKind kind, double solid_fraction) {
@@ -37,7 +42,8 @@ std::optional<Source> table_source(const LawTable& table, PairKind kind, double 
   q.beyond = Extrapolation::extrapolate;
   const auto ask = [&table, q](const std::vector<double>& deltas) { return multi_contact_values(table, q, deltas); };
   try {
-    return Source{0.0, ask({}).overlap_max, [ask](const std::vector<double>& deltas) { return ask(deltas).points; }};
+    return Source{0.0, ask({}).overlap_max, [ask](const std::vector<double>& deltas) { return ask(deltas).points; },
+                  "of slides"};
   } catch (const InputError&) {  // no comparable law, or none for soft neighbours
     return std::nullopt;
   }
@@ -97,6 +103,8 @@ void add(std::vector<LawDifference>& out, PairKind kind, const Source& a, const 
   const std::vector<LawPoint> of_b = b.values(deltas);
   for (const ComparedQuantity& w : compared_quantities()) {
     LawDifference d{to_string(kind), w.name, low, high, {}, 0.0, 0.0};
+    if (a.secant != b.secant && d.quantity.ends_with("secant"))
+      d.quantity += fmt::format(" (A {}, B {}: not the same)", a.secant, b.secant);
     for (std::size_t k = 0; k < deltas.size(); ++k) {
       const auto x = w.get(of_a[k]);
       const auto y = w.get(of_b[k]);
