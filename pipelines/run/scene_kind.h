@@ -30,6 +30,7 @@ struct SceneKind {
   KindResults results{};
   bool takes_law = false;     ///< whether --law goes with it
   bool takes_engine = false;  ///< whether --engine and what belongs to it do
+  bool has_twins = false;     ///< whether --twin-cache does
   /// What scenes must have, as TOML, before keys that go by it are asked for: one each (softgrain schema).
   std::vector<std::string> explored_from{""};
 };

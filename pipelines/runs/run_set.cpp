@@ -20,6 +20,15 @@
 
 namespace softgrain {
 
+void refuse_idle_cache(const SceneKind& kind, const CommonOptions& options) {
+  if (kind.has_twins || options.twin_cache.empty()) return;
+  std::string kinds;
+  for (const SceneKind& one : scene_kinds())
+    if (one.has_twins) append_part(kinds, fmt::format("\"{}\"", one.name), ", ");
+  throw InputError(
+      fmt::format("--twin-cache: scenes of kind \"{}\" have no resolved twins; those of {} do", kind.name, kinds));
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -77,6 +86,7 @@ class AllErrors {
 };
 
 void validate_options(const SceneKind& kind, const CommonOptions& options) {
+  refuse_idle_cache(kind, options);
   if (options.write_only) throw InputError("--write-only: goes with one run; leave it out, or --over and --seeds");
   if (!kind.takes_law && (!options.law.empty() || options.bands > 0))
     throw InputError("--law and --bands go with scenes of kind \"macro\"");

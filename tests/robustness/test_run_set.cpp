@@ -114,6 +114,10 @@ TEST_F(RunSet, EverythingThatIsWrongIsSaidBeforeAnyRun) {
   expect(program("macrosim", "--seeds 3..1 " + out), 2, {"--seeds 3..1", "must rise"});
   expect(program("macrosim", "--seeds 1..2 --seed 4 " + out), 2, {"--seeds: goes without --seed"});
   expect(program("sweep", "--over macro.bodies=6,7 --ranks 2 " + out), 2, {"--ranks"});
+  const auto twins = run_the_program("run '" SOFTGRAIN_SOURCE_DIR "/pipelines/material.toml' --twin-cache '" +
+                                     file("twins") + "' " + out);
+  EXPECT_EQ(twins.status, 2);
+  EXPECT_NE(twins.output.find("--twin-cache"), std::string::npos) << twins.output;
 }
 
 TEST_F(RunSet, FinishedRunsAreNotRepeatedAndMoreCanBeAdded) {
