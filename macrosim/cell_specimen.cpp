@@ -9,7 +9,6 @@
 #include "common/core/particles.h"
 #include "common/core/text.h"
 #include "macrosim/curve_notes.h"
-#include "macrosim/test_protocol.h"
 
 namespace softgrain {
 
@@ -144,17 +143,15 @@ CellSpecimen make_cells(const MacroSpec& spec, const MacroPacking& packing) {
 
 std::string compression_only_text(const MacroSpec& spec) {
   if (spec.cells->card.memory) return "";
-  std::string names;
-  for (const MacroStage& stage : stages_of(spec)) {
+  const std::string names = stage_names(spec, [](const MacroStage& stage) {
     const StageKind way = stage.record.way;
     const bool shears = way == StageKind::shear || way == StageKind::triaxial || way == StageKind::axes;
-    const bool counts = stage.record.kind == StageKind::unload || (shears && stage.record.kind != StageKind::hold);
-    if (counts && names.size() < 60) append_part(names, "'" + stage.record.name + "'", ", ");
-  }
+    return stage.record.kind == StageKind::unload || (shears && stage.record.kind != StageKind::hold);
+  });
   if (names.empty()) return "";
   return fmt::format(
       "the card has no shear memory and serves compression, not {}: in tests with its own fines an unloading modulus "
-      "was a third too low, and stresses of loose fines sheared at constant volume were 3 to 9 times too high or more; "
+      "was a third too low, and stresses of loose fines sheared at constant volume were at least 3 times too high; "
       "kind \"material-law\" measures a card with it ([law] memory = true)",
       names);
 }

@@ -15,7 +15,8 @@
 
 namespace softgrain {
 
-/// The law of a card for grains of modulus E [Pa].
+/// The law of a card for the grains of a scene. x_r is that of the card, or lower where the start pressure of the scene
+/// asks for it (kUnloadedPressure).
 CellLaw cell_law_of(const CellCard& card, const MacroSpec& spec);
 FinesLaw fines_law_of(const CellCard& card, double youngs_modulus);
 

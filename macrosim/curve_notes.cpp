@@ -95,12 +95,17 @@ void note_stages(MacroCurve& c, const std::vector<MacroStage>& stages) {
   }
 }
 
-std::string no_unloading_text(const MacroSpec& spec, const std::string& law) {
-  if (spec.test != MacroTest::stages) return "";
+std::string stage_names(const MacroSpec& spec, const std::function<bool(const MacroStage&)>& counts) {
+  constexpr std::size_t kLongEnough = 60;
   std::string names;
-  for (const MacroStage& stage : spec.stages)
-    if (stage.record.kind == StageKind::unload && names.size() < 60)
-      append_part(names, "'" + stage.record.name + "'", ", ");
+  for (const MacroStage& stage : stages_of(spec))
+    if (counts(stage) && names.size() < kLongEnough) append_part(names, "'" + stage.record.name + "'", ", ");
+  return names;
+}
+
+std::string no_unloading_text(const MacroSpec& spec, const std::string& law) {
+  const std::string names =
+      stage_names(spec, [](const MacroStage& stage) { return stage.record.kind == StageKind::unload; });
   if (names.empty()) return "";
   return fmt::format(
       "{} has no unloading branch: it gives back what it took, and the unloading modulus of {} is the loading modulus "

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,9 @@ void note_out_of_reach(MacroCurve& curve, const MacroStage& stage, const Vec3& a
 /// they began, although it was zero, have free sides: another test than in a sample under stress. Stages that unload to
 /// a higher stress, or reload to a lower one, make the curve not usable.
 void note_stages(MacroCurve& curve, const std::vector<MacroStage>& stages);
+
+/// "'unload', 'unload 2'": names of the stages of a test that count; a long list is cut.
+std::string stage_names(const MacroSpec& spec, const std::function<bool(const MacroStage&)>& counts);
 
 /// What is to be said of a law without unloading branch in a test that unloads; empty where nothing is unloaded.
 std::string no_unloading_text(const MacroSpec& spec, const std::string& law);

@@ -14,8 +14,8 @@ namespace softgrain {
 
 namespace {
 
-/// The smallest part of a strain step is this share of a usual one.
-constexpr int kMostParts = 1024;
+/// A part of a strain step is halved until it is 1/kFinest of its first size, and no further.
+constexpr int kFinest = 1024;
 
 CellRoom room_of(const CellState& state, bool periodic) {
   if (periodic) return box_cell(state.high, {true, true, true});
@@ -115,8 +115,8 @@ BoxControl on_the_way(BoxControl control, const Matrix<3>& before, double done) 
   return control;
 }
 
-/// Parts in which a stress is gone to that is held: a large change of it at once may be far beyond what is borne on the
-/// way, where a relaxation wanders.
+/// Parts in which held stresses go to their targets: with a large change at once a relaxation may strain the cells far
+/// beyond the strain at which the stress is reached in small parts.
 int stress_parts(const BoxControl* control, const Matrix<3>& before) {
   constexpr double kChange = 0.15;  // of the logarithm
   constexpr double kMost = 64.0;
@@ -195,8 +195,8 @@ CellPoint CellPacking::step(const Vec3& factor, const BoxControl* control, const
   const Matrix<3> stress_before = kept_stress_;
   const int parts =
       law_.memory ? std::max(memory_parts(largest_strain(factor)), stress_parts(control, stress_before)) : 1;
-  const int whole = parts * kMostParts;
-  int size = kMostParts;
+  const int whole = parts * kFinest;
+  int size = kFinest;
   for (int left = whole; left > 0;) {
     size = std::min(size, left);
     const auto sites = sites_;
@@ -206,7 +206,6 @@ CellPoint CellPacking::step(const Vec3& factor, const BoxControl* control, const
       sites_ = sites;
       periods_ = periods;
       room_ = room;
-      evaluate();
       size /= 2;
     };
     for (std::size_t i = 0; i < next_pores_.size(); ++i) content_[i].pores = next_pores_[i];
@@ -237,7 +236,7 @@ CellPoint CellPacking::step(const Vec3& factor, const BoxControl* control, const
     add_part(part_end, end);
     keep();
     if (steered && !rested) break;  // a stress that is not borne: what comes after would start from nowhere
-    if (steered && axes->strained() < kMemoryStrain) size = std::min(2 * size, kMostParts);
+    if (steered && axes->strained() < kMemoryStrain) size = std::min(2 * size, kFinest);
   }
   CellPoint point = now();
   point.relaxation = end;

@@ -37,32 +37,33 @@ struct Command {
   const char* inputs_help;
   int least;
   int most;
-  bool saves;  ///< whether it saves at a signal what it has done; others end at once
+  bool saves;     ///< whether it saves at a signal what it has done; others end at once
+  bool settings;  ///< whether --set and --seed mean anything
   ExitStatus (*function)(const CommonOptions&);
 };
 
 constexpr std::array<Command, 9> kCommands{{
     {"run", "End to end: pack, measure, fit, macro, resolved twin, compare, report", "PIPELINE.toml", "pipeline to run",
-     1, 1, true, command_run},
+     1, 1, true, true, command_run},
     {"microsim",
      "One particle-scale scene: soft particles packed and measured, particles and walls, a grain box, a cohesive "
      "powder",
-     "SCENE.toml", "scene to run", 1, 1, true, command_microsim},
+     "SCENE.toml", "scene to run", 1, 1, true, true, command_microsim},
     {"calibrate", "Fits contact laws to measurements and writes the law card and its table", "DATA",
-     "files of measurements: .h5 of this program, or .csv of an experiment", 1, 1000, false, command_calibrate},
+     "files of measurements: .h5 of this program, or .csv of an experiment", 1, 1000, false, true, command_calibrate},
     {"macrosim", "One macro scene with soft particles that act by a fitted law", "SCENE.toml", "scene to run", 1, 1,
-     true, command_macrosim},
+     true, true, command_macrosim},
     {"sweep", "One scene over values of its keys and over seeds, each run in a directory of its own; a table and plots",
-     "SCENE.toml", "scene to run", 1, 1, true, command_sweep},
+     "SCENE.toml", "scene to run", 1, 1, true, true, command_sweep},
     {"compare", "What differs between runs, their numbers, error norms and cost: A, B, ... against the last one", "RUN",
      "run directories or result files, the reference last; one: what a run holds within itself", 1, kMostCompared,
-     false, command_compare},
-    {"report", "Writes a self-contained report.html of a run directory", "DIR", "run directory", 1, 1, false,
+     false, false, command_compare},
+    {"report", "Writes a self-contained report.html of a run directory", "DIR", "run directory", 1, 1, false, false,
      command_report},
     {"check", "Validates a scene, card, result or run directory and says what follows from it, without running", "FILE",
-     "file or run directory to check", 1, 1, false, command_check},
+     "file or run directory to check", 1, 1, false, true, command_check},
     {"export", "Writes the states of a run for ParaView, OVITO and others; default RUN/export-FORM", "RUN",
-     "run directory, or one of its files with states", 1, 1, false, command_export},
+     "run directory, or one of its files with states", 1, 1, false, false, command_export},
 }};
 
 constexpr const char* kFooter =
@@ -198,11 +199,10 @@ void require_inputs(const Command& command, const CommonOptions& options) {
 
 /// Options that all commands know and that this one has no use for.
 void refuse_idle_options(const Command& command, const CommonOptions& options) {
-  const auto is = [&](auto... functions) { return ((command.function == functions) || ...); };
   if (options.resume && !command.saves)
     throw InputError(
         fmt::format("--resume: {} saves nothing on its way; run, microsim, macrosim and sweep go on", command.name));
-  if (!is(command_compare, command_report, command_export)) return;
+  if (command.settings) return;
   if (!options.overrides.empty()) throw InputError(fmt::format("--set: {} reads no scene", command.name));
   if (options.seed_given) throw InputError(fmt::format("--seed: {} draws no random numbers", command.name));
 }

@@ -83,6 +83,7 @@ void check_summary(const std::string& path, Findings& out) {
   out.facts["command"] = known.command;
   if (!is_good(known.status)) out.warn("the run says of itself: " + known.status);
   for (const std::string& warning : warnings_of(known)) out.warn(warning);
+  out.facts["notes"] = notes_of(known);
   for (const std::string& note : notes_of(known)) out.lines += "  note: " + note + "\n";
 }
 

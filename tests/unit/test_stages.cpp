@@ -112,6 +112,8 @@ TEST(Stages, NamesAreUnlike) {
   const std::vector<std::string> counted{"oedometric",     "cycle 1 unload", "cycle 1 reload", "cycle 2 unload",
                                          "cycle 2 reload", "small 1 unload", "small 1 reload"};
   EXPECT_EQ(names(load + cycles + cycles + cycles + "name = \"small\"\n"), counted);
+  const std::vector<std::string> apart{"cycle 1 reload", "cycle 2 unload", "cycle 2 reload"};
+  EXPECT_EQ(names(load + "name = \"cycle 1 reload\"\n" + cycles), apart);
   const std::vector<std::string> numbered{"oedometric 3", "oedometric 2", "oedometric 4"};
   EXPECT_EQ(names(load + "name = \"oedometric 3\"\n" + load + load), numbered);
 }
