@@ -48,7 +48,7 @@ ExitStatus run_scene(const CommonOptions& options, const std::string& command) {
         fmt::format("{}: scenes of kind \"{}\" run in our own engine alone: --engine, --ranks and --write-only "
                     "go with {}",
                     command, kind.name, kinds_with_engine()));
-  refuse_idle_cache(kind, options);
+  refuse_idle_caches(kind, options);
   warn_of_cores(options);
   if (!options.seeds.empty()) {
     if (options.seed_given) throw InputError("--seeds: goes without --seed");

@@ -38,6 +38,7 @@ std::vector<LawPoint> card_values(const LawCard& card, PairKind kind, const std:
     p.delta = delta;
     p.where = place(law, delta);
     p.refused = p.where == Where::beyond && initial.range.beyond == Extrapolation::error;
+    p.clamped = p.where == Where::beyond && initial.range.beyond == Extrapolation::clamp;
     const ContactResponse<3> r = ask(initial, delta);
     const bool measured = p.where != Where::beyond;
     const auto quantity = [&](double value, const auto& interval, LawPart part) {
@@ -55,7 +56,7 @@ std::vector<LawPoint> card_values(const LawCard& card, PairKind kind, const std:
   return out;
 }
 
-std::string where_text(const LawPoint& point, Extrapolation beyond) {
+std::string where_text(const LawPoint& point) {
   switch (point.where) {
     case Where::no_contact:
       return "no contact";
@@ -65,7 +66,7 @@ std::string where_text(const LawPoint& point, Extrapolation beyond) {
       return "";
     default:
       if (point.refused) return "beyond range: refused";
-      return beyond == Extrapolation::clamp ? "beyond range: clamped" : "beyond range: extrapolated";
+      return point.clamped ? "beyond range: clamped" : "beyond range: extrapolated";
   }
 }
 

@@ -39,6 +39,7 @@ struct LawPoint {
   std::vector<double> forces{};                  ///< multi-contact laws: on every neighbour
   double volume = 0.0;                           ///< multi-contact laws: equivalent volume S
   double friction_limit = 0.0;                   ///< multi-contact laws: mu F, over E R^2
+  bool clamped = false;                          ///< the law stays at the force of the end of its range
 };
 
 /// The law of a card at overlaps Delta. `beyond` instead of what the card says. Throws InputError when the card has no
@@ -73,7 +74,7 @@ MultiContactAnswer multi_contact_values(const LawTable& table, const MultiContac
                                         const std::vector<double>& deltas);
 
 /// "no contact", "below range", "beyond range: extrapolated"...; empty inside.
-std::string where_text(const LawPoint& point, Extrapolation beyond);
+std::string where_text(const LawPoint& point);
 
 /// n >= 2 values evenly spread over [low, high], the ends exact.
 std::vector<double> even(double low, double high, std::size_t n);

@@ -15,6 +15,8 @@ namespace softgrain::law {
 
 namespace {
 
+constexpr double kRangeRounding = 1e-9;
+
 struct Neighbours {
   std::vector<MultiContactNeighbour> around;
   std::vector<double> share;  ///< overlap of each neighbour over Delta
@@ -91,11 +93,15 @@ std::optional<LawInterval> tangential_interval(double kt, const Quantity& kn, co
   return LawInterval{std::max(0.0, kt - half), kt + half, kFromPackings};
 }
 
+/// Where the law is clamped or extrapolated: it knows the lost volume alone.
+bool squeezed(const LawTableEntry& entry, const LawPoint& p) {
+  return entry.volume_max > 0.0 && p.volume > entry.volume_max * (1.0 + kRangeRounding);
+}
+
 Where place(const MultiContactAnswer& answer, const LawPoint& p) {
   if (!(p.force.value > 0.0)) return Where::no_contact;
-  const bool deep = p.delta > answer.overlap_max * (1.0 + 1e-9);
-  const bool squeezed = answer.entry.volume_max > 0.0 && p.volume > answer.entry.volume_max * (1.0 + 1e-9);
-  return deep || squeezed ? Where::beyond : Where::inside;
+  const bool deep = p.delta > answer.overlap_max * (1.0 + kRangeRounding);
+  return deep || squeezed(answer.entry, p) ? Where::beyond : Where::inside;
 }
 
 /// One law for every replicate, at the solid fraction that was asked for.
@@ -155,6 +161,7 @@ MultiContactAnswer multi_contact_values(const LawTable& table, const MultiContac
         point_of(ask(laws, around, delta), delta, raws, out.entry.packings, slide_for(out.entry, q.partner).kt_ratio);
     p.where = place(out, p);
     p.refused = p.where == Where::beyond && beyond == Extrapolation::error;
+    p.clamped = beyond == Extrapolation::clamp && squeezed(out.entry, p);
     if (p.where == Where::beyond) forget_intervals(p);
     out.points.push_back(std::move(p));
   }

@@ -26,7 +26,7 @@ struct Pair {
   double ratio = 1.0;
   double deepest = 0.0;   ///< h [m]
   double measured = 0.0;  ///< h up to which the law was measured [m]
-  Extrapolation beyond = Extrapolation::extrapolate;
+  std::string beyond;     ///< what the law does at larger overlaps
   std::function<Response(double)> at;
 };
 
@@ -43,9 +43,8 @@ PairTable tabulate(const Pair& pair, const PairTableChoice& choice) {
       fmt::format("soft particle of radius {:.6g} m with a {} of radius {:.6g} m, overlaps to {:.4g} m", t.soft_radius,
                   pair.kind == PairKind::soft_solid ? "solid sphere" : "soft particle", t.other_radius, pair.deepest);
   if (pair.deepest > pair.measured * (1.0 + 1e-12))
-    t.meaning += fmt::format("; measured to {:.4g} m, {} beyond: nothing says how far off rows with r below {:.6g} are",
-                             pair.measured, pair.beyond == Extrapolation::clamp ? "clamped" : "extrapolated",
-                             t.soft_radius + t.other_radius - pair.measured);
+    t.meaning += fmt::format("; measured to {:.4g} m, {}: nothing says how far off rows with r below {:.6g} are",
+                             pair.measured, pair.beyond, t.soft_radius + t.other_radius - pair.measured);
   const double touch = t.soft_radius + t.other_radius;
   if (!(pair.deepest < std::min(t.soft_radius, t.other_radius) * 2.0) || !(pair.deepest < touch))
     throw InputError(
@@ -76,7 +75,12 @@ Pair card_pair(const LawCard& card, PairKind kind, double ratio, const PairTable
   if (wanted > law.delta_max && contact.range.beyond == Extrapolation::error)
     refuse_depth(wanted, law.delta_max, "Delta");
   const PairConstants constants = contact.pair_constants({choice.radius, choice.radius * ratio, 0.0, 0.0});
-  return {kind, ratio, wanted * constants.a, law.delta_max * constants.a, contact.range.beyond, [=](double overlap) {
+  return {kind,
+          ratio,
+          wanted * constants.a,
+          law.delta_max * constants.a,
+          contact.range.beyond == Extrapolation::clamp ? "clamped beyond" : "extrapolated beyond",
+          [=](double overlap) {
             ContactState<3> s;
             s.overlap = overlap;
             s.normal[0] = 1.0;
@@ -146,7 +150,11 @@ Pair table_pair(const LawTable& table, PairKind kind, double ratio, const PairTa
   const auto scaled = [e](const Response& a, double r) {
     return Response{e * r * r * r * a.energy, e * r * r * a.force, e * r * a.stiffness};
   };
-  return {kind, ratio, wanted * r1, end * r1, beyond, [=](double overlap) {
+  std::string after =
+      beyond == Extrapolation::clamp
+          ? fmt::format("extrapolated beyond, clamped above a lost volume of {:.4g} R^3", answer.entry.volume_max)
+          : "extrapolated beyond";
+  return {kind, ratio, wanted * r1, end * r1, std::move(after), [=](double overlap) {
             Response sum = scaled(own.at(overlap / r1), r1);
             if (kind == PairKind::soft_solid) return sum;
             const Response second = scaled(other.at(overlap / r2), r2);

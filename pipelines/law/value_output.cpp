@@ -61,7 +61,7 @@ Row console_row(const LawPoint& p, const ValueTable& t, const ValueUnits& u) {
 std::string legend(const ValueTable& t) {
   std::set<std::string> seen;
   for (const LawPoint& p : t.points)
-    if (!mark(p).empty()) seen.insert(mark(p) + "  " + where_text(p, t.beyond));
+    if (!mark(p).empty()) seen.insert(mark(p) + "  " + where_text(p));
   std::string text;
   for (const std::string& line : seen) text += "  " + line + "\n";
   return text;
@@ -135,7 +135,7 @@ std::string values_csv(const std::vector<ValueTable>& tables, const ValueUnits& 
       add_cells(line, given(p.stiffness), u.stiffness());
       add_cells(line, given(p.tangential_initial), u.stiffness());
       add_cells(line, given(p.tangential_secant), u.stiffness());
-      text += line + "," + where_text(p, t.beyond) + "\n";
+      text += line + "," + where_text(p) + "\n";
     }
   return text;
 }
@@ -147,7 +147,7 @@ json values_json(const ValueTable& t, const ValueUnits& u) {
   out["units"] = {{"force", force_unit(u)}, {"stiffness", stiffness_unit(u)}};
   out["values"] = json::array();
   for (const LawPoint& p : t.points) {
-    json one{{"delta", p.delta}, {"where", p.where == Where::inside ? "inside" : where_text(p, t.beyond)}};
+    json one{{"delta", p.delta}, {"where", p.where == Where::inside ? "inside" : where_text(p)}};
     const auto given = [&](const std::optional<Quantity>& q) { return p.refused ? std::nullopt : q; };
     put(one, "force", given(p.force), u.force());
     put(one, "stiffness", given(p.stiffness), u.stiffness());

@@ -15,6 +15,13 @@
 
 namespace softgrain {
 
+/// Which results of a kind can be kept for other runs; an option that names a folder for others is refused.
+struct KeptBetweenRuns {
+  bool measurements = false;  ///< --law-cache: measurements of law tables, tests of materials
+  bool packings = false;      ///< --packing-cache
+  bool twins = false;         ///< --twin-cache
+};
+
 struct SceneKind {
   const char* name = "";     ///< value of the key `kind`
   const char* command = "";  ///< command that runs it: "run", "microsim" or "macrosim"
@@ -30,7 +37,7 @@ struct SceneKind {
   KindResults results{};
   bool takes_law = false;     ///< whether --law goes with it
   bool takes_engine = false;  ///< whether --engine and what belongs to it do
-  bool has_twins = false;     ///< whether --twin-cache does
+  KeptBetweenRuns keeps{};
   /// What scenes must have, as TOML, before keys that go by it are asked for: one each (softgrain schema).
   std::vector<std::string> explored_from{""};
 };

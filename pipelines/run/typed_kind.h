@@ -29,8 +29,8 @@ struct TypedKind {
   /// What follows from the scene without running it. Throws InputError, IoError.
   void (*check)(const Setup& setup, Findings& out) = nullptr;
   KindResults results{};
+  KeptBetweenRuns keeps{};                     ///< as SceneKind::keeps
   std::vector<std::string> explored_from{""};  ///< as SceneKind::explored_from
-  bool has_twins = false;                      ///< as SceneKind::has_twins
 };
 
 /// The entry of such a kind in the table; each function of it reads the scene once.
@@ -49,7 +49,7 @@ SceneKind scene_kind(const TypedKind<Setup>& kind) {
       .check = [kind](const Scene& scene, const CommonOptions&, Findings& out) { kind.check(kind.read(scene), out); },
       .read = [kind](const Scene& scene) { (void)kind.read(scene); },
       .results = kind.results,
-      .has_twins = kind.has_twins,
+      .keeps = kind.keeps,
       .explored_from = kind.explored_from};
 }
 

@@ -20,13 +20,18 @@
 
 namespace softgrain {
 
-void refuse_idle_cache(const SceneKind& kind, const CommonOptions& options) {
-  if (kind.has_twins || options.twin_cache.empty()) return;
-  std::string kinds;
-  for (const SceneKind& one : scene_kinds())
-    if (one.has_twins) append_part(kinds, fmt::format("\"{}\"", one.name), ", ");
-  throw InputError(
-      fmt::format("--twin-cache: scenes of kind \"{}\" have no resolved twins; those of {} do", kind.name, kinds));
+void refuse_idle_caches(const SceneKind& kind, const CommonOptions& options) {
+  const auto refuse = [&](const char* option, const std::string& folder, bool KeptBetweenRuns::*kept) {
+    if (folder.empty() || kind.keeps.*kept) return;
+    std::string kinds;
+    for (const SceneKind& one : scene_kinds())
+      if (one.keeps.*kept) append_part(kinds, fmt::format("\"{}\"", one.name), ", ");
+    throw InputError(
+        fmt::format("{}: scenes of kind \"{}\" have nothing to keep there; those of {} do", option, kind.name, kinds));
+  };
+  refuse("--law-cache", options.law_cache, &KeptBetweenRuns::measurements);
+  refuse("--packing-cache", options.packing_cache, &KeptBetweenRuns::packings);
+  refuse("--twin-cache", options.twin_cache, &KeptBetweenRuns::twins);
 }
 
 namespace {
@@ -86,7 +91,7 @@ class AllErrors {
 };
 
 void validate_options(const SceneKind& kind, const CommonOptions& options) {
-  refuse_idle_cache(kind, options);
+  refuse_idle_caches(kind, options);
   if (options.write_only) throw InputError("--write-only: goes with one run; leave it out, or --over and --seeds");
   if (!kind.takes_law && (!options.law.empty() || options.bands > 0))
     throw InputError("--law and --bands go with scenes of kind \"macro\"");

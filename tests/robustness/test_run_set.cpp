@@ -114,10 +114,20 @@ TEST_F(RunSet, EverythingThatIsWrongIsSaidBeforeAnyRun) {
   expect(program("macrosim", "--seeds 3..1 " + out), 2, {"--seeds 3..1", "must rise"});
   expect(program("macrosim", "--seeds 1..2 --seed 4 " + out), 2, {"--seeds: goes without --seed"});
   expect(program("sweep", "--over macro.bodies=6,7 --ranks 2 " + out), 2, {"--ranks"});
-  const auto twins = run_the_program("run '" SOFTGRAIN_SOURCE_DIR "/pipelines/material.toml' --twin-cache '" +
-                                     file("twins") + "' " + out);
-  EXPECT_EQ(twins.status, 2);
-  EXPECT_NE(twins.output.find("--twin-cache"), std::string::npos) << twins.output;
+}
+
+TEST_F(RunSet, CachesThatAKindHasNothingForAreRefused) {
+  const std::vector<std::pair<std::string, std::string>> idle{{"material.toml", "--twin-cache"},
+                                                              {"law_table.toml", "--packing-cache"},
+                                                              {"inverse.toml", "--law-cache"},
+                                                              {"glass_beads_small.toml", "--packing-cache"}};
+  for (const auto& [scene, option] : idle) {
+    const auto outcome = run_the_program("run '" SOFTGRAIN_SOURCE_DIR "/pipelines/" + scene + "' " + option + " '" +
+                                         file("kept") + "' --out " + quoted("out"));
+    EXPECT_EQ(outcome.status, 2) << scene;
+    EXPECT_NE(outcome.output.find(option + ": scenes of kind"), std::string::npos) << outcome.output;
+    EXPECT_FALSE(fs::exists(file("out")));
+  }
 }
 
 TEST_F(RunSet, FinishedRunsAreNotRepeatedAndMoreCanBeAdded) {

@@ -74,6 +74,7 @@ TEST(CardValues, BeyondTheRange) {
   EXPECT_GT(extrapolated[3].force.value, extrapolated[1].force.value);
   const auto clamped = at(Extrapolation::clamp);
   EXPECT_EQ(clamped[3].force.value, clamped[1].force.value);
+  EXPECT_EQ(law::where_text(clamped[3]), "beyond range: clamped");
   // Nothing says how far off a law is where nobody measured it: no interval, whatever the law does there.
   for (const auto* points : {&extrapolated, &clamped}) {
     const LawPoint& beyond = (*points)[3];
@@ -253,6 +254,21 @@ TEST(MultiContactTables, IntervalsAreThoseOfTheReplicates) {
   EXPECT_FALSE(deep.points[1].force.interval || deep.points[1].stiffness.interval);
   q.form = LawForm::isotropic;
   EXPECT_FALSE(law::multi_contact_values({1, {entry}}, q, {0.2}).points[0].force.interval.has_value());
+}
+
+// The law knows the lost volume alone: a single cap deeper than any that was measured is not clamped before its volume
+// is.
+TEST(MultiContactTables, AreClampedByTheLostVolume) {
+  LawTableEntry entry = synthetic::law_entry();
+  entry.volume_max = 0.5;
+  law::MultiContactQuestion q;
+  q.beyond = Extrapolation::clamp;
+  const double end = law::multi_contact_values({1, {entry}}, q, {}).overlap_max;
+  const std::vector<LawPoint> points = law::multi_contact_values({1, {entry}}, q, {0.9 * end, 1.1 * end, 1.9}).points;
+  ASSERT_LT(points[1].volume, 0.5);
+  EXPECT_EQ(law::where_text(points[0]), "");
+  EXPECT_EQ(law::where_text(points[1]), "beyond range: extrapolated");
+  EXPECT_EQ(law::where_text(points[2]), "beyond range: clamped");
 }
 
 TEST(MultiContactTables, ReplicatesAreKeptBesideTheTableAndBelongToItsNumbers) {

@@ -147,10 +147,12 @@ TEST(PairTable, AClampedLawStaysConstantAndItsEnergyGoesOn) {
   c.kinds = {PairKind::soft_solid};
   const law::PairTable t = law::pair_tables(published(), c).front();
   EXPECT_EQ(t.force[0], t.force[1]);
+  EXPECT_NE(t.meaning.find(" m, clamped beyond: "), std::string::npos) << t.meaning;
   EXPECT_NEAR((t.energy[0] - t.energy[1]) / (t.r[1] - t.r[0]), t.force[0], 1e-6 * t.force[0]);
   LawTableEntry entry = synthetic::law_entry();
   entry.volume_max = 0.01;
   const law::PairTable clamped = law::pair_tables({LawTable{1, {entry}}}, c).front();
+  EXPECT_NE(clamped.meaning.find("extrapolated beyond, clamped above a lost volume of 0.01 R^3"), std::string::npos);
   const double step = clamped.r[1] - clamped.r[0];
   expect_derivative(clamped.energy, clamped.force, step, 2e-4 * clamped.force.front());
 }

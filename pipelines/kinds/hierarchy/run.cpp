@@ -246,6 +246,7 @@ SceneKind hierarchy_kind() {
                   .lines = lines_of,
                   .values = values_of,
                   .next = next_of},
+      .keeps = {.measurements = true},
       .explored_from = {"", "[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"}});
 }
 

@@ -88,6 +88,7 @@ SceneKind law_table_kind() {
       .run = run_law_table,
       .check = check_law_table,
       .results = law_table_results(),
+      .keeps = {.measurements = true},
       .explored_from = {"", "[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"}});
 }
 

@@ -240,7 +240,7 @@ SceneKind macro_kind() {
           .results = macro_results(),
           .takes_law = true,
           .takes_engine = true,
-          .has_twins = true,
+          .keeps = {.packings = true, .twins = true},
           .explored_from = {"", explored_stages()}};
 }
 

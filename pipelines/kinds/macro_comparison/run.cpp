@@ -213,15 +213,16 @@ Outcome run_macro_comparison(const MacroComparisonSetup& setup, const Run& run) 
 }  // namespace
 
 SceneKind macro_comparison_kind() {
-  return scene_kind(TypedKind<MacroComparisonSetup>{.name = "macro-comparison",
-                                                    .command = "run",
-                                                    .read = read_macro_comparison,
-                                                    .inputs = inputs_of,
-                                                    .run = run_macro_comparison,
-                                                    .check = check_macro_comparison,
-                                                    .results = macro_comparison_results(),
-                                                    .explored_from = {"", explored_stages(), explored_stages("scene")},
-                                                    .has_twins = true});
+  return scene_kind(
+      TypedKind<MacroComparisonSetup>{.name = "macro-comparison",
+                                      .command = "run",
+                                      .read = read_macro_comparison,
+                                      .inputs = inputs_of,
+                                      .run = run_macro_comparison,
+                                      .check = check_macro_comparison,
+                                      .results = macro_comparison_results(),
+                                      .keeps = {.packings = true, .twins = true},
+                                      .explored_from = {"", explored_stages(), explored_stages("scene")}});
 }
 
 }  // namespace softgrain

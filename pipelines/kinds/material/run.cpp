@@ -425,6 +425,7 @@ SceneKind material_kind() {
           .read = [](const Scene& scene) { (void)read_material_scene(scene); },
           .results = material_results(),
           .takes_engine = true,
+          .keeps = {.measurements = true, .packings = true},
           .explored_from = {"", explored_stages(), explored_stages("loading"), explored_stages("variant")}};
 }
 

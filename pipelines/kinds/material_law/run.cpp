@@ -63,7 +63,8 @@ SceneKind material_law_kind() {
                                                 .inputs = inputs_of,
                                                 .run = run_material_law,
                                                 .check = check_material_law,
-                                                .results = material_law_results()});
+                                                .results = material_law_results(),
+                                                .keeps = {.measurements = true, .packings = true}});
 }
 
 }  // namespace softgrain

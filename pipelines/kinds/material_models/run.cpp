@@ -66,6 +66,7 @@ SceneKind material_models_kind() {
                                      .run = run_material_models,
                                      .check = check_models,
                                      .results = material_models_results(),
+                                     .keeps = {.measurements = true, .packings = true},
                                      .explored_from = {"", explored_stages(), explored_stages("variant")}});
 }
 

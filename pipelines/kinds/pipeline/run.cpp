@@ -303,10 +303,10 @@ SceneKind pipeline_kind() {
       .run = run_pipeline,
       .check = check_pipeline,
       .results = {.next = next_of},
-      .explored_from =
-          {"", "[macro]\n" + explored_stages(),
-           "[macro]\n[multi_contact]\n[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"},
-      .has_twins = true});
+      .keeps = {.measurements = true, .packings = true, .twins = true},
+      .explored_from = {
+          "", "[macro]\n" + explored_stages(),
+          "[macro]\n[multi_contact]\n[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"}});
 }
 
 }  // namespace softgrain

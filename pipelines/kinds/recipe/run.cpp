@@ -346,7 +346,8 @@ SceneKind recipe_kind() {
                                            .inputs = inputs_of,
                                            .run = run_recipe,
                                            .check = check_recipe,
-                                           .results = recipe_results()});
+                                           .results = recipe_results(),
+                                           .keeps = {.measurements = true, .packings = true}});
 }
 
 }  // namespace softgrain
