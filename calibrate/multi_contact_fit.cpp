@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 #include <tuple>
 
@@ -85,11 +86,13 @@ class Filler {
 
   void partners(MultiContactLaw& law, const std::vector<MultiContactStates>& states, const PartnerFit& own) const {
     const std::size_t ratios = own.ratios.size();
+    const std::size_t of_kind = packings_with(states, own.kind, {});
     for (std::size_t k = 0; k < ratios; ++k) {
+      const std::size_t of_row = packings_with(states, own.kind, own.ratios[k]);
       PartnerRow row{own.kind,
                      own.ratios[k],
-                     estimate(own.fit, k, columns_[own.first + k], packings_, NumberKind::logarithm),
-                     estimate(own.fit, ratios, columns_[own.first + ratios], packings_, NumberKind::positive),
+                     estimate(own.fit, k, columns_[own.first + k], of_row, NumberKind::logarithm),
+                     estimate(own.fit, ratios, columns_[own.first + ratios], of_kind, NumberKind::positive),
                      0.0,
                      0.0};
       describe(row, states);
@@ -98,13 +101,30 @@ class Filler {
   }
 
  private:
+  /// Whether neighbours of a configuration are those of a row: of this kind and, if it is given, this ratio.
+  [[nodiscard]] bool has(const MultiContactStates& c, PartnerKind kind, std::optional<double> ratio) const {
+    const MultiContactPartner& first = c.configuration->partners.front();
+    const bool own =
+        serves(c, fit_.model.multi_contact) && c.all_of(kind) && first.smooth == (kind == PartnerKind::plane);
+    return own && (!ratio || table_ratio(first) == *ratio);
+  }
+
+  /// Number of packings behind such rows: of the configuration that was measured on the most. A configuration may have
+  /// fewer than the table.
+  [[nodiscard]] std::size_t packings_with(const std::vector<MultiContactStates>& states, PartnerKind kind,
+                                          std::optional<double> ratio) const {
+    std::int64_t most = 0;
+    for (const MultiContactStates& c : states)
+      if (has(c, kind, ratio))
+        for (const MultiContactState* s : loading_states(c)) most = std::max(most, s->packings);
+    return most > 0 ? std::min(packings_, static_cast<std::size_t>(most)) : packings_;
+  }
+
   /// Range and error of one row, from the configurations that have this neighbour.
   void describe(PartnerRow& row, const std::vector<MultiContactStates>& states) const {
+    const bool smooth = row.kind == PartnerKind::plane;
     for (const MultiContactStates& c : states) {
-      const MultiContactPartner& first = c.configuration->partners.front();
-      const bool smooth = row.kind == PartnerKind::plane;
-      const bool own = serves(c, fit_.model.multi_contact) && c.all_of(row.kind) && first.smooth == smooth;
-      if (!own || table_ratio(first) != row.ratio) continue;
+      if (!has(c, row.kind, row.ratio)) continue;
       for (const MultiContactState* s : loading_states(c))
         for (std::size_t k = 0; k < c.configuration->touching(); ++k)
           row.overlap_max = std::max(

@@ -8,6 +8,7 @@
 #include "calibrate/multi_contact_states.h"
 #include "common/contact/make_laws.h"
 #include "common/core/error.h"
+#include "common/core/few_samples.h"
 #include "pipelines/kinds/law_table/multi_contact_law_fit.h"
 #include "tests/support/known_multi_contact.h"
 
@@ -338,6 +339,27 @@ TEST(MultiContactFit, AWeightWhoseStartBearsNothingIsFound) {
   ASSERT_EQ(law.partners.size(), 1U);
   EXPECT_NEAR(law.partners[0].weight.value, 2.5, 0.25);
   EXPECT_TRUE(std::isfinite(law.partners[0].weight.standard_error));
+}
+
+/// Neighbours may have been measured on fewer packings than planes: the interval of their row takes that number.
+TEST(MultiContactFit, ARowHasTheDegreesOfFreedomOfItsOwnPackings) {
+  auto list = arrangements();
+  list.resize(5);  // planes
+  list.push_back(multi_contact_configuration(Arrangement::cube, PartnerKind::solid, 0.5, 0.2));
+  list.push_back(multi_contact_configuration(Arrangement::cube, PartnerKind::solid, 2.0, 0.2));
+  MultiContactOptionsKnown o;
+  o.noise = 0.02;
+  MultiContactMeasurements data = multi_contact_measurements(known(LawForm::isotropic), list, o);
+  const auto all = static_cast<std::int64_t>(data.packings.size());
+  ASSERT_GT(all, 3);
+  std::erase_if(data.runs, [](const MultiContactRun& run) { return run.configuration == 5 && run.packing >= 3; });
+  const LawTableEntry entry = fit_multi_contact_laws(data, quick());
+  const std::vector<PartnerRow>& rows = entry.find(LawForm::isotropic)->partners;
+  ASSERT_EQ(rows.size(), 2U);
+  const auto quantile = [](const Estimate& w) { return std::log(w.high / w.value) / (w.standard_error / w.value); };
+  EXPECT_NEAR(quantile(rows[0].weight), student95(2.0), 1e-6);
+  EXPECT_NEAR(quantile(rows[1].weight), student95(static_cast<double>(all) - 1.0), 1e-6);
+  EXPECT_EQ(rows[0].exponent.high, rows[1].exponent.high);
 }
 
 /// The pool of packings may be larger than what was measured.
