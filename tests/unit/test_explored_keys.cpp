@@ -122,8 +122,9 @@ TEST_P(ExploredKind, HasEveryKeyThatItsScenesAreAskedFor) {
 TEST(ExploredKeys, ModelsOfMaterialsHaveAllLoadingsOfMaterials) {
   std::map<std::string, std::set<std::string>> loadings;
   for (const SceneKind& kind : scene_kinds())
-    for (const ExploredKey& k : keys_of(kind))
-      if (k.path().starts_with("loading.")) loadings[kind.name].insert(k.path());
+    if (std::string(kind.name).starts_with("material"))
+      for (const ExploredKey& k : keys_of(kind))
+        if (k.path().starts_with("loading.")) loadings[kind.name].insert(k.path());
   EXPECT_TRUE(loadings["material"].contains("loading.stage.lateral_stress"));
   EXPECT_EQ(loadings["material-models"], loadings["material"]);
 }
