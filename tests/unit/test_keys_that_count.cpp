@@ -192,7 +192,7 @@ TEST_F(KeysThatCount, FamiliesOfMaterialsDifferInTheSpanAlone) {
   for (const MaterialVariant& v : loaded.variants)
     EXPECT_EQ(material_family(v, loaded.variants), material_family(loaded.variants.front(), loaded.variants));
   EXPECT_EQ(families(two + "[[loading]]\nname = \"press\"\n"), 1U);
-  for (const char* key : {"tolerance = 1e-3\n", "steps = 3\n", "increments_per_step = 2\n", "force_floor = 1e-5\n"})
+  for (const char* key : {"tolerance = 1e-3\n", "steps = 3\n", "increments_per_step = 7\n", "force_floor = 1e-5\n"})
     EXPECT_EQ(families(two + key + "[[loading]]\nname = \"press\"\n"), 2U) << key;
   const std::string law = "sizes = { form = \"power-law\", exponent = 3.5, radius_min = 0.01, radius_max = 0.02 }\n";
   EXPECT_EQ(families(two + "[[variant]]\nname = \"c\"\n" + law), 1U) << "b = 3.5, said in another way";

@@ -130,6 +130,7 @@ TEST(MaterialModels, FinesAreThoseBelowTheSplitOfTheModel) {
   EXPECT_EQ(other_fines(model, spec), "") << "a mean field has no split of its own";
   take_sizes(spec, Grading::classes({{0.008, 0.016, 3.5, 0.6}, {0.002, 0.004, 3.5, 0.4}}));
   model.kind = ModelKind::cells;
+  model.split = 0.45;
   EXPECT_EQ(other_fines(model, spec), "") << "between a quarter and a half of the largest there is nothing";
 }
 
