@@ -148,7 +148,7 @@ PredictionSummary predict(const Group& group, const FittedTest& fitted, double s
       .family = first.family + first.test, .loading = first.loading, .kind = group.kind(), .span = span};
   const StateFit& fit = fitted.fit;
   try {
-    if (!fitted.problem.empty()) throw InputError("no equation of state: " + fitted.problem);
+    if (!fitted.problem.empty()) throw InputError(fitted.problem);
     if (!group.has_part_in(fit))
       throw InputError("no equation of state: these packings are in no test that compresses");
     const OnsetOptions onset{.largest_span = settings.largest_span, .groups = {}, .exponent = first.exponent};
