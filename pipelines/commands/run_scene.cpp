@@ -67,7 +67,8 @@ ExitStatus command_macrosim(const CommonOptions& options) { return run_scene(opt
 
 ExitStatus command_sweep(const CommonOptions& options) {
   if (options.seed_given && !options.seeds.empty()) throw InputError("--seeds: goes without --seed");
-  return run_set(options, make_plan(options.over, options.seeds, options.overrides), "sweep", "sweep");
+  return run_set(options, make_plan(options.over, options.seeds, options.overrides, options.seed_given), "sweep",
+                 "sweep");
 }
 
 }  // namespace softgrain

@@ -35,8 +35,9 @@ struct RunPlan {
 /// `over`: texts "key=a,b,c" of --over, each a list as --set takes its values, commas within brackets and quotes left
 /// alone, or whole numbers "1..8"; `seeds`: "1..8", "1,3,7"; `set`: texts of --set, whose keys are not swept as well.
 /// Throws InputError with everything that is wrong, one a line: no key or value, a key or value twice, more than 10000
-/// runs.
-RunPlan make_plan(const std::vector<std::string>& over, const std::string& seeds, const std::vector<std::string>& set);
+/// runs, a seed said in two ways (`one_seed`: --seed is given).
+RunPlan make_plan(const std::vector<std::string>& over, const std::string& seeds, const std::vector<std::string>& set,
+                  bool one_seed = false);
 
 /// Runs the scene `options.inputs.front()` as the plan says, each run in OUT/NAME as its own kind runs it (the log, its
 /// report and all); OUT is --out, else results/SCENE_`suffix`. With --resume runs that have ended are not repeated, and
