@@ -47,15 +47,14 @@ struct EngineScore {
   /// digit, over sqrt(2): what paths alone make of one run. Empty: not run.
   MeanError noise;
   PlacesScore places;
-  MeanError band_width;  ///< half of the 95 % band over the axial stress at the end; empty: no bands
-  MeanError
-      coverage;  ///< share of the points of the shelled twin, from 5 % of its largest axial stress on, in the band
-  MeanError coverage_end;     ///< share of the samples whose last point is in the band
-  MeanError axial;            ///< axial stress at the end [Pa]
-  MeanError lateral_ratio;    ///< lateral over axial stress at the end
-  MeanError coordination;     ///< coordination number of bodies at the end
-  MeanError fabric;           ///< fabric anisotropy of bodies at the end
-  MeanError force_mean;       ///< mean force of contacts between bodies at the end [N]
+  MeanError band_width;     ///< half of the 95 % band over the axial stress at the end; empty: no bands
+  MeanError coverage;       ///< share of the points of the shelled twin in the band, from 5 % of its largest stress on
+  MeanError coverage_end;   ///< share of the samples whose last point is in the band
+  MeanError axial;          ///< axial stress at the end [Pa]
+  MeanError lateral_ratio;  ///< lateral over axial stress at the end
+  MeanError coordination;   ///< coordination number of bodies at the end
+  MeanError fabric;         ///< fabric anisotropy of bodies at the end
+  MeanError force_mean;     ///< mean force of contacts between bodies at the end [N]
   MeanError force_variation;  ///< standard deviation of these forces over their mean
   double contact_evaluations =
       0.0;               ///< per sample; a multi-contact law's visits to a contact count each: there are two
