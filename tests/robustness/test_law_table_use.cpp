@@ -345,6 +345,29 @@ TEST_F(LawTableUse, WrongInputsOfCalibrateAreRefused) {
   expect(run_the_program(multi_contact + "--set discrepancy=0" + out), 2, {"discrepancy"});
 }
 
+/// The first measurement is kept in the run directory for the report: never over another input.
+TEST_F(LawTableUse, CalibrateNeverWritesOverItsInputs) {
+  const auto path = [&](const std::string& name) { return file(name) + "/multi_contact.h5"; };
+  for (const char* name : {"a", "b"}) fs::create_directory(file(name));
+  synthetic::MultiContactOptionsKnown o;
+  o.noise = 0.02;
+  const MultiContactMeasurements data = synthetic::multi_contact_measurements(known(), arrangements(), o);
+  for (const char* name : {"a", "b"}) save_multi_contact(data, path(name));
+  const std::string before = read_text(path("b"));
+  const std::string quick = " --quiet --set replicates=0 --out '" + file("b") + "'";
+  expect(run_the_program("calibrate '" + path("a") + "' '" + path("b") + "'" + quick), 2,
+         {path("b") + " is an input", "give another --out"});
+  EXPECT_EQ(read_text(path("b")), before);
+  // The first one may lie there: it is what is kept.
+  const auto alone = run_the_program("calibrate '" + path("b") + "'" + quick);
+  EXPECT_NE(alone.status, 2) << alone.output;
+  EXPECT_EQ(read_text(path("b")), before);
+  // So may no measurement bear the name of what is written.
+  save(synthetic::measurements(4), file("a") + "/law.h5");
+  expect(run_the_program("calibrate '" + file("a") + "/law.h5' --quiet --out '" + file("a") + "'"), 2,
+         {"law.h5 is an input"});
+}
+
 TEST_F(LawTableUse, LawTableScenesThatCannotEndInALawAreRefused) {
   const auto refused = [&](const std::string& from, const std::string& to, const std::vector<std::string>& words) {
     std::string text = std::string(kTinyLawTable) + kTinyLawFit;
