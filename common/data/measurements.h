@@ -96,6 +96,9 @@ struct PackingInfo {
   std::vector<double> radii;        ///< [m], one per grain
 };
 
+/// Angle of the published secant of the tangential force [degree] [SP 1.4].
+inline constexpr double kSecantAngle = 1.0;
+
 /// One relaxed state of increasing normal overlap.
 struct NormalPoint {
   double delta = 0.0;        ///< Delta = hn/Rs
