@@ -84,6 +84,29 @@ TEST_F(LawTableUse, MacroScenesTakeTablesAndCards) {
   EXPECT_EQ(end_stress("card"), end_stress("card2"));
 }
 
+/// Each contact against the row of the nearest ratio, whatever was measured at the largest one.
+TEST_F(LawTableUse, ContactsBeyondTheRangeAreCountedByTheRowOfTheirRatio) {
+  const auto warns = [&](const std::string& name, double near, double far) {
+    LawTableEntry entry = law_entry(0.70);
+    entry.overlap_max = entry.volume_max = 1.9;
+    for (MultiContactLaw& law : entry.laws)
+      for (PartnerRow& row : law.partners) row.overlap_max = near;
+    for (MultiContactLaw& law : entry.laws) {
+      PartnerRow solid = law.partners[1];
+      PartnerRow soft = law.partners[3];
+      solid.ratio = soft.ratio = 1000.0;
+      solid.overlap_max = soft.overlap_max = far;
+      law.partners.insert(law.partners.begin() + 2, solid);
+      law.partners.push_back(soft);
+    }
+    save_law_table({1, {entry}}, file("law_table.toml"));
+    expect(macro(name, ""), 0, {});
+    return summary(name).dump().find("deeper at the end than the law was measured") != std::string::npos;
+  };
+  EXPECT_FALSE(warns("far", 1.9, 1e-9));
+  EXPECT_TRUE(warns("near", 1e-9, 1.9));
+}
+
 TEST_F(LawTableUse, TheFrictionOfAScene) {
   expect(macro("measured", ""), 0, {});
   expect(macro("smooth", "mu = 0.0\n"), 0, {});

@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "common/core/text.h"
 #include "common/data/law_band.h"
 #include "common/data/law_words.h"
+#include "pipelines/law/law_draws.h"
 #include "pipelines/law/law_fit.h"
 #include "tests/support/synthetic_law.h"
 
@@ -279,6 +281,24 @@ TEST(ExperimentFit, TheMirrorImageIsTurnedTwiceAsFar) {
   EXPECT_EQ(plane.secant_angle_deg, 1.0);
   EXPECT_EQ(pair.secant_angle_deg, 2.0);
   EXPECT_NEAR(pair.tangential_secant.value(0.4), 0.5 * plane.tangential_secant.value(0.2), 1e-12);
+}
+
+/// Error bars of a macro run take both laws of a card: one that follows from the other is off as that is.
+TEST(ExperimentFit, TheMirrorImageIsDrawnWithWhatItMirrors) {
+  LawSources sources;
+  sources.laws = {FittedLaw{fit_experiment({turned(PairKind::soft_solid, {0.0, 1.0})}, replicates(20), true).card}};
+  NamedLaws named;
+  named.form = LawForm::pair;
+  const LawDraws drawn = law_draws(sources, named, MacroSpec{}, 0.0, 6);
+  ASSERT_EQ(drawn.draws.size(), 6U);
+  for (const std::vector<double>& numbers : drawn.draws) {
+    std::array<double, 7> measured{};
+    for (std::size_t j = 0; j < 7; ++j) measured[j] = j == 0 || j == 5 ? std::exp(numbers[j]) : numbers[j];
+    EXPECT_NE(numbers[1], drawn.numbers[1]);
+    const auto mirrored = mirrored_numbers(measured, PairKind::soft_solid);
+    for (const std::size_t j : {1, 2, 6}) EXPECT_NEAR(numbers[7 + j], mirrored[j], 1e-12) << j;
+    for (const std::size_t j : {0, 5}) EXPECT_NEAR(numbers[7 + j], std::log(mirrored[j]), 1e-9) << j;
+  }
 }
 
 /// A card with such a law could not be read back, with the good one that was measured.

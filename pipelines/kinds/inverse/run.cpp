@@ -164,6 +164,9 @@ void confirm(const Stage& stage) {
   data.spec = spec_at(stage.setup, out.answer.u);
   data.shell_turns = stage.setup.plan.shell_turns;
   data.approach_speed = stage.setup.measure.published.approach_speed;
+  MeasureSetup measured = stage.setup.measure;
+  measured.spec = data.spec;
+  data.settings[to_string(stage.setup.relaxation)] = settings_text(measured, stage.setup.relaxation);
   for (std::size_t k = 0; k < packings; ++k) {
     PackingRun run;
     run.packing = static_cast<std::int64_t>(data.packings.size());
