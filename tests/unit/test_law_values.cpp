@@ -74,6 +74,8 @@ TEST(CardValues, BeyondTheRange) {
   EXPECT_GT(extrapolated[3].force.value, extrapolated[1].force.value);
   const auto clamped = at(Extrapolation::clamp);
   EXPECT_EQ(clamped[3].force.value, clamped[1].force.value);
+  EXPECT_EQ(clamped[3].stiffness.value, 0.0) << "the derivative of a constant force";
+  EXPECT_GT(clamped[2].stiffness.value, 0.0);
   EXPECT_EQ(law::where_text(clamped[3]), "beyond range: clamped");
   // Nothing says how far off a law is where nobody measured it: no interval, whatever the law does there.
   for (const auto* points : {&extrapolated, &clamped}) {

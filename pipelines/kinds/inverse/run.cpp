@@ -218,6 +218,7 @@ ConfirmedCurve curve_of(const InverseEvaluation& e, std::size_t deltas) {
     const MeanError m = sample.statistics();
     out.force.push_back(m.mean);
     out.error.push_back(m.error_or_zero());
+    out.counts.push_back(static_cast<std::int64_t>(m.n));
   }
   return out;
 }
