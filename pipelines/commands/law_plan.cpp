@@ -121,7 +121,7 @@ std::optional<bool> macro_run_of(const std::string& run, const Scene& scene, con
   try {
     const MacroScene macro = read_macro_scene(scene, law.path);
     return began_with(run, law.text + sizes_text(macro.setup.spec));
-  } catch (const InputError&) {  // files that it names by its own place cannot be found from here
+  } catch (const Error&) {  // files that it names by its own place cannot be found from here
     return std::nullopt;
   }
 }
@@ -132,7 +132,7 @@ std::optional<bool> is_run_of(const std::string& run, const FittedLaw& table, co
                               WantedForm form) {
   if (began_with(run, table.text) == true) return true;
   const std::optional<Scene> scene = scene_of(run);
-  if (scene && std::string_view(kind_of(*scene).name) == "macro") return macro_run_of(run, *scene, table);
+  if (scene && std::string_view(kind_of(*scene).name) == macro_kind().name) return macro_run_of(run, *scene, table);
   const std::string own = run + "/law_table.toml";
   if (!scene || !fs::exists(own)) return std::nullopt;
   try {
