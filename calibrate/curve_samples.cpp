@@ -132,6 +132,24 @@ CurveSamples stiffness_samples(const RunList& runs, const SoftParticleSpec& spec
 
 }  // namespace
 
+LostTurns lost_turns(const RunList& runs, const SoftParticleSpec& spec, const CurveSelection& selection) {
+  LostTurns out;
+  for (const PackingRun* run : runs)
+    for (const auto& points : by_delta(*run, selection)) {
+      ++out.turns;
+      if (initial_slope(points, selection.initial_angle_deg, spec.shell_radius) ||
+          secant(points, selection.secant_angle_deg, spec.shell_radius))
+        continue;
+      ++out.lost;
+      const auto reaches = [&](const TangentialPoint& p) {
+        const double angle = std::abs(p.angle_deg);
+        return angle > selection.secant_angle_deg || same_angle(angle, selection.secant_angle_deg);
+      };
+      out.short_of += std::none_of(points.begin(), points.end(), reaches) ? 1 : 0;
+    }
+  return out;
+}
+
 CurveMeans means_of(const CurveSamples& samples, std::span<const int> multiplicity) {
   CurveMeans out;
   out.delta = samples.delta;

@@ -58,7 +58,7 @@ struct CurveSelection {
   double delta_low = 0.0;
   double delta_high = std::numeric_limits<double>::infinity();
   double initial_angle_deg = 0.05;
-  double secant_angle_deg = 1.0;
+  double secant_angle_deg = kSecantAngle;
 };
 
 using RunList = std::vector<const PackingRun*>;
@@ -66,6 +66,15 @@ using RunList = std::vector<const PackingRun*>;
 CurveSamples normal_samples(const RunList& runs, const SoftParticleSpec& spec, const CurveSelection& selection);
 CurveSamples initial_slope_samples(const RunList& runs, const SoftParticleSpec& spec, const CurveSelection& selection);
 CurveSamples secant_samples(const RunList& runs, const SoftParticleSpec& spec, const CurveSelection& selection);
+
+/// Overlaps at which bodies were turned and from which no stiffness follows.
+struct LostTurns {
+  std::size_t turns = 0;     ///< all, over all runs
+  std::size_t lost = 0;      ///< those that give neither an initial slope nor a secant
+  std::size_t short_of = 0;  ///< of the lost ones: none of their angles reaches that of the secant
+};
+
+LostTurns lost_turns(const RunList& runs, const SoftParticleSpec& spec, const CurveSelection& selection);
 
 // How well single values of an experiment are known, when there are few samples or one.
 

@@ -174,7 +174,17 @@ PackingRun run_of(const ForceCurve& sample, std::size_t index, PairKind kind) {
   return run;
 }
 
-/// The covariance of `turned` numbers q from that of p, to first order: q = T(p) with T as in mirrored().
+/// What the overlap and kt of the other kind are over those of the one that was measured.
+struct Symmetry {
+  double stretch = 2.0;  ///< of Delta and of angles
+  double series = 0.5;   ///< of kt: two springs behind one another
+};
+
+Symmetry symmetry_of(PairKind measured) {
+  return measured == PairKind::soft_solid ? Symmetry{2.0, 0.5} : Symmetry{0.5, 2.0};
+}
+
+/// The covariance of `turned` numbers q from that of p, to first order: q = T(p) with T = mirrored_numbers().
 std::vector<double> turned_covariance(const std::vector<double>& covariance, const std::array<double, 7>& q,
                                       double stretch, double series) {
   std::array<std::array<double, 7>, 7> slope{};  // dq_i/dp_j
@@ -195,30 +205,23 @@ std::vector<double> turned_covariance(const std::vector<double>& covariance, con
   return out;
 }
 
+PairKind other_kind(PairKind kind) { return kind == PairKind::soft_solid ? PairKind::soft_soft : PairKind::soft_solid; }
+
 /// The law of the kind that was not measured.
 FitReport mirrored(const FitReport& measured) {
-  const bool to_pair = measured.law.kind == PairKind::soft_solid;
-  const double stretch = to_pair ? 2.0 : 0.5;  // of Delta
-  const double series = to_pair ? 0.5 : 2.0;   // of kt: two springs behind one another
-  const auto turned = [&](const std::array<double, 7>& p) {
-    std::array<double, 7> q = p;
-    q[2] *= stretch;
-    q[0] *= std::pow(stretch, -p[1]);
-    q[3] *= series * std::pow(stretch, -p[4]);
-    q[5] *= series * std::pow(stretch, -p[6]);
-    return q;
-  };
+  const auto [stretch, series] = symmetry_of(measured.law.kind);
   FitReport out = measured;
-  for (auto& r : out.replicates) r = turned(r);
+  for (auto& r : out.replicates) r = mirrored_numbers(r, measured.law.kind);
   PairLaw& law = out.law;
-  law.kind = to_pair ? PairKind::soft_soft : PairKind::soft_solid;
+  law.kind = other_kind(measured.law.kind);
   law.status = LawStatus::underdetermined;
   law.reason = fmt::format("Not measured: follows from {} by symmetry, each particle taking half of the overlap.",
                            to_string(measured.law.kind));
   law.delta_min *= stretch;
   law.delta_max *= stretch;
-  law.packings = 0;
-  law.points = 0;
+  law.initial_angle_deg *= stretch;
+  law.secant_angle_deg *= stretch;
+  law.points = 0;  // its errors are those of the samples that were measured: law.packings stays
   law.chi2_per_dof = law.quality = 0.0;
   law.table = {};
   law.band_delta.clear();
@@ -227,7 +230,8 @@ FitReport mirrored(const FitReport& measured) {
   const auto n = value(measured.law.normal);
   const auto i = value(measured.law.tangential_initial);
   const auto s = value(measured.law.tangential_secant);
-  const auto p = turned({n[0], n[1], measured.law.normal.delta.value, i[0], i[1], s[0], s[1]});
+  const auto p =
+      mirrored_numbers({n[0], n[1], measured.law.normal.delta.value, i[0], i[1], s[0], s[1]}, measured.law.kind);
   const bool known = std::isfinite(measured.law.normal.a.standard_error) && law.covariance.size() == 49;
   if (known) law.covariance = turned_covariance(measured.law.covariance, p, stretch, series);
   law.normal = estimated_law(out, p, 0, known);
@@ -247,7 +251,17 @@ void add_mirror(ExperimentFit& out) {
   if (out.reports.size() != 1) return;
   const FitReport& only = out.reports.front();
   if (only.law.normal.b.value <= 0.0) return;
+  constexpr double kLargestThreshold = 1.0;  // of a law card, and below
+  constexpr double kLargestDelta = 2.0;
   FitReport other = mirrored(only);
+  if (!(other.law.normal.delta.value < kLargestThreshold) || other.law.delta_max > kLargestDelta) {
+    out.remarks.push_back(fmt::format(
+        "no {} law by symmetry: its threshold would lie at Delta = {:.3g} and its range end at {:.3g}; a law of two "
+        "bodies has a threshold below {:g} and ends by {:g}",
+        to_string(other.law.kind), other.law.normal.delta.value, other.law.delta_max, kLargestThreshold,
+        kLargestDelta));
+    return;
+  }
   out.remarks.push_back(to_string(other.law.kind) + ": " + other.law.reason);
   add(out, std::move(other));
 }
@@ -264,14 +278,46 @@ bool take_off_offsets(ForceCurves& curves, std::vector<double>& zeroed_below) {
   return open;
 }
 
-void question(PairLaw& law) {
-  if (law.status != LawStatus::good && law.status != LawStatus::underdetermined) return;
+void question(PairLaw& law, const std::string& why) {
+  if (!has_numbers(law.status)) return;
   law.status = LawStatus::underdetermined;
-  append_part(law.reason, "The forces do not vanish with the overlap: an offset that the readings do not determine.",
-              " ");
+  append_part(law.reason, why, " ");
+}
+
+TurnsVerdict judge_turns(const PreparedCurves& prepared, const FitOptions& options) {
+  RunList runs;
+  for (const PackingRun& run : prepared.data.runs) runs.push_back(&run);
+  const double angle = options.secant_angle_deg.value_or(kSecantAngle);
+  const double radius = prepared.data.spec.shell_radius;
+  const LostTurns t =
+      lost_turns(runs, prepared.data.spec, {options.delta_low, options.delta_high, options.initial_angle_deg, angle});
+  if (t.lost == 0) return {};
+  std::string why;
+  if (t.short_of > 0)
+    why = fmt::format("{} do not reach ht = {:.4g} m ({:g} degree of rotation)", t.short_of,
+                      tangential_displacement(angle, radius), angle);
+  if (t.short_of < t.lost)
+    append_part(why,
+                fmt::format("{} have no reading before the turn (ht = 0) nor one at either sign", t.lost - t.short_of));
+  return {t.lost == t.turns,
+          fmt::format("Ft of {} of {} turns (a sample at one overlap) says no stiffness: {}", t.lost, t.turns, why)};
 }
 
 }  // namespace
+
+std::array<double, 7> mirrored_numbers(const std::array<double, 7>& numbers, PairKind measured) {
+  const auto [stretch, series] = symmetry_of(measured);
+  std::array<double, 7> q = numbers;
+  q[2] *= stretch;
+  q[0] *= std::pow(stretch, -numbers[1]);
+  q[3] *= series * std::pow(stretch, -numbers[4]);
+  q[5] *= series * std::pow(stretch, -numbers[6]);
+  return q;
+}
+
+TurnsVerdict judge_turns(const ForceCurves& curves, const FitOptions& options) {
+  return judge_turns(prepare_curves(curves), options);
+}
 
 PreparedCurves prepare_curves(const ForceCurves& curves) {
   PreparedCurves out;
@@ -332,7 +378,13 @@ ExperimentFit fit_experiment(const std::vector<ForceCurves>& curves, const FitOp
     o.experiment = true;
     o.given_errors = prepared.errors;
     FitReport report = fit_pair_law(prepared.data, one.kind, o);
-    if (open) question(report.law);
+    if (open)
+      question(report.law, "The forces do not vanish with the overlap: an offset that the readings do not determine.");
+    const TurnsVerdict turns = judge_turns(prepared, o);
+    if (turns.none)
+      question(report.law, std::string(kNoStiffness) + " (" + turns.why + ").");
+    else if (!turns.why.empty())
+      one.remarks.push_back(to_string(one.kind) + ": " + turns.why);
     out.remarks.insert(out.remarks.end(), one.remarks.begin(), one.remarks.end());
     if (!prepared.note.empty()) out.remarks.push_back(prepared.note);
     if (report.from_residuals)

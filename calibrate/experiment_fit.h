@@ -1,6 +1,7 @@
 // The threshold fit for curves that were measured in an experiment.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,15 @@ PreparedCurves prepare_curves(const ForceCurves& curves);
 /// the given one with one sample, the larger of that and of scatter over samples otherwise (0: nothing is known).
 CurveMeans mean_curve(const ForceCurves& curves);
 
+/// What follows of the tangential forces of an experiment; `why` of the overlaps that say no stiffness, empty: all do.
+struct TurnsVerdict {
+  bool none = false;  ///< tangential forces were measured, and no overlap says a stiffness
+  std::string why;
+};
+
+/// `options` as for the fit.
+TurnsVerdict judge_turns(const ForceCurves& curves, const FitOptions& options);
+
 struct ExperimentFit {
   LawCard card;
   std::vector<ForceCurves> curves;  ///< curves as they were fitted, without the offsets that were found
@@ -33,12 +43,17 @@ struct ExperimentFit {
 };
 
 /// Fits every pair kind. A constant force that is read without contact is taken off first, and said; a
-/// curve that asks for one which its readings do not determine makes the law underdetermined. `mirror`: a kind that was
-/// not measured follows from the other one, by symmetry: two equal soft particles that press on each other are each
-/// pressed on a plane at half the overlap,
-///   F_soft-soft(D) = F_soft-solid(D/2), kt_soft-soft(D) = kt_soft-solid(D/2)/2.
-/// Grains of two particles that interlock are not in this; its law is marked "underdetermined" and says so.
+/// curve that asks for one which its readings do not determine makes the law underdetermined, and so do tangential
+/// forces that say no stiffness. `mirror`: a kind that was not measured follows from the other one, by symmetry: two
+/// equal soft particles that press on each other are each pressed on a plane at half the overlap and turned by half the
+/// angle,
+///   F_soft-soft(D) = F_soft-solid(D/2), kt_soft-soft(D, 2 angle) = kt_soft-solid(D/2, angle)/2.
+/// Grains of two particles that interlock are not in this; its law is marked "underdetermined" and says so. There is
+/// none where it would lie beyond what a law of two bodies can be: a remark says so.
 ExperimentFit fit_experiment(const std::vector<ForceCurves>& curves, const FitOptions& options, bool mirror);
+
+/// Numbers (kLawParameterNames) of the law that follows by that symmetry from those of the kind that was measured.
+std::array<double, 7> mirrored_numbers(const std::array<double, 7>& numbers, PairKind measured);
 
 // A constant force that an experiment reads without contact: a load cell that was not set to zero, the weight of a
 // plate. It is seen in readings before touch and below the threshold, where a soft particle bears nothing.

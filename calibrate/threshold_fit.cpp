@@ -23,7 +23,7 @@ constexpr std::array<const char*, kLawCurves> kCurveNames{"normal force", "initi
 constexpr double kTolerableShare = 0.025;
 
 void require_valid(const FitOptions& o) {
-  if (!(o.initial_angle_deg > 0.0) || !(o.secant_angle_deg.value_or(1.0) > 0.0))
+  if (!(o.initial_angle_deg > 0.0) || !(o.secant_angle_deg.value_or(kSecantAngle) > 0.0))
     throw InputError("fit: angles must be above 0 degrees");
   if (!(o.delta_high > o.delta_low) || o.delta_low < 0.0)
     throw InputError(fmt::format("fit: range of Delta [{}, {}] must rise from 0 or above", o.delta_low, o.delta_high));
@@ -200,14 +200,13 @@ void conclude(PairLaw& law, LawStatus status, const std::vector<std::string>& re
 }  // namespace
 
 double default_secant_angle(PairKind kind, const std::vector<const PackingRun*>& runs) {
-  constexpr double kPublished = 1.0;
   constexpr double kOfTwo = 0.5;
   const auto measured = [](const PackingRun* run) {
     return std::ranges::any_of(run->tangential,
                                [](const TangentialPoint& p) { return same_angle(std::abs(p.angle_deg), kOfTwo); });
   };
   const bool of_two = kind == PairKind::soft_soft && std::ranges::any_of(runs, measured);
-  return of_two ? kOfTwo : kPublished;
+  return of_two ? kOfTwo : kSecantAngle;
 }
 
 std::string chosen_relaxation(const Measurements& data, const FitOptions& options) {
@@ -234,7 +233,8 @@ FitReport fit_pair_law(const Measurements& data, PairKind kind, const FitOptions
     return report;
   }
   report.law.initial_angle_deg = options.initial_angle_deg;
-  report.law.secant_angle_deg = options.secant_angle_deg.value_or(default_secant_angle(kind, runs));
+  report.law.secant_angle_deg =
+      options.secant_angle_deg.value_or(options.experiment ? kSecantAngle : default_secant_angle(kind, runs));
   Work w = collect(runs, data.spec, options, report.law.secant_angle_deg);
   describe_data(runs, w.samples, w.means, report);
   if (w.samples[0].empty()) {

@@ -43,8 +43,9 @@ struct FitOptions {
   bool subtract_offset = true;  ///< experiment: whether constant forces without contact (ForceOffset) are taken off
 };
 
-/// The angle of the secant that a law takes for kt [degree]: at 1 degree soft particles on a plane have the published
-/// stiffness; of two soft particles the secant at 0.5 degree is taken where it was measured, else that at 1 degree.
+/// The angle of the secant that a law takes for kt [degree]: at kSecantAngle soft particles on a plane have the
+/// published stiffness; of two soft particles the secant at 0.5 degree is taken where it was measured, else that at
+/// kSecantAngle. Of an experiment it is kSecantAngle for both, at which its forces are read.
 double default_secant_angle(PairKind kind, const std::vector<const PackingRun*>& runs);
 
 /// What a fit found beside the law itself.

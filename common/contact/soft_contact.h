@@ -67,6 +67,12 @@ struct SoftContact {
   [[nodiscard]] T taken_ratio(const T& overlap, const T& radius) const {
     return least<T>(overlap / radius, range.clamp_at());
   }
+  /// Whether the force stays at that of the end of the range: its derivative is 0, but the loop keeps the stiffness of
+  /// the end, which damps the contact and bounds the step.
+  template <class T>
+  [[nodiscard]] Mask<T> is_clamped(const T& overlap, const T& radius) const {
+    return overlap / radius > range.clamp_at();
+  }
   /// Whether nothing is felt at this Delta.
   template <class T>
   [[nodiscard]] Mask<T> idle_at(const T& ratio) const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <numbers>
 
@@ -24,7 +25,7 @@ void CurveRows::read() {
     if (delta < 0.0)
       add_before_touch(row, sample);
     else if (is_rotated(row))
-      out_.samples[sample].tangential.push_back(tangential(row, delta));
+      add_tangential(row, delta, sample);
     else
       add_normal(row, delta, sample);
   }
@@ -60,13 +61,22 @@ bool CurveRows::is_rotated(const CsvRow& row) const {
   return file_.number(row, at_.ft, Unit::force).has_value() && file_.number(row, at_.ht, Unit::length).has_value();
 }
 
-TangentialPoint CurveRows::tangential(const CsvRow& row, double delta) const {
+/// The overlap of one turn jitters from reading to reading: those that differ by no more than kJitter of it belong to
+/// the reading of the normal force before them, or else to the turned row before them. Where turns follow each other
+/// without a reading between them, an angle that comes again begins the next one.
+void CurveRows::add_tangential(const CsvRow& row, double delta, std::size_t sample) {
+  constexpr double kJitter = 1e-3;
   TangentialPoint p;
-  p.delta = delta;
   p.angle_deg = required(row, at_.ht, Unit::length) * 180.0 / (std::numbers::pi * out_.spec.shell_radius);
   p.force_parallel = required(row, at_.ft, Unit::force);
   p.converged = true;
-  return p;
+  Turn& turn = turns_[sample];
+  const bool again = std::find(turn.angles.begin(), turn.angles.end(), p.angle_deg) != turn.angles.end();
+  const bool near = std::abs(delta - turn.delta) <= kJitter * turn.delta;
+  if (delta != turn.delta && !(near && (turn.after_reading || !again))) turn = {delta, false, {}};
+  turn.angles.push_back(p.angle_deg);
+  p.delta = turn.delta;
+  out_.samples[sample].tangential.push_back(p);
 }
 
 std::size_t CurveRows::sample_of(const CsvRow& row) {
@@ -81,6 +91,7 @@ std::size_t CurveRows::sample_of(const CsvRow& row) {
   if (is_new) {
     out_.samples.push_back({name, {}, {}, {}});
     lines_.emplace_back();
+    turns_.emplace_back();
   }
   return known->second;
 }
@@ -115,6 +126,7 @@ void CurveRows::add_normal(const CsvRow& row, double delta, std::size_t index) {
   add_stiffness(row, delta, sample);
   sample.normal.push_back(p);
   lines_[index].push_back(row.line);
+  turns_[index] = {delta, true, {}};
 }
 
 /// kt as given: the two rotations whose slope it is.

@@ -1,6 +1,7 @@
 // Inner side of force_curves.h: the rows of a file into samples, once it is known which column is what.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -31,7 +32,7 @@ class CurveRows {
   [[nodiscard]] double required(const CsvRow& row, std::size_t column, Unit unit) const;
   [[nodiscard]] double overlap(const CsvRow& row) const;
   [[nodiscard]] bool is_rotated(const CsvRow& row) const;
-  [[nodiscard]] TangentialPoint tangential(const CsvRow& row, double delta) const;
+  void add_tangential(const CsvRow& row, double delta, std::size_t sample);
   std::size_t sample_of(const CsvRow& row);  ///< index into the samples
   void add_before_touch(const CsvRow& row, std::size_t sample);
   void add_normal(const CsvRow& row, double delta, std::size_t index);
@@ -39,12 +40,20 @@ class CurveRows {
   void note_falls();
   void require_enough() const;
 
+  /// The rows that were turned at one overlap.
+  struct Turn {
+    double delta = std::numeric_limits<double>::quiet_NaN();
+    bool after_reading = false;  ///< it follows a reading of the normal force at this overlap
+    std::vector<double> angles;
+  };
+
   const CsvFile& file_;
   const CurveLayout& at_;
   const ForceCurveOptions& options_;
   ForceCurves& out_;
   std::unordered_map<std::string, std::size_t> index_;  ///< index of each sample by its name
   std::vector<std::vector<int>> lines_;                 ///< file lines of the normal points of each sample
+  std::vector<Turn> turns_;                             ///< turn that each sample is in
   std::int64_t before_touch_ = 0;
   std::int64_t dropped_ = 0;
 };

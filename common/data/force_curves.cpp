@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numeric>
+#include <span>
 #include <unordered_set>
 
 #include "common/core/error.h"
@@ -201,24 +202,46 @@ SoftParticleSpec spec_of(const CsvFile& file, const ForceCurveOptions& options) 
   return spec;
 }
 
-/// Ft at +-angle, between the two measured displacements around it, where the sweep reaches that far.
-void add_secant_points(ForceCurve& sample, double angle_deg) {
+/// Angles are written with few digits: those that differ by no more than this share of the secant's angle are one.
+constexpr double kSameAngle = 1e-3;
+
+/// One turn with readings at 0 and +-angle, where it has them: as they were read nearby, or at +-angle between the two
+/// readings around it. `turn`: angles rising.
+void add_secant_points(std::span<const TangentialPoint> turn, double angle_deg, std::vector<TangentialPoint>& added) {
+  for (const double at : {-angle_deg, 0.0, angle_deg}) {
+    const auto distance = [at](const TangentialPoint& p) { return std::abs(p.angle_deg - at); };
+    const auto nearest = std::ranges::min_element(turn, {}, distance);
+    if (nearest->angle_deg == at) continue;
+    TangentialPoint p = *nearest;
+    const auto after = std::ranges::find_if(turn, [at](const TangentialPoint& q) { return q.angle_deg > at; });
+    if (at != 0.0 && after != turn.begin() && after != turn.end()) {
+      const TangentialPoint& before = *(after - 1);
+      const double share = (at - before.angle_deg) / (after->angle_deg - before.angle_deg);
+      p.force_parallel = before.force_parallel + share * (after->force_parallel - before.force_parallel);
+    } else if (distance(*nearest) > kSameAngle * angle_deg) {
+      continue;
+    }
+    p.angle_deg = at;
+    added.push_back(p);
+  }
+}
+
+/// The rotations as the fit takes them: in order, with readings at 0 and +-secant_angle_deg where they can be had, and
+/// those that reach initial_angle_deg but for the digits that they were written with.
+void complete_turns(ForceCurve& sample, const ForceCurveOptions& options) {
   std::vector<TangentialPoint>& all = sample.tangential;
   std::stable_sort(all.begin(), all.end(), [](const TangentialPoint& a, const TangentialPoint& b) {
     return a.delta != b.delta ? a.delta < b.delta : a.angle_deg < b.angle_deg;
   });
   std::vector<TangentialPoint> added;
-  for (std::size_t k = 1; k < all.size(); ++k) {
-    if (all[k].delta != all[k - 1].delta) continue;
-    for (const double at : {-angle_deg, angle_deg}) {
-      if (!(all[k - 1].angle_deg < at && at < all[k].angle_deg)) continue;
-      TangentialPoint p = all[k];
-      const double share = (at - all[k - 1].angle_deg) / (all[k].angle_deg - all[k - 1].angle_deg);
-      p.angle_deg = at;
-      p.force_parallel = all[k - 1].force_parallel + share * (all[k].force_parallel - all[k - 1].force_parallel);
-      added.push_back(p);
-    }
+  for (std::size_t k = 0, end = 0; k < all.size(); k = end) {
+    while (end < all.size() && all[end].delta == all[k].delta) ++end;
+    add_secant_points(std::span(all).subspan(k, end - k), options.secant_angle_deg, added);
   }
+  const double initial = options.initial_angle_deg;
+  for (TangentialPoint& p : all)
+    if (std::abs(std::abs(p.angle_deg) - initial) <= kSameAngle * initial)
+      p.angle_deg = std::copysign(initial, p.angle_deg);
   all.insert(all.end(), added.begin(), added.end());
 }
 
@@ -263,7 +286,7 @@ ForceCurves read_force_curves(const std::string& path, const ForceCurveOptions& 
   out.has_errors = at.error != CurveLayout::none;
   CurveRows(file, at, options, out).read();
   for (ForceCurve& s : out.samples)
-    if (at.ft != CurveLayout::none) add_secant_points(s, options.secant_angle_deg);
+    if (at.ft != CurveLayout::none) complete_turns(s, options);
   return out;
 }
 

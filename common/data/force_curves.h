@@ -53,10 +53,12 @@ struct ForceCurveOptions {
   const char* radius_from = "--radius";
   const char* modulus_from = "--modulus";
   Unloading unloading = Unloading::refuse;
-  double initial_angle_deg = 0.05;  ///< a column kt is taken as the slope over +- this angle
-  double secant_angle_deg = 1.0;    ///< Ft is interpolated at this angle
+  double initial_angle_deg = 0.05;         ///< a column kt is taken as the slope over +- this angle
+  double secant_angle_deg = kSecantAngle;  ///< Ft is interpolated at this angle
 };
 
+/// Rows of ht and Ft belong to the reading of Fn before them where their overlaps agree to 1e-3, else to each other.
+/// Readings within 1e-3 of secant_angle_deg count as at 0 or +-secant_angle_deg.
 /// Reads one CSV file. Columns (any order, name [unit]): hn or overlap (with a unit of length) or Delta; Fn or force;
 /// optional sample, a standard error of Fn (se, error), and for the tangential law ht with Ft (Ft at ht = 0 is the
 /// prestrain), or kt. Other columns are named in a remark. Comments may say "# kind = soft-solid", "# Rs = 16 mm",

@@ -23,6 +23,9 @@ inline constexpr const char* kFromPackings = "bootstrap over packings";
 inline constexpr const char* kFromSamples = "bootstrap over samples";  ///< source of the intervals of an experiment
 inline constexpr const char* kFromResiduals = "bootstrap of residuals about the law";
 
+/// Begin of the reason of a law whose tangential forces were measured, but say no stiffness.
+inline constexpr const char* kNoStiffness = "tangential stiffness: not determined";
+
 /// F(D) = 0 for D < delta, a D^b + c for D >= delta, with c = -a delta^b [SP 1.5]. Dimensionless.
 struct ThresholdPowerLaw {
   Estimate a;
@@ -73,7 +76,7 @@ struct PairLaw {
   ThresholdPowerLaw tangential_initial;  ///< slope at ht = 0, from angles up to initial_angle_deg
   ThresholdPowerLaw tangential_secant;   ///< secant at secant_angle_deg
   double initial_angle_deg = 0.05;
-  double secant_angle_deg = 1.0;
+  double secant_angle_deg = kSecantAngle;
   bool has_tangential_initial = false;  ///< whether it was fitted; without both kt is assumed
   bool has_tangential_secant = false;
   /// kt/kn that runs take where neither was fitted; NaN: not said, see assumed_kt_ratio().

@@ -71,13 +71,15 @@ void read_tangential(const SceneTable& table, ThresholdPowerLaw& law, double& an
   law = read_law(table, good && fitted);
 }
 
-PairLaw read_pair(const SceneTable& table) {
+/// `intervals` of the card, where the pair does not say its own.
+PairLaw read_pair(const SceneTable& table, const std::string& intervals) {
   constexpr std::int64_t kMany = std::numeric_limits<int>::max();
   PairLaw law;
   law.kind = table.choice<PairKind>("kind");
   law.status = table.choice(
       "status", {LawStatus::good, LawStatus::no_threshold_crossing, LawStatus::underdetermined, LawStatus::not_run});
   law.reason = table.text("reason", "");
+  law.band_origin = table.text("interval_95", intervals);
   law.packings = static_cast<int>(table.count("packings", 0, kMany));
   law.points = static_cast<int>(table.count("points", 0, kMany));
   law.chi2_per_dof = read_real(table, "chi2_per_dof", Range::not_negative());
@@ -115,7 +117,7 @@ LawCard read_card_text(const Scene& file) {
   if (!card.from_experiment()) card.turn = measurement.choice<TurnProtocol>("turn", TurnProtocol::frozen);
   card.spec = read_spec_text(measurement, card.from_experiment());
   for (const SceneTable& pair : root.tables("pair")) {
-    const PairLaw law = read_pair(pair);
+    const PairLaw law = read_pair(pair, card.intervals);
     if (card.find(law.kind) != nullptr) pair.throw_error("kind", "this pair kind was given before");
     card.pairs.push_back(law);
   }

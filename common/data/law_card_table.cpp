@@ -163,7 +163,6 @@ void read_table(LawCard& card, const std::string& path) {
     const std::string name = to_string(pair.kind);
     if (!root.has(name)) continue;
     pair.table = read_curve(root.open(name).open("table"), path);
-    pair.band_origin = card.intervals;  // of all pairs, where a pair does not say its own
     read_bands(root, pair, path, edited);
   }
   if (!edited.empty())

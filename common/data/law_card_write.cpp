@@ -110,6 +110,7 @@ void write_pair(Out out, const PairLaw& pair, const LawCard& card) {
   const SoftParticleSpec& spec = card.spec;
   fmt::format_to(out, "\n[[pair]]\nkind = \"{}\"\nstatus = {}\nreason = {}\n", to_string(pair.kind),
                  quoted(to_string(pair.status)), quoted(pair.reason));
+  if (pair.band_origin != card.intervals) fmt::format_to(out, "interval_95 = {}\n", quoted(pair.band_origin));
   fmt::format_to(out, "packings = {}\npoints = {}\n", pair.packings, pair.points);
   fmt::format_to(out, "chi2_per_dof = {}\n", real(pair.chi2_per_dof));
   fmt::format_to(out, "quality = {}  # probability of a larger chi^2\n", real(pair.quality));

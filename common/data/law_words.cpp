@@ -93,17 +93,18 @@ std::string kt_remark(const LawCard& card) {
     text =
         "kt of this card is from a frozen turn (version 0.2.0 or earlier): at 1 degree it is 0.3 to 0.5 of what a "
         "slow turn gives; measure again, or calibrate from new measurements";
-  std::map<double, std::string> kinds;  // by the ratio that they share
+  std::map<std::pair<double, bool>, std::string> kinds;  // by the ratio that they share, and whether Ft was measured
   for (const PairLaw& law : card.pairs) {
     if (has_tangential(law) || !has_numbers(law.status)) continue;
-    append_part(kinds[assumed_kt_ratio(card, law)], to_string(law.kind), " and ");
+    const bool measured = law.reason.find(kNoStiffness) != std::string::npos;
+    append_part(kinds[{assumed_kt_ratio(card, law), measured}], to_string(law.kind), " and ");
   }
-  for (const auto& [ratio, names] : kinds)
+  for (const auto& [of, names] : kinds)
     append_part(
-        text, ratio > 0.0
-                  ? fmt::format("tangential stiffness of {} contacts was not measured: kt = {:.3g} dFn/dh is "
+        text, of.first > 0.0
+                  ? fmt::format("tangential stiffness of {} contacts was {}: kt = {:.3g} dFn/dh is "
                                 "assumed (kt_ratio of the card, Mindlin's unless it was changed), up to mu Fn",
-                                names, ratio)
+                                names, of.second ? "measured, but not determined" : "not measured", of.first)
                   : fmt::format("{} contacts have no tangential force, whatever mu: kt_ratio of the card is 0", names));
   return text;
 }

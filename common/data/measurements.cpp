@@ -35,11 +35,19 @@ std::vector<std::string> relaxations_of(const std::vector<PackingRun>& runs) {
   return names;
 }
 
-void write_runs(const h5::Group& root, const std::vector<PackingRun>& runs) {
+/// Name of the attribute with the settings of relaxation number k.
+std::string settings_name(std::size_t k) { return "settings_" + std::to_string(k); }
+
+void write_runs(const h5::Group& root, const Measurements& data) {
+  const std::vector<PackingRun>& runs = data.runs;
   const h5::Group group = root.create("runs");
   const std::vector<std::string> names = relaxations_of(runs);
   group.attribute("relaxations", static_cast<std::int64_t>(names.size()));
-  for (std::size_t k = 0; k < names.size(); ++k) group.attribute("relaxation_" + std::to_string(k), names[k]);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    group.attribute("relaxation_" + std::to_string(k), names[k]);
+    if (const auto said = data.settings.find(names[k]); said != data.settings.end())
+      group.attribute(settings_name(k), said->second);
+  }
   group.attribute("kinds", "0 soft-solid, 1 soft-soft");
   write_records(group, runs);
   write_column(group, "kind", "1", runs, [](const auto& r) { return r.kind == PairKind::soft_solid ? 0 : 1; });
@@ -67,6 +75,15 @@ std::vector<std::string> read_relaxations(const h5::Group& group) {
   const std::int64_t count = group.integer("relaxations");
   for (std::int64_t k = 0; k < count; ++k) names.push_back(group.text("relaxation_" + std::to_string(k)));
   return names;
+}
+
+std::map<std::string, std::string> read_settings(const h5::Group& root) {
+  const h5::Group group = root.open("runs");
+  std::map<std::string, std::string> settings;
+  const std::vector<std::string> names = read_relaxations(group);
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (group.has_attribute(settings_name(k))) settings[names[k]] = group.text(settings_name(k));
+  return settings;
 }
 
 std::vector<PackingRun> read_runs(const h5::Group& root, std::size_t packings) {
@@ -118,7 +135,7 @@ void save(const Measurements& data, const std::string& path, const Provenance& p
   root.attribute("turn_speed_unit", "m/s");
   write_spec(root, data.spec);
   write_packings(root, data.packings);
-  write_runs(root, data.runs);
+  write_runs(root, data);
   write_provenance(root, provenance);
   file.commit();
 }
@@ -138,6 +155,7 @@ Measurements load_measurements(const std::string& path) {
     data.spec = read_spec(root);
     data.packings = read_packings(root);
     data.runs = read_runs(root, data.packings.size());
+    data.settings = read_settings(root);
   } catch (const IoError& e) {
     const std::string text = e.what();
     throw IoError(text.starts_with(path) ? text : path + ": damaged: " + text);
@@ -183,6 +201,18 @@ void require_same(const Measurements& first, const Measurements& other, const st
     throw InputError(fmt::format("cannot merge {} and {}: the sizes of the grains differ", first_name, other_name));
 }
 
+/// Settings of every relaxation with the file that said them first.
+using Said = std::map<std::string, std::pair<std::string, std::string>>;
+
+void require_same_settings(const Measurements& part, const std::string& name, Said& said) {
+  for (const auto& [relaxation, settings] : part.settings) {
+    const auto [at, fresh] = said.try_emplace(relaxation, settings, name);
+    if (!fresh && at->second.first != settings)
+      throw InputError(fmt::format("cannot merge {} and {}: their relaxations \"{}\" differ:\n  {}\n  {}",
+                                   at->second.second, name, relaxation, at->second.first, settings));
+  }
+}
+
 /// A packing is the same when its radii are (every grain was grown to a random neighbour: no two packings agree by
 /// chance).
 using Measured = std::map<std::tuple<std::vector<double>, PairKind, std::string>, std::string>;
@@ -213,10 +243,13 @@ Measurements merge_measurements(const std::vector<Measurements>& parts, const st
     all.turn_speed = turned->turn_speed;
   }
   Measured seen;
+  Said said;
   for (std::size_t k = 0; k < parts.size(); ++k) {
     require_same(parts.front(), parts[k], names.front(), names[k]);
     if (turned != parts.end())
       require_same(*turned, parts[k], names[static_cast<std::size_t>(turned - parts.begin())], names[k]);
+    require_same_settings(parts[k], names[k], said);
+    all.settings.insert(parts[k].settings.begin(), parts[k].settings.end());
     const auto shift = static_cast<std::int64_t>(all.packings.size());
     all.packings.insert(all.packings.end(), parts[k].packings.begin(), parts[k].packings.end());
     for (PackingRun run : parts[k].runs) {

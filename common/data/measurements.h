@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -96,6 +97,9 @@ struct PackingInfo {
   std::vector<double> radii;        ///< [m], one per grain
 };
 
+/// Angle of the published secant of the tangential force [degree] [SP 1.4].
+inline constexpr double kSecantAngle = 1.0;
+
 /// One relaxed state of increasing normal overlap.
 struct NormalPoint {
   double delta = 0.0;        ///< Delta = hn/Rs
@@ -134,6 +138,7 @@ struct Measurements {
   double turn_speed = 0.0;                 ///< [m/s], of the rim of the shell in a slow turn; 0: nothing was turned
   std::vector<PackingInfo> packings;
   std::vector<PackingRun> runs;
+  std::map<std::string, std::string> settings{};  ///< of each relaxation, by its name; none in earlier files
 };
 
 /// Writes to an HDF5 file, atomically (temporary file, flush, rename). Throws IoError.
@@ -144,7 +149,8 @@ Measurements load_measurements(const std::string& path);
 
 /// Joins packings and runs; indices of packings are shifted. `names` (one per part) stand for the parts in messages.
 /// Throws InputError when there is nothing to merge, when a part was measured on another soft particle or by another
-/// protocol (first differing quantity named, with both values), or when the same packing was measured twice by the same
+/// protocol (first differing quantity named, with both values; settings of a relaxation that a file does not say are
+/// taken to be the same), or when the same packing was measured twice by the same
 /// relaxation.
 Measurements merge_measurements(const std::vector<Measurements>& parts, const std::vector<std::string>& names);
 

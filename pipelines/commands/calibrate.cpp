@@ -72,13 +72,32 @@ std::string console_line(const FitReport& report, const SoftParticleSpec& spec) 
 
 }  // namespace
 
+std::string calibrate_name(const CommonOptions& options) {
+  return std::filesystem::path(options.inputs.front()).stem().string();
+}
+
+std::string calibrate_directory(const CommonOptions& options) {
+  return options.out.empty() ? default_directory(calibrate_name(options)) : options.out;
+}
+
+void require_inputs_stay(const CommonOptions& options, const std::vector<std::string>& written) {
+  for (const std::string& name : written)
+    for (const std::string& input : options.inputs) {
+      std::error_code not_there;
+      if (std::filesystem::equivalent(calibrate_directory(options) + "/" + name, input, not_there))
+        throw InputError(fmt::format(
+            "calibrate: {} is an input, and the run would write its own {} over it: give another --out", input, name));
+    }
+}
+
 ExitStatus command_calibrate(const CommonOptions& options) {
   if (are_curve_files(options)) return calibrate_curves(options);
   if (are_multi_contact_files(options.inputs)) return calibrate_multi_contact(options);
   const Scene settings = Scene::parse("", "calibrate", options.overrides);
   FitOptions fit = settings.read(read_options);
   const Measurements data = load_all(options.inputs);
-  const RunContext run(options, "calibrate", std::filesystem::path(options.inputs.front()).stem().string());
+  require_inputs_stay(options, {"law.h5"});
+  const RunContext run(options, "calibrate", calibrate_name(options));
   fit.seed = run.seed(fit.seed);
   std::vector<FitReport> reports;
   const LawCard card = calibrate(data, fit, &reports);

@@ -172,7 +172,8 @@ ExitStatus calibrate_curves(const CommonOptions& options) {
   const Scene scene = Scene::parse("", "calibrate", options.overrides);
   CurveSettings settings = scene.read([&](const SceneTable& root) { return read_settings(root, options); });
   const std::vector<ForceCurves> curves = read_force_curve_files(options.inputs, settings.curves);
-  const RunContext run(options, "calibrate", std::filesystem::path(options.inputs.front()).stem().string());
+  require_inputs_stay(options, {"log.txt"});
+  const RunContext run(options, "calibrate", calibrate_name(options));
   settings.fit.seed = run.seed(settings.fit.seed);
   const ExperimentFit fit = fit_experiment(curves, settings.fit, settings.mirror);
   const Provenance provenance = run.provenance(scene, settings.fit.seed);

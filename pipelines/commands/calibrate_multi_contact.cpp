@@ -31,11 +31,16 @@ MultiContactSettings read_multi_contact_settings(const SceneTable& t) {
   return s;
 }
 
-/// The report draws the first measurement beside its laws; it may lie in the run directory already.
+/// Whether the first measurement, which the report draws beside its laws, lies in the run directory already.
+bool is_kept(const std::string& path, const std::string& source) {
+  std::error_code not_there;
+  return fs::equivalent(path, source, not_there);
+}
+
 void keep_for_report(const MultiContactMeasurements& data, const std::string& source, const RunContext& context,
                      const Provenance& provenance) {
   const std::string path = context.path(kMultiContactFile);
-  if (!fs::exists(path) || !fs::equivalent(path, source)) save_multi_contact(data, path, provenance);
+  if (!is_kept(path, source)) save_multi_contact(data, path, provenance);
 }
 
 nlohmann::json summarise(const MultiContactLawFit& fit, const std::vector<MultiContactMeasurements>& data,
@@ -79,7 +84,11 @@ ExitStatus calibrate_multi_contact(const CommonOptions& options) {
   MultiContactSettings settings = scene.read(read_multi_contact_settings);
   std::vector<MultiContactMeasurements> data;
   for (const std::string& file : options.inputs) data.push_back(load_multi_contact(file));
-  const RunContext context(options, "calibrate", fs::path(options.inputs.front()).stem().string());
+  std::vector<std::string> written{"law_table.h5"};
+  const std::string kept = calibrate_directory(options) + "/" + kMultiContactFile;
+  if (!is_kept(kept, options.inputs.front())) written.emplace_back(kMultiContactFile);
+  require_inputs_stay(options, written);
+  const RunContext context(options, "calibrate", calibrate_name(options));
   settings.fit.seed = context.seed(settings.fit.seed);
   const Provenance provenance = context.provenance(scene, settings.fit.seed);
   MultiContactLawFit fit;

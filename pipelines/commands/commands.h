@@ -23,6 +23,14 @@ namespace softgrain {
 /// option for such tables stands beside other files.
 bool are_curve_files(const CommonOptions& options);
 
+/// Throws InputError where a file of these names that calibrate is about to write in its directory is one of its
+/// inputs: before the directory is touched.
+void require_inputs_stay(const CommonOptions& options, const std::vector<std::string>& written);
+
+/// Name of the run directory of calibrate under results/, that of its first input; and the directory that it will be.
+std::string calibrate_name(const CommonOptions& options);
+std::string calibrate_directory(const CommonOptions& options);
+
 /// Fits, writes law.toml, law.h5, summary.json and the report.
 ExitStatus calibrate_curves(const CommonOptions& options);
 

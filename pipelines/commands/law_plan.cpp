@@ -5,9 +5,12 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
 
 #include "common/data/macro_result.h"
 #include "common/io/interrupt.h"
+#include "common/io/json_record.h"
 #include "common/io/text_file.h"
 #include "pipelines/commands/law_options.h"
 #include "pipelines/compare/compare_inputs.h"
@@ -16,6 +19,8 @@
 #include "pipelines/kinds/law_table/scene.h"
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/law/fitted_law.h"
+#include "pipelines/results/summary.h"
+#include "pipelines/run/run_context.h"
 
 namespace softgrain {
 
@@ -100,6 +105,43 @@ json json_of(const LawPlan& plan, const std::string& law, const std::string& run
   return out;
 }
 
+/// The scene that a run was of, as it used it; empty where its summary does not say.
+std::optional<Scene> scene_of(const std::string& run) {
+  const std::string file = run + "/summary.json";
+  if (!fs::exists(file)) return std::nullopt;
+  const json summary = json::parse(read_text(file), nullptr, false);
+  if (!summary.is_object()) return std::nullopt;
+  const auto provenance = record_of<AnySummary>(summary).provenance;
+  if (!provenance || provenance->scene.empty()) return std::nullopt;
+  return Scene::parse(provenance->scene, file);
+}
+
+/// Whether a macro scene was run with this law, by the text of the law that the run recorded.
+std::optional<bool> macro_run_of(const std::string& run, const Scene& scene, const FittedLaw& law) {
+  try {
+    const MacroScene macro = read_macro_scene(scene, law.path);
+    return began_with(run, law.text + sizes_text(macro.setup.spec));
+  } catch (const Error&) {  // files that it names by its own place cannot be found from here
+    return std::nullopt;
+  }
+}
+
+/// Whether the draws of a run are those of this table; empty: what the run left does not say it. A run that fitted its
+/// own table has it in its directory.
+std::optional<bool> is_run_of(const std::string& run, const FittedLaw& table, const std::vector<MacroCurve>& curves,
+                              WantedForm form) {
+  if (began_with(run, table.text) == true) return true;
+  const std::optional<Scene> scene = scene_of(run);
+  if (scene && std::string_view(kind_of(*scene).name) == macro_kind().name) return macro_run_of(run, *scene, table);
+  const std::string own = run + "/law_table.toml";
+  if (!scene || !fs::exists(own)) return std::nullopt;
+  try {
+    return same_draws(table, load_law(own), curves, form);
+  } catch (const InputError&) {  // one of them keeps too few draws; of this table the plan says so
+    return std::nullopt;
+  }
+}
+
 void require_plan_options(const LawOptions& o) {
   if (o.target.empty())
     throw InputError("law plan: give --for SCENE, a macro scene with bands, or the directory of its run");
@@ -109,6 +151,10 @@ void require_plan_options(const LawOptions& o) {
     throw InputError(fmt::format("law plan: --packings {}: must be from 1 to 100000", o.packings));
   if (!(o.narrow > 0.0) || !(o.narrow < 1.0))
     throw InputError(fmt::format("law plan: --narrow {}: must be above 0 and below 1", o.narrow));
+  if (o.json && o.as_scene) throw InputError("law plan: --toml and --json are two forms of the plan: give one of them");
+  if (!o.out.empty() && fs::is_directory(o.target))
+    throw InputError("law plan: --out is the directory of the run of --for SCENE, and " + o.target +
+                     " is a run already: leave --out out");
 }
 
 }  // namespace
@@ -122,7 +168,15 @@ ExitStatus plan_next(const LawOptions& o) {
   const Scene table_scene = Scene::load(o.measure);
   const LawTableSetup candidates = read_law_table(table_scene);
   const std::string run = fs::is_directory(o.target) ? o.target : run_of(o, file.path);
-  const LawPlan plan = plan_law(file, candidates.multi_contact, curves_in(run), {o.packings, o.narrow, o.form});
+  const std::vector<MacroCurve> curves = curves_in(run);
+  const std::optional<bool> own = is_run_of(run, file, curves, o.form);
+  if (own == false)
+    throw InputError("law plan: " + run + " was run with another law than " + file.path +
+                     ", and the draws of one say nothing of the other: give the law of that run, or --for SCENE to run "
+                     "it with this one");
+  LawPlan plan = plan_law(file, candidates.multi_contact, curves, {o.packings, o.narrow, o.form});
+  if (!own)
+    plan.remarks.push_back(run + " does not say which law it was run with: the plan holds if it was " + file.path);
   if (o.json)
     write_standard_output(json_of(plan, file.path, run).dump(2, ' ', false, json::error_handler_t::replace) + "\n");
   else

@@ -74,6 +74,7 @@ void check_force_curves(const CsvFile& table, Findings& out) {
   out.add("largest_force", largest_force, fmt::format("forces up to {:.4g} N", largest_force));
   if (!options.shell_radius && !options.youngs_modulus)
     for (const std::string& one : implausible_forces(curves)) out.warn(one);
+  if (const std::string turns = judge_turns(curves, {}).why; !turns.empty()) out.warn(turns);
   for (const std::string& remark : curves.remarks) out.warn(remark);
 }
 

@@ -145,6 +145,15 @@ LawRow parameter_row(const std::string& what, const Estimate& a, const Estimate&
   return {what, a.value, a.standard_error, b.value, b.standard_error};
 }
 
+/// A law without numbers has zeros in their place, which are not known.
+PairLaw with_unknown_numbers(PairLaw law) {
+  if (has_numbers(law.status) && law.normal.b.value > 0.0) return law;
+  constexpr Estimate kUnknown{kNaN, kNaN, kNaN, kNaN};
+  law.normal = {kUnknown, kUnknown, kUnknown, kUnknown};
+  law.has_tangential_initial = law.has_tangential_secant = false;
+  return law;
+}
+
 void add_law(std::vector<LawRow>& rows, const std::string& name, const ThresholdPowerLaw& a,
              const ThresholdPowerLaw& b) {
   rows.push_back(parameter_row(name + " a", a.a, b.a));
@@ -204,8 +213,8 @@ MeasurementComparison compare_measurements(const Measurements& candidate, const 
 }
 
 std::vector<LawRow> compare_laws(const LawCard& candidate, const LawCard& reference, PairKind kind) {
-  const PairLaw& a = require_law(candidate, kind, "candidate");
-  const PairLaw& b = require_law(reference, kind, "reference");
+  const PairLaw a = with_unknown_numbers(require_law(candidate, kind, "candidate"));
+  const PairLaw b = with_unknown_numbers(require_law(reference, kind, "reference"));
   std::vector<LawRow> rows;
   add_law(rows, "normal", a.normal, b.normal);
   if (a.has_tangential_initial && b.has_tangential_initial)

@@ -79,8 +79,8 @@ MeasurementComparison compare_measurements(const Measurements& candidate, const 
 
 /// One parameter, or one value F(Delta), of two fitted laws.
 struct LawRow {
-  std::string what;  ///< "normal a", "F(0.20)"
-  double candidate = 0.0;
+  std::string what;              ///< "normal a", "F(0.20)"
+  double candidate = 0.0;        ///< NaN of a law without numbers
   double candidate_error = 0.0;  ///< standard error, NaN when unknown
   double reference = 0.0;
   double reference_error = 0.0;

@@ -63,6 +63,15 @@ class PlainSystem:
         self.param_data = [[value] for value in values]
 
 
+def misfit_of(simulated, observed):
+    """Mean square of the distance over its error (10 % of the force, 1 % of the largest), over the overlaps where both are known;
+    infinite where a run came to no force at all."""
+    largest = max((f for f in observed if math.isfinite(f)), default=0.0)
+    squares = [((a - b) / (0.1 * b + 0.01 * largest)) ** 2
+               for a, b in zip(simulated, observed) if math.isfinite(a) and math.isfinite(b)]
+    return sum(squares) / len(squares) if squares else math.inf
+
+
 def plain_search(callback, observed, folder, samples, low, high):
     """The sample with the least misfit, and the weighted mean over all (weights as in a Bayesian filter)."""
     system = PlainSystem([low + (high - low) * k / (samples - 1) for k in range(samples)])
@@ -74,13 +83,15 @@ def plain_search(callback, observed, folder, samples, low, high):
         prefix = os.path.join(folder, f"{NAME}_Iter0_Sample{k:0{digits}d}")
         simulated = read_columns(prefix + "_sim.txt")
         mu = read_columns(prefix + "_param.txt")["mu"][0]
-        misfit = sum(((a - b) / (0.1 * b + 0.01 * max(observed["Fn"]))) ** 2
-                     for a, b in zip(simulated["Fn"], observed["Fn"]) if math.isfinite(a) and math.isfinite(b))
+        misfit = len(observed["Fn"]) * misfit_of(simulated["Fn"], observed["Fn"])  # chi^2, were every overlap known
         weight = math.exp(-0.5 * misfit)
         total += weight
         mean += weight * mu
-        best = min(best, (misfit, mu))
+        if misfit < best[0]:
+            best = (misfit, mu)
         print(f"mu = {mu:.3f}: misfit {misfit:.1f}")
+    if best[1] is None:
+        sys.exit("not one sample came to a force at an overlap that was observed")
     print(f"best sample: mu = {best[1]:.3f}; weighted mean {mean / total if total > 0 else best[1]:.3f}; truth 0.3")
     return best[1]
 

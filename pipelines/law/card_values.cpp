@@ -45,7 +45,7 @@ std::vector<LawPoint> card_values(const LawCard& card, PairKind kind, const std:
       return measured ? Quantity{value, interval(law, part, delta)} : Quantity{value, std::nullopt};
     };
     p.force = quantity(r.elastic_force, value_interval, LawPart::normal);
-    p.stiffness = quantity(r.normal_stiffness, slope_interval, LawPart::normal);
+    p.stiffness = quantity(p.clamped ? 0.0 : r.normal_stiffness, slope_interval, LawPart::normal);
     if (has_part(law, LawPart::tangential_initial))
       p.tangential_initial = quantity(r.tangential_stiffness, value_interval, LawPart::tangential_initial);
     if (has_part(law, LawPart::tangential_secant))

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
 #include "calibrate/draws.h"
+#include "calibrate/experiment_fit.h"
 #include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
@@ -15,6 +17,7 @@
 #include "common/data/multi_contact_replicates.h"
 #include "microsim/multi_contact_arrangements.h"
 #include "pipelines/law/cell_draws.h"
+#include "pipelines/law/law_fit.h"
 
 namespace softgrain {
 
@@ -210,6 +213,50 @@ std::vector<std::vector<double>> pair_draws(const PairLaw& p, std::int64_t count
   return normal_draws(mean, covariance, count, stream);
 }
 
+std::vector<double> with_pair_logarithms(std::vector<double> numbers) {
+  for (std::size_t j = 0; j < kPairNumbers; ++j)
+    if (kPairLogarithm[j] && numbers[j] > 0.0) numbers[j] = std::log(numbers[j]);
+  return numbers;
+}
+
+/// The law of the other kind that this one follows from by symmetry; none where it does not, or no longer: people edit
+/// cards.
+const PairLaw* mirrored_from(const LawCard& card, const PairLaw& law) {
+  constexpr double kRounding = 1e-9;
+  if (!is_by_symmetry(law)) return nullptr;
+  for (const PairLaw& other : card.pairs) {
+    if (other.kind == law.kind || is_by_symmetry(other)) continue;
+    std::array<double, kPairNumbers> numbers{};
+    std::ranges::copy(pair_numbers(other), numbers.begin());
+    const std::vector<double> own = pair_numbers(law);
+    if (std::ranges::equal(mirrored_numbers(numbers, other.kind), own,
+                           [](double a, double b) { return std::abs(a - b) <= kRounding * std::abs(b); }))
+      return &other;
+  }
+  return nullptr;
+}
+
+/// Draws of the law that follows by symmetry from another one, from the draws of that: they are off together.
+std::vector<std::vector<double>> mirrored_draws(const PairLaw& measured, std::vector<std::vector<double>> draws) {
+  const std::vector<double> best = pair_numbers(measured);
+  for (std::vector<double>& draw : draws) {
+    std::array<double, kPairNumbers> numbers{};
+    for (std::size_t j = 0; j < kPairNumbers; ++j)
+      numbers[j] = kPairLogarithm[j] && best[j] > 0.0 ? std::exp(draw[j]) : draw[j];
+    const auto turned = mirrored_numbers(numbers, measured.kind);
+    draw = with_pair_logarithms({turned.begin(), turned.end()});
+  }
+  return draws;
+}
+
+/// Draws of pair number k of the card.
+std::vector<std::vector<double>> draws_of_pair(const LawCard& card, std::size_t k, std::int64_t count) {
+  const PairLaw* measured = mirrored_from(card, card.pairs[k]);
+  if (measured == nullptr) return pair_draws(card.pairs[k], count, k + 1);
+  const auto place = static_cast<std::size_t>(measured - card.pairs.data());
+  return mirrored_draws(*measured, pair_draws(*measured, count, place + 1));
+}
+
 std::vector<double> card_probes(const LawCard& card) {
   std::vector<double> out;
   for (const PairLaw& p : card.pairs)
@@ -223,7 +270,7 @@ LawDraws card_draws(const LawCard& card, const LawSources& sources, const NamedL
   out.law = named;
   out.draws.resize(static_cast<std::size_t>(count));
   for (std::size_t k = 0; k < card.pairs.size(); ++k) {
-    const auto own = pair_draws(card.pairs[k], count, k + 1);
+    const auto own = draws_of_pair(card, k, count);
     for (std::size_t r = 0; r < own.size(); ++r) out.draws[r].insert(out.draws[r].end(), own[r].begin(), own[r].end());
     std::vector<double> numbers = pair_numbers(card.pairs[k]);
     for (std::size_t j = 0; j < numbers.size(); ++j)

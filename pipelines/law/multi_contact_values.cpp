@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "common/core/error.h"
-#include "common/core/statistics.h"
+#include "common/core/limits.h"
 #include "common/core/text.h"
+#include "common/data/law_words.h"
 #include "common/data/multi_contact_replicates.h"
 #include "pipelines/law/law_values.h"
 #include "pipelines/law/multi_contact_middle.h"
@@ -83,14 +84,15 @@ double overlap_max(const MultiContactAnswer& answer, const MultiContactQuestion&
   return measured_overlap(answer.entry, answer.form, q.partner, q.ratio);
 }
 
-/// kt = (kt/kn) kn: both are uncertain, each on its own.
+/// kt = (kt/kn) kn: both are uncertain, each on its own; on either side their distances add in quadrature. Both
+/// intervals are widened for few packings in the logarithm, so the distances are ratios.
 std::optional<LawInterval> tangential_interval(double kt, const Quantity& kn, const Estimate& ratio) {
-  if (!kn.interval || !(kn.value > 0.0) || !(ratio.value > 0.0) || !std::isfinite(ratio.standard_error))
+  if (!kn.interval || !(kn.value > 0.0) || !(ratio.value > 0.0) || !interval_known(ratio.low, ratio.high))
     return std::nullopt;
-  const double of_kn = 0.5 * (kn.interval->high - kn.interval->low) / kn.value;
-  const double of_ratio = kNormal95 * ratio.standard_error / ratio.value;
-  const double half = kt * std::hypot(of_kn, of_ratio);
-  return LawInterval{std::max(0.0, kt - half), kt + half, kFromPackings};
+  const auto distance = [](double value, double end) { return end > 0.0 ? std::log(end / value) : -kInfinity; };
+  const double below = std::hypot(distance(kn.value, kn.interval->low), distance(ratio.value, ratio.low));
+  const double above = std::hypot(distance(kn.value, kn.interval->high), distance(ratio.value, ratio.high));
+  return LawInterval{kt * std::exp(-below), kt * std::exp(above), kFromPackings};
 }
 
 /// Where the law is clamped or extrapolated: it knows the lost volume alone.

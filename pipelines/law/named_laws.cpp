@@ -12,6 +12,7 @@
 #include "common/core/text.h"
 #include "common/data/card_text.h"
 #include "common/data/law_words.h"
+#include "common/data/multi_contact_replicates.h"
 #include "common/dynamics/force_pass.h"
 #include "common/io/text_file.h"
 #include "macrosim/curve_notes.h"
@@ -39,7 +40,7 @@ class RangeCheck {
                        c.outside, c.all);
   }
 
-  /// Contacts deeper than any row of their kind.
+  /// Contacts deeper than the row of the nearest ratio.
   [[nodiscard]] std::string warning(const System3& s) const {
     const Counts c = count(s);
     if (c.deep == 0) return "";
@@ -70,13 +71,15 @@ class RangeCheck {
         out.deep += c.overlap / ri > entry_.overlap_max ? 1 : 0;
         continue;
       }
-      const auto rows = law_.rows(i_soft && j_soft ? PartnerKind::soft : PartnerKind::solid);
+      const PartnerKind kind = i_soft && j_soft ? PartnerKind::soft : PartnerKind::solid;
+      const auto rows = law_.rows(kind);
       double ratio = i_soft ? rj / ri : ri / rj;
       if (i_soft && j_soft) ratio = std::max(ratio, 1.0 / ratio);
       const bool covered =
           !rows.empty() && ratio >= rows.front().ratio && (!j_soft || !i_soft || ratio <= rows.back().ratio);
       out.outside += covered ? 0 : 1;
-      out.deep += !rows.empty() && c.overlap / std::min(ri, rj) > rows.back().overlap_max ? 1 : 0;
+      const double measured = measured_overlap(entry_, law_.form, kind, i_soft ? rj / ri : ri / rj);
+      out.deep += !rows.empty() && c.overlap > measured * (i_soft ? ri : rj) ? 1 : 0;
     }
     return out;
   }

@@ -86,7 +86,8 @@ Pair card_pair(const LawCard& card, PairKind kind, double ratio, const PairTable
             s.normal[0] = 1.0;
             s.constants = constants;
             const ContactResponse<3> r = contact.evaluate(s);
-            return Response{contact.stored_energy(overlap, constants), r.elastic_force, r.normal_stiffness};
+            return Response{contact.stored_energy(overlap, constants), r.elastic_force,
+                            contact.is_clamped(overlap, constants.a) ? 0.0 : r.normal_stiffness};
           }};
 }
 
@@ -178,7 +179,15 @@ std::vector<PairTable> pair_tables(const FittedLaw& file, const PairTableChoice&
   const std::vector<Pair> pairs = card != nullptr ? card_pairs(*card, choice) : table_pairs(*file.table(), choice);
   if (pairs.empty()) throw InputError(file.path + ": the card has no usable law");
   std::vector<PairTable> out;
-  for (const Pair& pair : pairs) out.push_back(tabulate(pair, choice));
+  for (const Pair& pair : pairs) {
+    const auto same = std::ranges::find(out, keyword(pair), &PairTable::keyword);
+    if (same != out.end())
+      throw InputError(
+          fmt::format("law export: --ratios {} and {} would both be the section {}, of which LAMMPS reads the first: "
+                      "give each ratio once, and ratios that differ in their first six digits",
+                      same->other_radius / same->soft_radius, pair.ratio, same->keyword));
+    out.push_back(tabulate(pair, choice));
+  }
   return out;
 }
 

@@ -128,9 +128,10 @@ std::string default_directory(const std::string& name) {
   return std::filesystem::exists(directory + "/README.md", ignored) ? directory + "_run" : directory;
 }
 
-bool began_with(const std::string& directory, const std::string& beside) {
+std::optional<bool> began_with(const std::string& directory, const std::string& beside) {
   const nlohmann::json run = read_object(directory + "/" + kRunFile);
-  return run.value("beside", short_hash(beside)) == short_hash(beside);
+  if (!run.contains("beside")) return std::nullopt;
+  return run["beside"] == short_hash(beside);
 }
 
 RunContext::RunContext(const CommonOptions& options, const std::string& command, const std::string& default_name,

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -65,9 +66,9 @@ struct FingerprintMismatch : InputError {
 /// not write among kept results unless it is told to.
 std::string default_directory(const std::string& name);
 
-/// Whether the run in this directory began with the same content beside scene and seed (RunContext::begin); true where
+/// Whether the run in this directory began with the same content beside scene and seed (RunContext::begin); empty where
 /// the directory does not say it.
-bool began_with(const std::string& directory, const std::string& beside);
+std::optional<bool> began_with(const std::string& directory, const std::string& beside);
 
 /// A run directory in use: made, proved writable and held against other runs, with a log file; writes the summary at
 /// the end.

@@ -84,6 +84,29 @@ TEST_F(LawTableUse, MacroScenesTakeTablesAndCards) {
   EXPECT_EQ(end_stress("card"), end_stress("card2"));
 }
 
+/// Each contact against the row of the nearest ratio, whatever was measured at the largest one.
+TEST_F(LawTableUse, ContactsBeyondTheRangeAreCountedByTheRowOfTheirRatio) {
+  const auto warns = [&](const std::string& name, double near, double far) {
+    LawTableEntry entry = law_entry(0.70);
+    entry.overlap_max = entry.volume_max = 1.9;
+    for (MultiContactLaw& law : entry.laws)
+      for (PartnerRow& row : law.partners) row.overlap_max = near;
+    for (MultiContactLaw& law : entry.laws) {
+      PartnerRow solid = law.partners[1];
+      PartnerRow soft = law.partners[3];
+      solid.ratio = soft.ratio = 1000.0;
+      solid.overlap_max = soft.overlap_max = far;
+      law.partners.insert(law.partners.begin() + 2, solid);
+      law.partners.push_back(soft);
+    }
+    save_law_table({1, {entry}}, file("law_table.toml"));
+    expect(macro(name, ""), 0, {});
+    return summary(name).dump().find("deeper at the end than the law was measured") != std::string::npos;
+  };
+  EXPECT_FALSE(warns("far", 1.9, 1e-9));
+  EXPECT_TRUE(warns("near", 1e-9, 1.9));
+}
+
 TEST_F(LawTableUse, TheFrictionOfAScene) {
   expect(macro("measured", ""), 0, {});
   expect(macro("smooth", "mu = 0.0\n"), 0, {});
@@ -343,6 +366,29 @@ TEST_F(LawTableUse, WrongInputsOfCalibrateAreRefused) {
   expect(run_the_program(multi_contact + "'" + file("measurements.h5") + "'" + out), 2, {"a run each"});
   expect(run_the_program(multi_contact + "--set replicats=1" + out), 2, {"replicats", "replicates"});
   expect(run_the_program(multi_contact + "--set discrepancy=0" + out), 2, {"discrepancy"});
+}
+
+/// The first measurement is kept in the run directory for the report: never over another input.
+TEST_F(LawTableUse, CalibrateNeverWritesOverItsInputs) {
+  const auto path = [&](const std::string& name) { return file(name) + "/multi_contact.h5"; };
+  for (const char* name : {"a", "b"}) fs::create_directory(file(name));
+  synthetic::MultiContactOptionsKnown o;
+  o.noise = 0.02;
+  const MultiContactMeasurements data = synthetic::multi_contact_measurements(known(), arrangements(), o);
+  for (const char* name : {"a", "b"}) save_multi_contact(data, path(name));
+  const std::string before = read_text(path("b"));
+  const std::string quick = " --quiet --set replicates=0 --out '" + file("b") + "'";
+  expect(run_the_program("calibrate '" + path("a") + "' '" + path("b") + "'" + quick), 2,
+         {path("b") + " is an input", "give another --out"});
+  EXPECT_EQ(read_text(path("b")), before);
+  // The first one may lie there: it is what is kept.
+  const auto alone = run_the_program("calibrate '" + path("b") + "'" + quick);
+  EXPECT_NE(alone.status, 2) << alone.output;
+  EXPECT_EQ(read_text(path("b")), before);
+  // So may no measurement bear the name of what is written.
+  save(synthetic::measurements(4), file("a") + "/law.h5");
+  expect(run_the_program("calibrate '" + file("a") + "/law.h5' --quiet --out '" + file("a") + "'"), 2,
+         {"law.h5 is an input"});
 }
 
 TEST_F(LawTableUse, LawTableScenesThatCannotEndInALawAreRefused) {

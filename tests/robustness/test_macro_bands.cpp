@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "common/core/statistics.h"
@@ -17,6 +18,7 @@ namespace {
 
 using test::run_the_program;
 using test::TemporaryDirectory;
+namespace fs = std::filesystem;
 
 const std::string kTable = std::string(SOFTGRAIN_SOURCE_DIR) + "/results/law_table/law_table.toml";
 
@@ -109,6 +111,20 @@ TEST_F(MacroBands, APlanSaysWhatToMeasureNext) {
   EXPECT_NE(text.find("plan, one after the other"), std::string::npos) << text;
   for (const auto& candidate : told["candidates"])
     EXPECT_NE(candidate["configuration"], "icosahedron-plane-free") << "no fit sees what is held out";
+  // Refits of another law say nothing of these draws, even where its best numbers are the same.
+  fs::create_directory(directory_.file("other"));
+  fs::copy_file(fs::path(kTable).replace_extension(".h5"), directory_.file("other/law_table.h5"));
+  write_text_atomic(directory_.file("other/law_table.toml"), read_text(kTable) + "# of other draws\n");
+  const auto other = run_the_program("law plan '" + directory_.file("other") + plan.substr(plan.find("' --measure")));
+  EXPECT_EQ(other.status, 2) << other.output;
+  EXPECT_NE(other.output.find("was run with another law"), std::string::npos) << other.output;
+  for (const char* idle : {"--json --toml", "--out never"}) {
+    const auto refused = run_the_program(plan + idle);
+    EXPECT_EQ(refused.status, 2) << refused.output;
+  }
+  // A run that does not say its law is taken, with a note.
+  fs::remove(directory_.file("planned/.run"));
+  EXPECT_NE(run_the_program(plan).output.find("does not say which law"), std::string::npos);
   // As tables of the scene: what it has and what the plan adds.
   const std::string scene = read_text(std::string(SOFTGRAIN_SOURCE_DIR) + "/pipelines/law_table.toml");
   write_text_atomic(directory_.file("more.toml"), scene + run_the_program(plan + "--toml").output);

@@ -408,4 +408,20 @@ TEST_F(OwnData, TheExampleForCalibrationToolsRunsWithoutThem) {
   EXPECT_TRUE(fs::exists(file("example") + "/sim_data/iter0/softgrain_Iter0_Sample2_param.txt"));
 }
 
+/// Overlaps that did not converge are nan: a run of nothing else is no good one, and a gap is no merit.
+TEST_F(OwnData, TheExampleForCalibrationToolsDoesNotPreferFailedRuns) {
+  write_text_atomic(file("misfits.py"), R"(import math, sys
+sys.path.insert(0, sys.argv[1])
+sys.dont_write_bytecode = True
+from calibrate import misfit_of
+nan = math.nan
+assert misfit_of([nan, nan], [1.0, 2.0]) == math.inf
+assert misfit_of([1.1, nan], [1.0, 2.0]) > 0.0
+assert misfit_of([1.1, 2.2], [1.0, 2.0]) > misfit_of([1.1, 2.0], [1.0, 2.0]) > 0.0
+)");
+  const std::string line = "python3 '" + file("misfits.py") +
+                           "' '" SOFTGRAIN_SOURCE_DIR "/pipelines/grainlearning_example' > '" + file("log") + "' 2>&1";
+  EXPECT_TRUE(ended_with(std::system(line.c_str()), 0)) << read_text(file("log"));
+}
+
 }  // namespace

@@ -102,6 +102,8 @@ TEST(PythonReader, ReadsAPipeline) {
     for (std::size_t n = 0; n < data.runs[k].normal.size(); ++n)
       EXPECT_EQ(one["force"][n], data.runs[k].normal[n].force);
     ASSERT_EQ(one["angles"].size(), data.runs[k].tangential.size());
+    for (std::size_t n = 0; n < data.runs[k].tangential.size(); ++n)
+      EXPECT_EQ(one["turned_converged"][n], data.runs[k].tangential[n].converged);
   }
   const LawCard card = load_card(run + "/law.toml");
   for (const PairLaw& pair : card.pairs) {

@@ -21,7 +21,8 @@ for s in run.snapshots():
 out["last"] = [s.frame for s in run.snapshots(last=True)]
 if Path(sys.argv[2], "measurements.h5").exists():
     out["measured"] = [{"kind": r.kind, "relaxation": r.relaxation, "force": r.force.tolist(),
-                        "angles": r.tangential["angle"].tolist()} for r in run.measurements().runs]
+                        "angles": r.tangential["angle"].tolist(),
+                        "turned_converged": r.tangential["converged"].tolist()} for r in run.measurements().runs]
 if Path(sys.argv[2], "macro.h5").exists():
     out["macro"] = [{"engine": c.engine, "stress": c["stress_axial"].tolist()} for c in run.macro()]
 if Path(sys.argv[2], "law.toml").exists():

@@ -34,6 +34,20 @@ TEST(CompareSides, OnlyFilesOfPackingsAreLeftOut) {
   EXPECT_FALSE(holds_packings("macro_initial-state", "macro"));
 }
 
+/// The zeros of a law that crossed no threshold are not its numbers.
+TEST(CompareLaws, ALawWithoutNumbersHasNone) {
+  LawCard good = synthetic::card();
+  LawCard none = good;
+  none.pairs.at(0).status = LawStatus::no_threshold_crossing;
+  none.pairs.at(0).normal = {};
+  const std::vector<LawRow> rows = compare_laws(none, good, good.pairs.at(0).kind);
+  ASSERT_GT(rows.size(), 3U);
+  for (const LawRow& r : rows) {
+    EXPECT_TRUE(std::isnan(r.candidate) && std::isnan(r.candidate_error)) << r.what;
+    EXPECT_FALSE(std::isnan(r.reference)) << r.what;
+  }
+}
+
 TEST(RelativeDifference, IdenticalCurvesDoNotDiffer) {
   const Values x{0, 1, 3};
   const Values y{1, 5, 2};

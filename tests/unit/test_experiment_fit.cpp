@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
+#include "common/core/text.h"
 #include "common/data/law_band.h"
+#include "common/data/law_words.h"
+#include "pipelines/law/law_draws.h"
 #include "pipelines/law/law_fit.h"
 #include "tests/support/synthetic_law.h"
 
@@ -157,6 +161,56 @@ TEST(ExperimentFit, LongSeriesOfStiffnessAreAveragedInBinsOfAllSamples) {
   }
 }
 
+/// Every sample turned at every overlap above 0.1 by these angles; Ft = 30 Delta angle [N].
+ForceCurves turned(PairKind kind, const std::vector<double>& angles) {
+  ForceCurves curves = make({.samples = 3, .points = 20});
+  curves.kind = kind;
+  for (ForceCurve& s : curves.samples)
+    for (const ForcePoint& p : s.normal)
+      for (const double angle : angles) {
+        TangentialPoint t;
+        t.delta = p.delta;
+        t.angle_deg = angle;
+        t.force_parallel = 30.0 * angle * (p.delta - 0.065) * (p.delta > 0.065 ? 1.0 : 0.0);
+        t.converged = true;
+        s.tangential.push_back(t);
+      }
+  return curves;
+}
+
+/// A stiffness that was measured must not be replaced by an assumed one without a word.
+TEST(ExperimentFit, TangentialForcesThatSayNoStiffnessAreSaid) {
+  const auto reason = [](const std::vector<double>& angles) {
+    const auto fit = fit_experiment({turned(PairKind::soft_solid, angles)}, replicates(20), false);
+    const PairLaw& law = fit.card.pairs.at(0);
+    EXPECT_EQ(law.status, LawStatus::underdetermined);
+    EXPECT_FALSE(has_tangential(law));
+    EXPECT_NE(kt_remark(fit.card).find("measured, but not determined"), std::string::npos) << kt_remark(fit.card);
+    return law.reason;
+  };
+  EXPECT_NE(reason({0.0, 0.4, 0.8}).find("60 of 60 turns"), std::string::npos);
+  EXPECT_NE(reason({0.0, 0.4, 0.8}).find("do not reach ht"), std::string::npos);
+  EXPECT_NE(reason({0.5, 1.0, 1.5}).find("no reading before the turn (ht = 0)"), std::string::npos);
+  const auto good = fit_experiment({turned(PairKind::soft_solid, {0.0, 1.0})}, replicates(20), false);
+  EXPECT_TRUE(good.card.pairs.at(0).has_tangential_secant);
+  EXPECT_EQ(good.card.pairs.at(0).status, LawStatus::good) << good.card.pairs.at(0).reason;
+  // Where some overlaps say it, the others are a remark.
+  ForceCurves some = turned(PairKind::soft_solid, {0.0, 1.0});
+  some.samples[0].tangential.pop_back();
+  const auto most = fit_experiment({some}, replicates(20), false);
+  EXPECT_EQ(most.card.pairs.at(0).status, LawStatus::good);
+  EXPECT_NE(join_text(most.remarks).find("Ft of 1 of 60 turns"), std::string::npos) << join_text(most.remarks);
+}
+
+/// Simulations of two soft particles take 0.5 degree where it was measured; an experiment reads Ft at 1 for both kinds.
+TEST(ExperimentFit, TheAngleOfTheSecantDoesNotDependOnTheGrid) {
+  for (const double first : {0.45, 0.5}) {
+    const auto fit = fit_experiment({turned(PairKind::soft_soft, {0.0, first, 1.0})}, replicates(20), false);
+    EXPECT_EQ(fit.card.pairs.at(0).secant_angle_deg, 1.0) << first;
+    EXPECT_TRUE(fit.card.pairs.at(0).has_tangential_secant);
+  }
+}
+
 TEST(ExperimentFit, NoiseWithoutForceCrossesNoThreshold) {
   KnownLaw nothing;
   nothing.a = 0.0;
@@ -201,19 +255,64 @@ TEST(ExperimentFit, TheMirrorImageHasTheErrorsOfWhatItMirrors) {
     EXPECT_NEAR(pair.c.standard_error / plane.c.standard_error, 1.0, 1e-6) << samples;
     EXPECT_NEAR(pair.b.low, plane.b.low, 1e-9);
     EXPECT_NEAR(pair.b.high, plane.b.high, 1e-9);
-    // And of its force at twice the overlap.
+    // And of its force at twice the overlap, and of its slope.
     PairLaw measured = fit.card.pairs[0];
     PairLaw mirrored = fit.card.pairs[1];
     measured.bands.clear();
     mirrored.bands.clear();
-    mirrored.packings = measured.packings;
     for (const double d : {0.1, 0.2, 0.3}) {
       const auto a = value_interval(measured, LawPart::normal, d);
       const auto b = value_interval(mirrored, LawPart::normal, 2.0 * d);
       ASSERT_TRUE(a && b);
       EXPECT_NEAR((b->high - b->low) / (a->high - a->low), 1.0, 1e-6) << d;
+      const auto slope_a = slope_interval(measured, LawPart::normal, d);
+      const auto slope_b = slope_interval(mirrored, LawPart::normal, 2.0 * d);
+      ASSERT_TRUE(slope_a && slope_b);
+      EXPECT_NEAR((slope_b->high - slope_b->low) / (slope_a->high - slope_a->low), 0.5, 1e-6) << d;
     }
   }
+}
+
+/// Each of two springs in series sees half of the displacement.
+TEST(ExperimentFit, TheMirrorImageIsTurnedTwiceAsFar) {
+  const auto fit = fit_experiment({turned(PairKind::soft_solid, {0.0, 1.0})}, replicates(20), true);
+  const PairLaw& plane = fit.card.pairs.at(0);
+  const PairLaw& pair = fit.card.pairs.at(1);
+  EXPECT_EQ(plane.secant_angle_deg, 1.0);
+  EXPECT_EQ(pair.secant_angle_deg, 2.0);
+  EXPECT_NEAR(pair.tangential_secant.value(0.4), 0.5 * plane.tangential_secant.value(0.2), 1e-12);
+}
+
+/// Error bars of a macro run take both laws of a card: one that follows from the other is off as that is.
+TEST(ExperimentFit, TheMirrorImageIsDrawnWithWhatItMirrors) {
+  LawSources sources;
+  sources.laws = {FittedLaw{fit_experiment({turned(PairKind::soft_solid, {0.0, 1.0})}, replicates(20), true).card}};
+  NamedLaws named;
+  named.form = LawForm::pair;
+  const LawDraws drawn = law_draws(sources, named, MacroSpec{}, 0.0, 6);
+  ASSERT_EQ(drawn.draws.size(), 6U);
+  for (const std::vector<double>& numbers : drawn.draws) {
+    std::array<double, 7> measured{};
+    for (std::size_t j = 0; j < 7; ++j) measured[j] = j == 0 || j == 5 ? std::exp(numbers[j]) : numbers[j];
+    EXPECT_NE(numbers[1], drawn.numbers[1]);
+    const auto mirrored = mirrored_numbers(measured, PairKind::soft_solid);
+    for (const std::size_t j : {1, 2, 6}) EXPECT_NEAR(numbers[7 + j], mirrored[j], 1e-12) << j;
+    for (const std::size_t j : {0, 5}) EXPECT_NEAR(numbers[7 + j], std::log(mirrored[j]), 1e-9) << j;
+  }
+}
+
+/// A card with such a law could not be read back, with the good one that was measured.
+TEST(ExperimentFit, ThereIsNoMirrorImageBeyondWhatALawCanBe) {
+  ForceCurves deep;
+  ForceCurve sample{"deep", {}, {}};
+  for (int k = 1; k <= 40; ++k) {
+    const double d = 0.85 * k / 40;
+    sample.normal.push_back({d, d > 0.55 ? kUnit * (d * d - 0.55 * 0.55) : 0.0, std::nan("")});
+  }
+  deep.samples.push_back(std::move(sample));
+  const auto fit = fit_experiment({deep}, replicates(20), true);
+  ASSERT_EQ(fit.card.pairs.size(), 1U);
+  EXPECT_NE(join_text(fit.remarks).find("no soft-soft law by symmetry"), std::string::npos) << join_text(fit.remarks);
 }
 
 /// A threshold far below all overlaps is none: it was 3e-27 with an interval of no width, and c = -2e-126.

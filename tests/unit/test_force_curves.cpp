@@ -229,6 +229,44 @@ TEST_F(ForceCurveFile, StiffnessColumnAndSweepsBecomeRotations) {
   EXPECT_NEAR(sweep[2].force_parallel, 0.02 * 0.2792526803 / 0.5, 1e-9);
 }
 
+/// Tangential readings "ht, Ft" at 4 mm of overlap that jitters, after the reading of Fn there; those at an angle.
+std::vector<TangentialPoint> readings_at(const ForceCurve& sample, double angle_deg) {
+  std::vector<TangentialPoint> out;
+  for (const TangentialPoint& p : sample.tangential)
+    if (p.angle_deg == angle_deg) out.push_back(p);
+  return out;
+}
+
+TEST_F(ForceCurveFile, RotationsThatJitterBelongToTheReadingBeforeThem) {
+  std::string text = replaced(kGood, "hn [mm], Fn [mN]", "hn [mm], Fn [mN], ht [mm], Ft [mN]");
+  for (const char* row : {"0.8, 0", "1.6, 80", "2.4, 300", "3.2, 800", "4.0, 1500"})
+    text = replaced(text, std::string(row) + "\n", std::string(row) + ", , \n");
+  // 0, 0.5, 1 and 1.5 degree: the chord from 0 to 1.5 is none of 1.
+  const ForceCurve jitter =
+      read(text + "4.0, , 0, 0\n4.0002, , 0.13963, 6\n4.0004, , 0.27925, 10\n4.0, , 0.41888, 13\n").samples[0];
+  for (const TangentialPoint& p : jitter.tangential) EXPECT_EQ(p.delta, jitter.normal.back().delta);
+  ASSERT_EQ(readings_at(jitter, 1.0).size(), 1U);
+  EXPECT_NEAR(readings_at(jitter, 1.0)[0].force_parallel, 0.01, 1e-6);
+  // Two turns with no reading between them stay two, however near they are.
+  const ForceCurve two = read(text + "2.0, , 0, 0\n2.0, , 0.3, 10\n2.001, , 0, 0\n2.001, , 0.3, 20\n").samples[0];
+  ASSERT_EQ(readings_at(two, 1.0).size(), 2U);
+  EXPECT_NE(readings_at(two, 1.0)[0].delta, readings_at(two, 1.0)[1].delta);
+}
+
+/// 1 degree is 0.2792527 mm here.
+TEST_F(ForceCurveFile, AnglesWrittenWithFewDigitsCount) {
+  std::string text = replaced(kGood, "hn [mm], Fn [mN]", "hn [mm], Fn [mN], ht [mm], Ft [mN]");
+  for (const char* row : {"0.8, 0", "1.6, 80", "2.4, 300", "3.2, 800", "4.0, 1500"})
+    text = replaced(text, std::string(row) + "\n", std::string(row) + ", , \n");
+  const ForceCurve rounded = read(text + "4.0, , -0.27925, -9\n4.0, , 0.00002, 1\n4.0, , 0.27925, 11\n").samples[0];
+  ASSERT_EQ(readings_at(rounded, 1.0).size(), 1U);
+  EXPECT_NEAR(readings_at(rounded, 1.0)[0].force_parallel, 0.011, 1e-12);
+  EXPECT_EQ(readings_at(rounded, -1.0).size(), 1U);
+  EXPECT_EQ(readings_at(rounded, 0.0).size(), 1U);
+  const ForceCurve near = read(text + "4.0, , 0, 0\n4.0, , 0.278, 10\n").samples[0];
+  EXPECT_TRUE(readings_at(near, 1.0).empty()) << "0.5 % off is another angle";
+}
+
 TEST_F(ForceCurveFile, FilesOfOneExperimentAreJoined) {
   const std::string a = write(kGood, "a.csv");
   const std::string b = write(kGood, "b.csv");

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "common/core/error.h"
+#include "common/data/law_band.h"
 #include "common/data/law_card.h"
 #include "common/io/text_file.h"
 
@@ -184,6 +185,30 @@ TEST_F(LawCardFile, CardAloneIsEnough) {
   const LawCard in = load_card(path());
   expect_equal(in.pairs[0].normal, card_.pairs[0].normal);
   EXPECT_TRUE(in.pairs[0].table.delta.empty());
+}
+
+/// Where its intervals come from decides how wide they are: Student's t of few packings, or many residuals.
+TEST_F(LawCardFile, TheOriginOfIntervalsNeedsNoTable) {
+  card_.intervals = std::string(kFromSamples) + "; " + kFromResiduals;
+  card_.pairs[0].band_origin = kFromResiduals;
+  card_.pairs[0].packings = 2;
+  card_.pairs[1].band_origin = kFromSamples;
+  save_card(card_, path());
+  const auto with_table = load_card(path());
+  fs::remove(fs::path(path()).replace_extension(".h5"));
+  const LawCard alone = load_card(path());
+  EXPECT_EQ(alone.pairs[0].band_origin, kFromResiduals);
+  EXPECT_EQ(alone.pairs[1].band_origin, kFromSamples);
+  const auto a = slope_interval(with_table.pairs[0], LawPart::normal, 0.15);
+  const auto b = slope_interval(alone.pairs[0], LawPart::normal, 0.15);
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(a->high, b->high);
+  // A card of one kind says it once.
+  card_.intervals = kFromResiduals;
+  card_.pairs.resize(1);
+  save_card(card_, path());
+  fs::remove(fs::path(path()).replace_extension(".h5"));
+  EXPECT_EQ(load_card(path()).pairs[0].band_origin, kFromResiduals);
 }
 
 TEST_F(LawCardFile, ShowsDimensionalValuesAndProvenance) {

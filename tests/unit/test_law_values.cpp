@@ -74,6 +74,8 @@ TEST(CardValues, BeyondTheRange) {
   EXPECT_GT(extrapolated[3].force.value, extrapolated[1].force.value);
   const auto clamped = at(Extrapolation::clamp);
   EXPECT_EQ(clamped[3].force.value, clamped[1].force.value);
+  EXPECT_EQ(clamped[3].stiffness.value, 0.0) << "the derivative of a constant force";
+  EXPECT_GT(clamped[2].stiffness.value, 0.0);
   EXPECT_EQ(law::where_text(clamped[3]), "beyond range: clamped");
   // Nothing says how far off a law is where nobody measured it: no interval, whatever the law does there.
   for (const auto* points : {&extrapolated, &clamped}) {
@@ -254,6 +256,30 @@ TEST(MultiContactTables, IntervalsAreThoseOfTheReplicates) {
   EXPECT_FALSE(deep.points[1].force.interval || deep.points[1].stiffness.interval);
   q.form = LawForm::isotropic;
   EXPECT_FALSE(law::multi_contact_values({1, {entry}}, q, {0.2}).points[0].force.interval.has_value());
+}
+
+/// kt = (kt/kn) kn is no better known than kt/kn alone, whose interval is widened for few packings.
+TEST(MultiContactTables, TheIntervalOfKtHoldsThatOfItsRatio) {
+  LawTableEntry entry = synthetic::law_entry();
+  entry.volume_max = 0.5;
+  entry.slide_plane.kt_ratio = {0.3, 0.03, 0.1, 0.6};  // four packings: wider than its scatter
+  MultiContactLaw& directional = entry.laws[2];
+  const auto kt = [&](double scatter) {
+    directional.replicates.clear();
+    for (int r = 0; r <= 40; ++r) {
+      directional.replicates.push_back(multi_contact_numbers(directional));
+      directional.replicates.back()[0] *= 1.0 + scatter * (r - 20) / 20.0;
+    }
+    return *law::multi_contact_values({1, {entry}}, {}, {0.2}).points[0].tangential_secant;
+  };
+  const law::Quantity sure = kt(1e-6);
+  ASSERT_TRUE(sure.interval);
+  EXPECT_NEAR(sure.interval->low, sure.value / 3.0, 1e-4 * sure.value);
+  EXPECT_NEAR(sure.interval->high, 2.0 * sure.value, 1e-4 * sure.value);
+  const law::Quantity both = kt(0.2);
+  EXPECT_LT(both.interval->low, sure.interval->low);
+  EXPECT_GT(both.interval->low, 0.0);
+  EXPECT_GT(both.interval->high, sure.interval->high);
 }
 
 // The law knows the lost volume alone: a single cap deeper than any that was measured is not clamped before its volume

@@ -55,6 +55,21 @@ TEST(MeasureSetup, TheScenesOfSlowDynamicsRecordItAsThat) {
   }
 }
 
+/// The same scene by its other name costs the same; a run records what it goes by.
+TEST(MeasureSetup, SlowDynamicsIsTheSameByEitherName) {
+  const MeasureSetup named = read("relaxation = \"slow-dynamics\"");
+  const MeasureSetup none = read("relaxation = \"least-work\"\n" + kNone);
+  const auto seconds = [](const MeasureSetup& setup, Relaxation relaxation) {
+    return measuring_seconds(setup, relaxation, setup.series[0].soft_solid, PairKind::soft_solid, 1e-4);
+  };
+  EXPECT_EQ(seconds(named, Relaxation::slow_dynamics), seconds(none, Relaxation::slow_dynamics));
+  EXPECT_NE(seconds(named, Relaxation::slow_dynamics), seconds(named, Relaxation::least_work));
+  EXPECT_EQ(settings_text(named, Relaxation::slow_dynamics), settings_text(none, Relaxation::slow_dynamics));
+  EXPECT_NE(settings_text(named, Relaxation::slow_dynamics), settings_text(named, Relaxation::least_work));
+  const MeasureSetup coarse = read("relaxation = \"slow-dynamics\"\n[measure.least_work]\nstep_factor = 15.0\n");
+  EXPECT_NE(settings_text(named, Relaxation::slow_dynamics), settings_text(coarse, Relaxation::slow_dynamics));
+}
+
 TEST(MeasureSetup, CheckNamesWhatWillBeDone) {
   Findings found;
   check_measurements(read("relaxation = \"least-work\"\n" + kNone), found);

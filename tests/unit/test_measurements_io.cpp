@@ -42,6 +42,7 @@ Measurements sample() {
   data.shell_turns = false;
   data.approach_speed = 0.002;
   data.turn_speed = 0.001;
+  data.settings = {{"published", "stops = 6"}};
   data.packings = {{7, 3, 0.71, 0.8, 3.4, 0.2, {1e-3, 2e-3 / 3.0, 5e-4}},
                    {8, 0, 0.0, 0.0, std::nan(""), 0.0, {}},
                    {std::uint64_t{1} << 63, 1, 0.6, 0.7, 3.6, 0.1, {4e-3}}};
@@ -95,6 +96,7 @@ TEST(MeasurementsIo, RoundTripIsExact) {
   EXPECT_EQ(in.approach_speed, out.approach_speed);
   EXPECT_EQ(in.turn, TurnProtocol::slow);
   EXPECT_EQ(in.turn_speed, 0.001);
+  EXPECT_EQ(in.settings, out.settings);
   ASSERT_EQ(in.packings.size(), out.packings.size());
   for (std::size_t k = 0; k < in.packings.size(); ++k) {
     EXPECT_EQ(in.packings[k].seed, out.packings[k].seed);

@@ -56,6 +56,25 @@ TEST(MergeMeasurements, FrozenAndSlowTurnsAreNotMixed) {
   EXPECT_EQ(merge_measurements({a, b}, {"a", "b"}).turn, TurnProtocol::frozen);
 }
 
+/// The same name, other settings: another speed alone moves forces by a third. Earlier files do not say theirs.
+TEST(MergeMeasurements, RelaxationsOfOneNameAndOtherSettingsAreNotMixed) {
+  auto a = part(1);
+  auto b = part(2);
+  const std::string name = a.runs.front().relaxation;
+  a.settings[name] = "step_factor = 4";
+  EXPECT_EQ(merge_measurements({b, a}, {"b", "a"}).settings.at(name), "step_factor = 4");
+  b.settings[name] = "step_factor = 15";
+  try {
+    merge_measurements({a, b}, {"a.h5", "b.h5"});
+    FAIL() << "merged two protocols";
+  } catch (const InputError& e) {
+    for (const char* word : {"a.h5", "b.h5", "step_factor = 4", "step_factor = 15"})
+      EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << e.what();
+  }
+  b.settings = a.settings;
+  EXPECT_EQ(merge_measurements({a, b}, {"a", "b"}).packings.size(), 6U);
+}
+
 TEST(MergeMeasurements, TheSamePackingTwiceIsRefused) {
   EXPECT_THROW(merge_measurements({part(1), part(1)}, {"a", "a"}), InputError);
   auto other = part(1);

@@ -147,6 +147,7 @@ TEST(PairTable, AClampedLawStaysConstantAndItsEnergyGoesOn) {
   c.kinds = {PairKind::soft_solid};
   const law::PairTable t = law::pair_tables(published(), c).front();
   EXPECT_EQ(t.force[0], t.force[1]);
+  EXPECT_EQ(t.slope_low, 0.0) << "of a constant force";
   EXPECT_NE(t.meaning.find(" m, clamped beyond: "), std::string::npos) << t.meaning;
   EXPECT_NEAR((t.energy[0] - t.energy[1]) / (t.r[1] - t.r[0]), t.force[0], 1e-6 * t.force[0]);
   LawTableEntry entry = synthetic::law_entry();
@@ -165,6 +166,9 @@ TEST(PairTable, WhatCannotBe) {
   c.beyond = Extrapolation::extrapolate;
   c.delta_max = 1.0;
   c.ratios = {0.01};
+  EXPECT_THROW((void)law::pair_tables(published(), c), InputError);
+  c.delta_max.reset();
+  c.ratios = {1.0, 1.0000001};  // one section name; LAMMPS reads the first
   EXPECT_THROW((void)law::pair_tables(published(), c), InputError);
 }
 

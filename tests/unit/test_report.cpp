@@ -9,6 +9,7 @@
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/io/text_file.h"
+#include "pipelines/kinds/soft_particle/scene.h"
 #include "pipelines/report/law_curves.h"
 #include "pipelines/report/plot_helpers.h"
 #include "pipelines/report/report.h"
@@ -121,6 +122,20 @@ TEST(ErrorCosts, LawAndRelaxationAgainstTheirReferences) {
 }
 
 /// A shell that moves may leave every neighbour: nothing was loaded then, and there is nothing to draw.
+/// As the fit leaves them out.
+TEST(TangentialFigure, HasNoPointThatDidNotConverge) {
+  report::RunData run;
+  run.summary = nlohmann::json::object();
+  run.measurements = synthetic::measurements(4);
+  const auto page = [&] { return report::tangential_section(run); };
+  PackingRun& first = run.measurements->runs.front();
+  for (const double angle : {-1.0, 0.0, 1.0}) first.tangential.push_back({0.3, angle, 5.0 * angle, 0.0, 0.0, true});
+  const std::string good = page();
+  ASSERT_FALSE(good.empty());
+  first.tangential.push_back({0.3, 1.0, 1e3, 1e3, 1.0, false});
+  EXPECT_EQ(page(), good);
+}
+
 TEST_F(Report, AMultiContactThatNeverTouchedIsLeftOut) {
   const MultiContactModel model = multi_contact_model(synthetic::multi_contact_law(LawForm::pair));
   MultiContactMeasurements data = synthetic::multi_contact_measurements(

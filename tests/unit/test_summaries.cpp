@@ -47,7 +47,7 @@ InverseSummary inverse() {
   s.inverse = SearchSummary{};
   s.inverse->parameters = {{"mu", 0.3, {{0.2, 0.4}}, 0.05, true, {{0.0, 1.0}}, false}};
   s.inverse->target = {{0.1}, {2.0}, {0.1}, 0.04};
-  s.inverse->confirmed = {{2.1}, {0.2}, 8, 1.1};
+  s.inverse->confirmed = {{2.1}, {0.2}, 8, 1.1, {7}};
   s.inverse->evaluations = {{{0.3}, kNaN, {2.2}}};
   return s;
 }
@@ -142,6 +142,16 @@ void expect_lasting(const Summary& summary, std::string (*section)(const report:
 
 TEST(Summaries, OfHierarchiesLast) { expect_lasting(hierarchy(), report::hierarchy_section); }
 TEST(Summaries, OfSearchesLast) { expect_lasting(inverse(), report::inverse_section); }
+/// Of few packings the mean is known by Student's t, of one not at all.
+TEST(Summaries, TheConfirmedCurveIsAsSureAsItsPackingsAreMany) {
+  const ConfirmedCurve c{{2.0, 2.0, 2.0}, {0.1, 0.1, 0.0}, 8, 1.0, {8, 2, 1}};
+  EXPECT_NEAR(c.interval(0).second, 2.0 + 0.1 * student95(7.0), 1e-12);
+  EXPECT_NEAR(c.interval(1).first, 2.0 - 0.1 * student95(1.0), 1e-12);
+  EXPECT_TRUE(std::isnan(c.interval(2).first) && std::isnan(c.interval(2).second));
+  const ConfirmedCurve earlier{{2.0}, {0.1}, 8, 1.0};
+  EXPECT_EQ(earlier.interval(0), c.interval(0));
+}
+
 TEST(Summaries, OfVariantsLast) { expect_lasting(variants(), report::powder_variants_section); }
 TEST(Summaries, OfMacroRunsLast) { expect_lasting(macro(), report::cost_section); }
 TEST(Summaries, OfParticlesLast) { expect_lasting(particles(), report::particles_section); }

@@ -134,7 +134,7 @@ bool belongs(const VariantRun& ended, const PowderVariant& variant, const RunCon
   const auto& provenance = ended.run.provenance;
   return provenance && !ended.powder.samples.empty() && provenance->scene == variant.scene.text() &&
          provenance->seed == context.seed(variant.setup.seed) &&
-         began_with(context.path(variant.name), powder_text(variant.setup)) &&
+         began_with(context.path(variant.name), powder_text(variant.setup)).value_or(true) &&
          std::filesystem::exists(context.path(variant.name + "/powder.h5"));
 }
 

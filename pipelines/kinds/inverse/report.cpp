@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/core/statistics.h"
 #include "pipelines/kinds/inverse/summary.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
@@ -57,8 +56,9 @@ std::string curve_figure(const SearchSummary& search) {
     Series band{
         .label = "answer, 95 % of its mean", .hover = "answer, measured with new packings", .x = delta, .y = {}};
     for (std::size_t j = 0; j < delta.size(); ++j) {
-      band.band_low.push_back(mean[j] - kNormal95 * error[j]);
-      band.band_high.push_back(mean[j] + kNormal95 * error[j]);
+      const auto [low, high] = search.confirmed.interval(j);
+      band.band_low.push_back(low);
+      band.band_high.push_back(high);
     }
     band.style = {.color = palette::blue, .width = 0.0};
     plot.add(std::move(band));

@@ -164,6 +164,9 @@ void confirm(const Stage& stage) {
   data.spec = spec_at(stage.setup, out.answer.u);
   data.shell_turns = stage.setup.plan.shell_turns;
   data.approach_speed = stage.setup.measure.published.approach_speed;
+  MeasureSetup measured = stage.setup.measure;
+  measured.spec = data.spec;
+  data.settings[to_string(stage.setup.relaxation)] = settings_text(measured, stage.setup.relaxation);
   for (std::size_t k = 0; k < packings; ++k) {
     PackingRun run;
     run.packing = static_cast<std::int64_t>(data.packings.size());
@@ -215,6 +218,7 @@ ConfirmedCurve curve_of(const InverseEvaluation& e, std::size_t deltas) {
     const MeanError m = sample.statistics();
     out.force.push_back(m.mean);
     out.error.push_back(m.error_or_zero());
+    out.counts.push_back(static_cast<std::int64_t>(m.n));
   }
   return out;
 }

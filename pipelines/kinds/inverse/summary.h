@@ -1,6 +1,8 @@
 // What a reverse search came to: summary.json of its run, which the report reads back.
 #pragma once
 
+#include "common/core/few_samples.h"
+#include "common/core/limits.h"
 #include "common/data/fields.h"
 #include "pipelines/kinds/inverse/scene.h"
 #include "pipelines/results/summary.h"
@@ -36,6 +38,14 @@ struct ConfirmedCurve {
   std::vector<double> error;
   std::size_t packings = 0;
   double misfit = 0.0;
+  std::vector<std::int64_t> counts{};  ///< packings with a force at each Delta; empty: as in earlier runs, all
+
+  /// 95 % interval of the mean at Delta number j; NaN: of one packing nothing is known.
+  [[nodiscard]] std::pair<double, double> interval(std::size_t j) const {
+    const auto n = j < counts.size() ? counts[j] : static_cast<std::int64_t>(packings);
+    if (n < 2) return {kNaN, kNaN};
+    return student_interval(force[j], error[j], static_cast<double>(n - 1));
+  }
 };
 
 struct SearchSummary {
@@ -90,6 +100,7 @@ void fields(auto&& visit, Of<ConfirmedCurve> auto& s) {
   visit("error", s.error);
   visit("packings", s.packings);
   visit("misfit", s.misfit);
+  visit("counts", s.counts, kLeftOut);
 }
 
 void fields(auto&& visit, Of<SearchSummary> auto& s) {

@@ -214,6 +214,14 @@ std::string depth_text(const PlanCandidate& c) { return fmt::format("{:.3f}", c.
 
 }  // namespace
 
+bool same_draws(const FittedLaw& a, const FittedLaw& b, const std::vector<MacroCurve>& curves, WantedForm form) {
+  const Curves drawn = drawn_curves(curves, form_of(*a.table(), curves, form));
+  const std::size_t n = drawn.front()->drawn_axial.size();
+  const LawDraws one = draws_of(a, *drawn.front(), n);
+  const LawDraws other = draws_of(b, *drawn.front(), n);
+  return one.numbers == other.numbers && one.draws == other.draws;
+}
+
 LawPlan plan_law(const FittedLaw& table, const MultiContactSetup& candidates, const std::vector<MacroCurve>& curves,
                  const LawPlanWish& wish) {
   const LawForm form = form_of(*table.table(), curves, wish.form);
@@ -301,6 +309,7 @@ std::string plan_scene_text(const LawPlan& plan) {
       "# What `softgrain law plan` found for the error bars of {} curves: packings in all of each configuration, "
       "so deep.\n",
       plan.curves);
+  for (const std::string& r : plan.remarks) text += "# note: " + r + "\n";
   // `packings` of a table is a total: that of the tables before it, deepest first, counts.
   std::vector<const PlanStep*> steps;
   for (const PlanStep& s : plan.steps) steps.push_back(&s);

@@ -59,6 +59,10 @@ struct LawPlanWish {
 LawPlan plan_law(const FittedLaw& table, const MultiContactSetup& candidates, const std::vector<MacroCurve>& curves,
                  const LawPlanWish& wish);
 
+/// Whether draws of both tables are the same, as the curves took them: the table is that of the run, or one that the
+/// same fit made again. Throws as plan_law().
+bool same_draws(const FittedLaw& a, const FittedLaw& b, const std::vector<MacroCurve>& curves, WantedForm form);
+
 /// The plan as text for people.
 std::string plan_text(const LawPlan& plan);
 

@@ -71,7 +71,7 @@ Passes damped_passes(PairKind kind, const DampedProtocolOptions& options) {
 Passes passes_of(const MeasureSetup& setup, Relaxation relaxation, PairKind kind) {
   if (relaxation == Relaxation::published) return published_passes(kind, setup.published);
   if (relaxation == Relaxation::damped) return damped_passes(kind, setup.damped);
-  return least_work_passes(kind, setup.least_work);
+  return least_work_passes(kind, least_work_options(setup, relaxation));
 }
 
 }  // namespace

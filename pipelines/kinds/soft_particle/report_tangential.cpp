@@ -25,7 +25,7 @@ std::vector<long long> chosen_overlaps(const std::vector<const PackingRun*>& run
   std::set<long long> all;
   for (const PackingRun* run : runs) {
     for (const TangentialPoint& p : run->tangential) {
-      if (p.angle_deg != 0.0 && p.force_parallel != 0.0) all.insert(delta_key(p.delta));
+      if (p.converged && p.angle_deg != 0.0 && p.force_parallel != 0.0) all.insert(delta_key(p.delta));
     }
   }
   const std::vector<long long> sorted(all.begin(), all.end());
@@ -35,13 +35,13 @@ std::vector<long long> chosen_overlaps(const std::vector<const PackingRun*>& run
   return result;
 }
 
-/// Mean over packings against ht [mm].
+/// Mean over packings against ht [mm], of points that converged, as the fit takes them.
 Series mean_curve(const std::vector<const PackingRun*>& runs, long long overlap, double mm_per_degree,
                   double TangentialPoint::*force) {
   std::map<long long, std::vector<double>> columns;  // by angle in 1e-6 degree
   for (const PackingRun* run : runs) {
     for (const TangentialPoint& p : run->tangential) {
-      if (delta_key(p.delta) == overlap) columns[delta_key(p.angle_deg)].push_back(p.*force);
+      if (p.converged && delta_key(p.delta) == overlap) columns[delta_key(p.angle_deg)].push_back(p.*force);
     }
   }
   Series s{.label = "Δ = " + format_number(key_delta(overlap)), .hover = "", .x = {}, .y = {}};

@@ -388,12 +388,41 @@ SoftParticleScene read_soft_particle_scene(const Scene& scene) {
   });
 }
 
+LeastWorkProtocolOptions least_work_options(const MeasureSetup& setup, Relaxation relaxation) {
+  LeastWorkProtocolOptions options = setup.least_work;
+  if (relaxation == Relaxation::slow_dynamics) options.increment_passes = 0;
+  return options;
+}
+
 std::unique_ptr<Protocol> make_protocol(const MeasureSetup& setup, Relaxation relaxation) {
   if (relaxation == Relaxation::published) return make_published_protocol(setup.published);
   if (relaxation == Relaxation::damped) return make_damped_protocol(setup.damped);
-  LeastWorkProtocolOptions least_work = setup.least_work;
-  if (relaxation == Relaxation::slow_dynamics) least_work.increment_passes = 0;
-  return make_least_work_protocol(least_work);
+  return make_least_work_protocol(least_work_options(setup, relaxation));
+}
+
+std::string settings_text(const MeasureSetup& setup, Relaxation relaxation) {
+  const auto speed = [&](double given) { return given > 0.0 ? given : published_speed(setup.spec); };
+  if (relaxation == Relaxation::published) {
+    const PublishedOptions& o = setup.published;
+    return fmt::format(
+        "approach_speed = {} m/s, stop_interval = {} s, stops = {}, step_fraction = {}, crowded_fraction = {}, "
+        "tolerance = {}",
+        speed(o.approach_speed), o.stop_interval > 0.0 ? o.stop_interval : published_interval(setup.spec), o.stops,
+        o.step_fraction, o.crowded_fraction, o.tolerance);
+  }
+  if (relaxation == Relaxation::damped) {
+    const DampedProtocolOptions& o = setup.damped;
+    return fmt::format(
+        "increment = {}, tolerance = {}, tolerance_between = {}, tolerance_rotated = {}, max_passes = {}", o.increment,
+        o.tolerance, o.tolerance_between, o.tolerance_rotated, o.max_passes);
+  }
+  const LeastWorkProtocolOptions o = least_work_options(setup, relaxation);
+  return fmt::format(
+      "increment = {}, increment_passes = {}, approach_speed = {} m/s, step_factor = {}, settle_time = {}, "
+      "path_settle_time = {}, settle_time_rotated = {}, step_factor_rotated = {}, tolerance = {}, tolerance_between = "
+      "{}, max_passes = {}",
+      o.increment, o.increment_passes, speed(o.approach_speed), o.step_factor, o.settle_time, o.path_settle_time,
+      o.settle_time_rotated, o.step_factor_rotated, o.tolerance, o.tolerance_between, o.max_passes);
 }
 
 }  // namespace softgrain

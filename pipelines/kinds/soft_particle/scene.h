@@ -74,8 +74,15 @@ struct SoftParticleScene {
 /// Reads it to the last key. Throws InputError.
 SoftParticleScene read_soft_particle_scene(const Scene& scene);
 
+/// The settings of the least-work protocol, under which slow dynamics is one with no increment by least work.
+LeastWorkProtocolOptions least_work_options(const MeasureSetup& setup, Relaxation relaxation);
+
 /// The protocol of a name.
 std::unique_ptr<Protocol> make_protocol(const MeasureSetup& setup, Relaxation relaxation);
+
+/// Its settings as text, "increment = 0.0025, ...", with the numbers that it takes where the scene gives none: equal
+/// for equal protocols.
+std::string settings_text(const MeasureSetup& setup, Relaxation relaxation);
 
 /// Runs a scene of kind "soft-particle"; writes measurements.h5, summary.json and report.html.
 /// Status not_usable when a recorded point did not converge under its own criterion.

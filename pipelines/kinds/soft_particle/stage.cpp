@@ -217,6 +217,8 @@ MeasureResult run_measure_stage(const MeasureSetup& setup, const Run& run) {
   data.spec = setup.spec;
   data.shell_turns = setup.series[0].plan(setup.series[0].kinds[0]).shell_turns;
   data.approach_speed = setup.published.approach_speed;
+  for (const MeasureSeries& s : setup.series)
+    data.settings[to_string(s.relaxation)] = settings_text(setup, s.relaxation);
   if (setup.rotates()) data.turn_speed = turn_speed(setup.series[0].plan(setup.series[0].kinds[0]), setup.spec);
   for (const ShellPacking& p : result.packings) data.packings.push_back(describe(p, setup.spec));
   const Stage stage{setup, run.store, result.packings, second, progress};

@@ -64,14 +64,17 @@ void card_array(const SoftContact& contact, LawOutput what, std::span<const doub
     });
   };
   // What is not asked for is not worked out.
-  const auto elastic = [&]<auto kPart>() {
-    return [&contact, &one](const Wide& overlap) {
+  if (what == LawOutput::force)
+    return fill([&](const Wide& overlap) {
       const Wide ratio = contact.taken_ratio<Wide>(overlap, one);
-      return choose<Wide>(contact.idle_at(ratio), 0.0, contact.elastic_at<Wide>(ratio, one).*kPart);
-    };
-  };
-  if (what == LawOutput::force) return fill(elastic.template operator()<&SoftContact::Elastic<Wide>::force>());
-  if (what == LawOutput::stiffness) return fill(elastic.template operator()<&SoftContact::Elastic<Wide>::stiffness>());
+      return choose<Wide>(contact.idle_at(ratio), 0.0, contact.elastic_at<Wide>(ratio, one).force);
+    });
+  if (what == LawOutput::stiffness)
+    return fill([&](const Wide& overlap) {
+      const Wide ratio = contact.taken_ratio<Wide>(overlap, one);
+      return choose<Wide>(contact.idle_at(ratio) || contact.is_clamped(overlap, one), 0.0,
+                          contact.elastic_at<Wide>(ratio, one).stiffness);
+    });
   fill([&](const Wide& overlap) {
     ContactState<3, Wide> state;
     state.normal[0] = one;

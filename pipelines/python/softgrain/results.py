@@ -23,7 +23,7 @@ class MeasuredRun:
     delta: np.ndarray  # Delta = hn/Rs
     force: np.ndarray  # normal, compression positive [N]
     converged: np.ndarray
-    tangential: dict  # columns delta, angle [degree], force_parallel [N], force_perpendicular [N]
+    tangential: dict  # columns delta, angle [degree], force_parallel [N], force_perpendicular [N], converged
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,8 @@ def read_measurements(path):
         runs = file["runs"]
         names = [text_attribute(runs, f"relaxation_{k}") for k in range(int(runs.attrs["relaxations"]))]
         normal = {k: file["normal"][k][()] for k in ("delta", "force", "converged")}
-        turned = {k: file["tangential"][k][()] for k in ("delta", "angle", "force_parallel", "force_perpendicular")}
+        turned = {k: file["tangential"][k][()] for k in ("delta", "angle", "force_parallel", "force_perpendicular", "converged")}
+        turned["converged"] = turned["converged"] != 0
         out = []
         first = first_turned = 0
         for k in range(len(runs["packing"])):
