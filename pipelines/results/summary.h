@@ -66,10 +66,10 @@ struct SummaryHead {
   /// What may make the result wrong for its purpose, with what to do about it; the most important first.
   std::vector<std::string> warnings{};
 
-  /// Not usable, and why.
+  /// Not usable, and why: before all other remarks, as the first is taken for the reason (warnings_of).
   void mark_unusable(const std::string& remark) {
+    remarks.insert(status == RunStatus::not_usable ? remarks.end() : remarks.begin(), remark);
     status = RunStatus::not_usable;
-    remarks.push_back(remark);
   }
 };
 

@@ -145,6 +145,36 @@ TEST(Summaries, OfSearchesLast) { expect_lasting(inverse(), report::inverse_sect
 TEST(Summaries, OfVariantsLast) { expect_lasting(variants(), report::powder_variants_section); }
 TEST(Summaries, OfMacroRunsLast) { expect_lasting(macro(), report::cost_section); }
 TEST(Summaries, OfParticlesLast) { expect_lasting(particles(), report::particles_section); }
+
+/// Whatever else there is to say of the run: here a number that no law uses.
+TEST(Summaries, OfParticlesThatAreLostSayItFirst) {
+  const ParticlesScene scene = read_particles_scene(Scene::parse(R"(kind = "particles"
+[material.glass]
+density = 2500.0
+E = "1 GPa"
+nu = 0.2
+[[contact]]
+pair = ["glass", "glass"]
+law = "linear-spring"
+normal_stiffness = 1000.0
+restitution = 1.0
+mu = 0.0
+[[particle]]
+material = "glass"
+radius = 0.001
+position = [0.0, 0.0, 0.0]
+velocity = [1000.0, 0.0, 0.0]
+[time]
+end = 0.002
+step = 2e-6
+)",
+                                                                 "lost.toml"));
+  ASSERT_FALSE(scene.remarks.empty());
+  const auto known = record_of<AnySummary>(json_of(summary_of(scene, run_particles(scene, {}), 0.0)));
+  EXPECT_EQ(known.status, "not usable");
+  ASSERT_EQ(warnings_of(known).size(), 1 + scene.remarks.size());
+  EXPECT_NE(warnings_of(known).front().find("is lost"), std::string::npos) << warnings_of(known).front();
+}
 TEST(Summaries, OfExperimentsLast) { expect_lasting(experiment(), report::laws_section); }
 
 TEST(Summaries, OfPowdersLast) {
