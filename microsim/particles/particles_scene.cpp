@@ -171,7 +171,7 @@ void validate_combination(const Scene& scene, const System<D>& s, const SceneLaw
   require_contacts(scene, s);
   require_resolved(scene, s);
   require_partners(scene, s, laws);
-  require_wide_cell(root, s.particles, s.cell);
+  require_wide_cell(root, s);
 }
 
 }  // namespace

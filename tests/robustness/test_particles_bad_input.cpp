@@ -162,6 +162,7 @@ TEST_F(ParticlesBadInput, Walls) {
          "material = \"rigid\"\nname = \"a\"\n[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.0, "
          "0.0, 1.0]\nmaterial = \"rigid\"\nname = \"a\"\n",
          {"scene.toml:38: name", "scene.toml:28"});
+  expect("material = \"rigid\"\n", "material = \"rigid\"\nname = \"none\"\n", {"scene.toml:32: name", "inside"});
 }
 
 TEST_F(ParticlesBadInput, PlacesThatNothingHolds) {
@@ -208,6 +209,8 @@ TEST_F(ParticlesBadInput, CellsFromFilesAndNarrowCells) {
   expect("[time]", "[cell]\nsize = \"file\"\n" + periodic, {"scene.toml:33: size", "[particles] file"});
   expect("[time]", "[cell]\nsize = \"fill\"\n" + periodic, {"scene.toml:33: size", "nearest is \"file\""});
   expect("[time]", "[cell]\nsize = [1.0, 0.039, 1.0]\n" + periodic, {"scene.toml:33: size", "axis y", "0.04"});
+  // Neighbour lists need a little more room than two diameters.
+  expect("[time]", "[cell]\nsize = [1.0, 0.0401, 1.0]\n" + periodic, {"scene.toml:33: size", "axis y", "0.0401606"});
   const std::string cell = "[cell]\nsize = \"file\"\n" + periodic;
   write_text_atomic(directory_.file("many.xyzr"), "1 0 1 1\n0 0 1 0.01\n");
   expect("[time]", "[particles]\nfile = \"many.xyzr\"\nmaterial = \"glass\"\n" + cell, {"many.xyzr:1", "above 0"});
