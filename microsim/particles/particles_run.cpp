@@ -63,7 +63,6 @@ class ParticlesRun {
   void save();
   void count_time();
   void record(bool with_contacts = true);
-  [[nodiscard]] std::int64_t frames() const;
   [[nodiscard]] bool watched() const { return scene_.record && system_.particles.grains <= kMostWatched; }
   [[nodiscard]] bool frame_due() const { return scene_.output_stride > 0 && system_.step % scene_.output_stride == 0; }
   ParticlesResultOf<D> result(bool usable, const std::string& reason);
@@ -133,17 +132,12 @@ void ParticlesRun<D>::begin() {
   record();
 }
 
-/// Number of frames of a run that comes to its end: the first and the last state, and those in between.
-template <int D>
-std::int64_t ParticlesRun<D>::frames() const {
-  return 2 + (scene_.output_stride > 0 ? (scene_.time.steps - 1) / scene_.output_stride : 0);
-}
-
 template <int D>
 void ParticlesRun<D>::record(bool with_contacts) {
   if (!scene_.record) return;
   const auto frame = static_cast<std::int64_t>(trajectory_.time.size());
-  if (with_contacts && is_snapshot(frame, frames(), scene_.snapshots)) record_contacts(frame_contacts_, frame, system_);
+  if (with_contacts && is_snapshot(frame, scene_.frames(), scene_.snapshots))
+    record_contacts(frame_contacts_, frame, system_);
   record_frame(trajectory_, system_);
 }
 

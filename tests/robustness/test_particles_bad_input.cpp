@@ -200,6 +200,7 @@ TEST_F(ParticlesBadInput, CellTimeAndOutput) {
   expect("end = 1e-3", "end = 1e-3\n[output]\nrecord = false\nevery = 1e-4", {"scene.toml:36: every", "record"});
   expect("end = 1e-3", "end = 1e-3\n[output]\nrecord = 0", {"scene.toml:35: record"});
   expect("end = 1e-3", "end = 1e-3\n[output]\nevery = 0.0", {"scene.toml:35: every"});
+  expect("end = 1e-3", "end = 1e-3\nstep = 1e-6\n[output]\nevery = 5e-7", {"scene.toml:36: every", "at least 1e-06 s"});
   expect("end = 1e-3", "end = 1e-3\n[output]\nevry = 1e-4", {"scene.toml:35: unknown key 'evry'", "'every'"});
   expect("end = 1e-3", "end = 1e-3\n[checkpoint]\nevery_steps = -1", {"scene.toml:35: every_steps"});
 }
