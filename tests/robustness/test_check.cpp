@@ -227,6 +227,23 @@ TEST_F(Check, WhatTheStepIsAndWhatItMakesOfTimesIsSaid) {
   EXPECT_TRUE(warned(lost, "particle 0 moves 2 of its radius in one step")) << lost["warnings"];
 }
 
+TEST_F(Check, OptionsOfTheCommandLineAreThoseOfTheRunOrRefused) {
+  const std::string text =
+      "kind = \"particles\"\n[material.m]\ndensity = 1\n[[contact]]\npair = [\"m\", \"m\"]\nlaw = \"linear-spring\"\n"
+      "normal_stiffness = 1\nrestitution = 1\nmu = 0\n[[particle]]\nmaterial = \"m\"\nradius = 1e-3\nposition = [0, 0, "
+      "0]\n[time]\nsteps = 1\n";
+  (void)scene_facts(text);
+  const auto said = [&](const std::string& more) {
+    return run_the_program("check '" + directory_.file("scene.toml") + "' " + more);
+  };
+  EXPECT_NE(said("--threads 1").output.find("with 1 threads"), std::string::npos) << said("--threads 1").output;
+  for (const char* option : {"--law law.toml", "--bands 50"}) {
+    const test::ProgramOutcome refused = said(option);
+    EXPECT_EQ(refused.status, 2) << refused.output;
+    EXPECT_NE(refused.output.find("goes with scenes of kind \"macro\""), std::string::npos) << refused.output;
+  }
+}
+
 /// With the contacts that some frames keep.
 TEST_F(Check, TheFileOfARunIsAsLargeAsSaid) {
   std::string text =
