@@ -177,6 +177,29 @@ step = 2e-6
 }
 TEST(Summaries, OfExperimentsLast) { expect_lasting(experiment(), report::laws_section); }
 
+/// Stresses of disks are forces per length, shares of their sizes are of the area; more particles than are listed.
+TEST(Summaries, OfDisksHaveTheirUnits) {
+  ParticlesSummary s;
+  s.dimension = 2;
+  s.particle_count = 1331;
+  s.particles.resize(60);
+  s.contact_state = {{"pressure", 2.0}};
+  SizesSummary sizes;
+  sizes.dimension = 2;
+  sizes.unit = "m";
+  sizes.diameter = {1.0, 2.0};
+  sizes.asked = sizes.obtained = {0.0, 1.0};
+  s.head.sizes = {sizes};
+  report::RunData run;
+  run.summary = json_of(s);
+  for (const RunValue& value : particles_results().values(run))
+    EXPECT_EQ(value.unit, value.name == "pressure" ? "N/m" : value.name.starts_with("kinetic") ? "J" : "");
+  EXPECT_NE(report::particles_section(run).find("The first 50 of 1331."), std::string::npos);
+  const std::string drawn = report::sizes_section(run);
+  EXPECT_NE(drawn.find("% of the area"), std::string::npos);
+  EXPECT_EQ(drawn.find("% of the volume"), std::string::npos);
+}
+
 TEST(Summaries, OfPowdersLast) {
   // A fit that is read has numbers or none; the covariance, which says so when it is written, stays in powder.h5.
   PowderSummary s = powder();
