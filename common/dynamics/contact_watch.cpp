@@ -34,6 +34,9 @@ class Watcher {
       });
     for (std::size_t u = 0; u < sums_.size(); ++u)
       if (sums_[u].square != 0.0) add_volume(form_[u]->equivalent_volume(sums_[u]), *form_[u]);
+    auto& behind = out_.behind_planes;
+    std::sort(behind.begin(), behind.end());
+    behind.erase(std::unique(behind.begin(), behind.end()), behind.end());
     return out_;
   }
 
@@ -44,7 +47,7 @@ class Watcher {
     const double rj = sphere[static_cast<std::size_t>(s_.contacts.j[c])].r;
     const double smaller = geometry == Geometry::sphere_sphere ? std::min(ri, rj) : ri;
     if (geometry == Geometry::sphere_plane && g.overlap > ri) {
-      ++out_.behind_planes;
+      out_.behind_planes.push_back(s_.contacts.i[c]);
       out_.behind = s_.contacts.i[c];
     }
     const double depth = g.overlap / smaller;

@@ -17,13 +17,13 @@ std::string law_use_text(const LawUse& use);
 
 template <int D>
 struct ContactWatch {
-  double overlap = 0.0;            ///< largest overlap over the radius of the smaller body
-  Slot i = -1;                     ///< first body of the contact with the largest overlap
-  Slot j = -1;                     ///< second body of that contact
-  std::int64_t behind_planes = 0;  ///< grains whose centre is behind a plane (once per plane)
-  Slot behind = -1;                ///< one of them
-  double stored = 0.0;             ///< elastic energy of all contacts, tangential springs included [J]
-  bool energy_known = true;        ///< false when a law in use has no energy of its own contact (multi-contact laws)
+  double overlap = 0.0;             ///< largest overlap over the radius of the smaller body
+  Slot i = -1;                      ///< first body of the contact with the largest overlap
+  Slot j = -1;                      ///< second body of that contact
+  std::vector<Slot> behind_planes;  ///< grains whose centre is behind a plane, ascending, each once
+  Slot behind = -1;                 ///< one of them
+  double stored = 0.0;              ///< elastic energy of all contacts, tangential springs included [J]
+  bool energy_known = true;         ///< false when a law in use has no energy of its own contact (multi-contact laws)
   LawUse laws;
 };
 

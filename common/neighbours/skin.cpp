@@ -343,7 +343,7 @@ void note_skin(System<D>& s) {
 
 template <int D>
 void fit_skin_to_cell(System<D>& s) {
-  const double room = 0.249 * shortest_period(s.cell) - half_reach(s.laws);
+  const double room = kShareOfPeriod * shortest_period(s.cell) - half_reach(s.laws);
   for (Slot i = 0; i < s.particles.grains; ++i) {
     const auto u = static_cast<std::size_t>(i);
     const double r = s.particles.sphere[u].r;

@@ -30,6 +30,10 @@ std::vector<double> default_skin(const Particles<D>& particles);
 template <int D>
 double skin_used(const System<D>& system);
 
+/// A body with half the largest gap and its margin takes at most this share of the shortest period: a little less than
+/// the quarter from which on a pair could meet in two images.
+inline constexpr double kShareOfPeriod = 0.249;
+
 /// Narrows margins so that no pair can meet in two images of a periodic cell, where radii leave room for that.
 template <int D>
 void fit_skin_to_cell(System<D>& system);

@@ -71,6 +71,7 @@ class Grading {
   [[nodiscard]] double passing(double r) const;
   /// Radius below which u of all grains are, by number, 0 <= u <= 1; where classes overlap, one class after another.
   [[nodiscard]] double radius(double u) const;
+  [[nodiscard]] int dimension() const { return dimension_; }
   /// r^3, of disks r^2.
   [[nodiscard]] double volume(double r) const { return dimension_ == 2 ? r * r : r * r * r; }
   /// <r^3> over grains [m^3], of disks <r^2> [m^2].

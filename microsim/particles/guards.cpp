@@ -197,7 +197,8 @@ void Guards<D>::look_at_grains(const System<D>& s, const ContactWatch<D>& watch)
     note(spec_.overlap, watch.overlap, s.time, report_.overlap, what.str());
   }
   if (spec_.escape.action == GuardAction::ignore) return;
-  std::int64_t outside = watch.behind_planes;
+  const std::vector<Slot>& behind = watch.behind_planes;
+  auto outside = std::ssize(behind);
   Slot first = watch.behind;
   for (Slot i = 0; (spec_.low || spec_.high) && i < p.grains; ++i) {
     const Vec<D>& x = p.sphere[at(i)].x;
@@ -205,7 +206,7 @@ void Guards<D>::look_at_grains(const System<D>& s, const ContactWatch<D>& watch)
     for (int k = 0; k < D; ++k)
       in = in && !(spec_.low && x[k] < (*spec_.low)[k]) && !(spec_.high && x[k] > (*spec_.high)[k]);
     if (in) continue;
-    ++outside;
+    if (!std::binary_search(behind.begin(), behind.end(), i)) ++outside;
     first = i;
   }
   note(spec_.escape, static_cast<double>(outside), s.time, report_.escape,

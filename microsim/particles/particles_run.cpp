@@ -34,34 +34,13 @@ constexpr std::int64_t kGrainStepsPerLook = 4'000'000;
 
 using Clock = std::chrono::steady_clock;
 
-/// What a checkpoint belongs to: the scene, and particles and laws, which may lie in files of their own. Hashed piece
-/// by piece: large scenes are not in memory twice.
-template <int D>
-std::string identity_of(const ParticlesSceneOf<D>& scene, const System<D>& start) {
-  constexpr std::size_t kPiece = std::size_t{1} << 16;  // bytes
-  const auto& p = start.particles;
-  std::string bytes;
-  const auto add = [&bytes](double x) { bytes.append(reinterpret_cast<const char*>(&x), sizeof x); };
-  for (std::size_t u = 0; u < p.sphere.size(); ++u) {
-    add(p.sphere[u].r);
-    for (int k = 0; k < D; ++k) {
-      add(p.sphere[u].x[k]);
-      add(p.velocity[u][k]);
-      if (k < static_cast<int>(p.spin[u].v.size())) add(p.spin[u][k]);
-    }
-    if (bytes.size() > kPiece) bytes = short_hash(bytes);
-  }
-  const std::string laws = scene.law_files.empty() ? "" : "\n# laws " + short_hash(scene.law_files);
-  return scene.text + "\n# particles " + short_hash(bytes) + laws;
-}
-
 template <int D>
 class ParticlesRun {
  public:
   ParticlesRun(const ParticlesSceneOf<D>& scene, System<D> start, const ParticlesControl& control)
       : scene_(scene),
         control_(control),
-        identity_(control.checkpoint.empty() ? "" : identity_of(scene, start)),
+        identity_(control.checkpoint.empty() ? "" : scene.text + content_of(scene, start)),
         system_(std::move(start)),
         integrator_(scene.time.step),
         guards_(scene.guards, system_),
@@ -84,7 +63,6 @@ class ParticlesRun {
   void save();
   void count_time();
   void record(bool with_contacts = true);
-  [[nodiscard]] std::int64_t frames() const;
   [[nodiscard]] bool watched() const { return scene_.record && system_.particles.grains <= kMostWatched; }
   [[nodiscard]] bool frame_due() const { return scene_.output_stride > 0 && system_.step % scene_.output_stride == 0; }
   ParticlesResultOf<D> result(bool usable, const std::string& reason);
@@ -154,17 +132,12 @@ void ParticlesRun<D>::begin() {
   record();
 }
 
-/// Number of frames of a run that comes to its end: the first and the last state, and those in between.
-template <int D>
-std::int64_t ParticlesRun<D>::frames() const {
-  return 2 + (scene_.output_stride > 0 ? (scene_.time.steps - 1) / scene_.output_stride : 0);
-}
-
 template <int D>
 void ParticlesRun<D>::record(bool with_contacts) {
   if (!scene_.record) return;
   const auto frame = static_cast<std::int64_t>(trajectory_.time.size());
-  if (with_contacts && is_snapshot(frame, frames(), scene_.snapshots)) record_contacts(frame_contacts_, frame, system_);
+  if (with_contacts && is_snapshot(frame, scene_.frames(), scene_.snapshots))
+    record_contacts(frame_contacts_, frame, system_);
   record_frame(trajectory_, system_);
 }
 
@@ -302,6 +275,27 @@ ParticlesResultOf<D> ParticlesRun<D>::run() {
 }  // namespace
 
 template <int D>
+std::string content_of(const ParticlesSceneOf<D>& scene, const System<D>& start) {
+  constexpr std::size_t kPiece = std::size_t{1} << 16;  // bytes
+  const auto& p = start.particles;
+  std::string bytes;
+  const auto add = [&bytes](double x) { bytes.append(reinterpret_cast<const char*>(&x), sizeof x); };
+  for (std::size_t u = 0; u < p.sphere.size(); ++u) {
+    add(p.sphere[u].r);
+    for (int k = 0; k < D; ++k) {
+      add(p.sphere[u].x[k]);
+      add(p.velocity[u][k]);
+      if (k < static_cast<int>(p.spin[u].v.size())) add(p.spin[u][k]);
+    }
+    if (bytes.size() > kPiece) bytes = short_hash(bytes);
+  }
+  for (const Vec<D>& row : start.cell.edges.row)
+    for (int k = 0; k < D; ++k) add(row[k]);
+  const std::string laws = scene.law_files.empty() ? "" : "\n# laws " + short_hash(scene.law_files);
+  return "\n# particles " + short_hash(bytes) + laws;
+}
+
+template <int D>
 ParticlesResultOf<D> run_particles(const ParticlesSceneOf<D>& scene, System<D> start, const ParticlesControl& control) {
   return ParticlesRun<D>(scene, std::move(start), control).run();
 }
@@ -389,6 +383,8 @@ template ParticlesResultOf<2> run_particles<2>(const ParticlesSceneOf<2>&, Syste
 template ParticlesResultOf<3> run_particles<3>(const ParticlesSceneOf<3>&, System<3>, const ParticlesControl&);
 template ParticlesResultOf<2> run_particles<2>(const ParticlesSceneOf<2>&, const ParticlesControl&);
 template ParticlesResultOf<3> run_particles<3>(const ParticlesSceneOf<3>&, const ParticlesControl&);
+template std::string content_of<2>(const ParticlesSceneOf<2>&, const System<2>&);
+template std::string content_of<3>(const ParticlesSceneOf<3>&, const System<3>&);
 template void save_particles_run<2>(const std::string&, const ParticlesSceneOf<2>&, const ParticlesResultOf<2>&,
                                     const Provenance&);
 template void save_particles_run<3>(const std::string&, const ParticlesSceneOf<3>&, const ParticlesResultOf<3>&,

@@ -50,6 +50,11 @@ struct ParticlesResultOf {
 
 using ParticlesResult = ParticlesResultOf<3>;
 
+/// What a run is of beside the text of its scene: particles, cell and laws, which may lie in files of their own.
+/// `start`: the system before the first step. Hashed piece by piece: large scenes are not in memory twice.
+template <int D>
+std::string content_of(const ParticlesSceneOf<D>& scene, const System<D>& start);
+
 /// Runs to the end of the scene's time. The trajectory does not depend on output, checkpoints, threads or
 /// interruptions. Throws Interrupted after writing the checkpoint when a signal came; InputError, IoError for the
 /// checkpoint.

@@ -1,5 +1,7 @@
 #include "microsim/particles/particles_scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -126,6 +128,23 @@ void require_resolved(const Scene& scene, const System<D>& s) {
   }
 }
 
+/// Times that come out as whole numbers of steps, where that makes a difference.
+constexpr double kNotedDifference = 0.01;
+
+std::string rounding_remark(const SceneTable& t, const char* key, double asked, double real) {
+  if (!(std::abs(real - asked) > kNotedDifference * asked)) return "";
+  return fmt::format("{}: {} = {:.6g} s comes out as {:.6g} s, a whole number of steps", t.where(key), key, asked,
+                     real);
+}
+
+template <int D>
+void note_end(const SceneTable& t, ParticlesSceneOf<D>& out) {
+  if (!t.has("end") || !(out.time.step > 0.0)) return;
+  const double real = static_cast<double>(out.time.steps) * out.time.step;
+  if (std::string remark = rounding_remark(t, "end", out.time.end, real); !remark.empty())
+    out.remarks.push_back(std::move(remark));
+}
+
 template <int D>
 void read_output(const SceneTable& t, ParticlesSceneOf<D>& out) {
   out.record = t.flag({"record", "false: no trajectory is written"}, true);
@@ -137,9 +156,14 @@ void read_output(const SceneTable& t, ParticlesSceneOf<D>& out) {
   if (!out.record) t.add_error("every", "cannot be combined with record = false, which records nothing");
   const double every = t.number({"every", "time between frames", "start and end"}, Unit::time, Range::positive());
   if (!(out.time.step > 0.0)) return;  // nothing is known of the time
+  if (out.time.is_given && every < (1.0 - kNotedDifference) * out.time.step)
+    t.add_error("every", fmt::format("below the time step; allowed: at least {:.6g} s", out.time.step));
   const double steps = std::round(every / out.time.step);
   if (steps >= static_cast<double>(out.time.steps)) return;
   out.output_stride = std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
+  if (std::string remark = rounding_remark(t, "every", every, static_cast<double>(out.output_stride) * out.time.step);
+      !remark.empty())
+    out.remarks.push_back(std::move(remark));
   const double frames = static_cast<double>(out.time.steps) / static_cast<double>(out.output_stride);
   const double bytes = frames * 72.0 * static_cast<double>(out.system.particles.size());
   if (bytes > kMostFrameBytes)
@@ -171,7 +195,7 @@ void validate_combination(const Scene& scene, const System<D>& s, const SceneLaw
   require_contacts(scene, s);
   require_resolved(scene, s);
   require_partners(scene, s, laws);
-  require_wide_cell(root, s.particles, s.cell);
+  require_wide_cell(root, s);
 }
 
 }  // namespace
@@ -205,6 +229,7 @@ ParticlesSceneOf<D> read_particles_scene(const Scene& scene, const std::optional
     if (!root.has_errors()) root.check([&] { validate_combination(scene, s, laws); });
     const SceneTable time = root.table({"time", "simulated time and time step"});
     time.section([&] { out.time = read_time(time, s, laws.description, !root.has_errors()); });
+    note_end(time, out);
     read_output(root.table_or_empty({"output", "what is recorded of the run"}), out);
     read_checkpoint(root.table_or_empty({"checkpoint", "how often the state is saved for `--resume`"}), out);
     out.guards = read_guards(root.table_or_empty({"guards", "checks of the running simulation"}), D);

@@ -33,7 +33,10 @@ struct ParticlesSceneOf {
   std::optional<Grading> sizes;      ///< size distribution of the particles that were drawn
   std::vector<double> drawn;         ///< radii of the particles that were drawn
   std::uint64_t seed = 0;            ///< seed with which the particles were drawn
-  std::vector<std::string> remarks;  ///< what to mind about these laws
+  std::vector<std::string> remarks;  ///< what to mind about laws, times and places of this scene
+
+  /// Number of frames of a run that comes to its end: the first and the last state, and those in between.
+  [[nodiscard]] std::int64_t frames() const { return 2 + (output_stride > 0 ? (time.steps - 1) / output_stride : 0); }
 };
 
 using ParticlesScene = ParticlesSceneOf<3>;

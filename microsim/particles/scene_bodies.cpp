@@ -52,18 +52,6 @@ double density_of(const Builder<D>& b, const SceneTable& t, std::int32_t materia
   return m.density;
 }
 
-template <int D>
-bool holds_centre(const SceneWall<D>& wall, const Vec<D>& x) {
-  return !wall.plane && norm(x - wall.body.x) < wall.body.r;
-}
-
-/// The first sphere-inside that holds the centre, -1 without.
-template <int D>
-std::ptrdiff_t wall_around(const Builder<D>& b, const Vec<D>& x) {
-  const auto found = std::find_if(b.walls.begin(), b.walls.end(), [&](const auto& w) { return holds_centre(w, x); });
-  return found == b.walls.end() ? -1 : found - b.walls.begin();
-}
-
 /// Notes the last particle when no sphere-inside of the scene holds its centre.
 template <int D>
 void note_outside(Builder<D>& b) {
@@ -73,16 +61,16 @@ void note_outside(Builder<D>& b) {
 
 template <int D>
 std::ptrdiff_t chosen_wall(const Builder<D>& b, const SceneTable& t, const Vec<D>& x) {
-  if (!t.has("inside")) return wall_around(b, x);
+  if (!t.has("inside")) return wall_around(b.walls, x);
   const std::string name =
       t.text({"inside",
               "name of the sphere wall around the particle; `\"none\"`: outside all spheres, without the usual warning",
               "the first sphere that contains its centre"});
-  if (name == "none" || !b.valid) return -1;
+  if (name == kNoWall || !b.valid) return -1;
   const auto found = std::find_if(b.walls.begin(), b.walls.end(), [&](const auto& w) { return w.name == name; });
   if (found == b.walls.end()) t.throw_error("inside", "no wall of this name");
   if (found->plane) t.throw_error("inside", "this wall is a plane, not a \"sphere-inside\"");
-  if (!holds_centre(*found, x)) t.throw_error("inside", "the particle's centre is outside this sphere");
+  if (!found->holds(x)) t.throw_error("inside", "the particle's centre is outside this sphere");
   return found - b.walls.begin();
 }
 
@@ -131,7 +119,7 @@ void add_file(Builder<D>& b, const SceneTable& t) {
   for (std::size_t k = 0; k < file.radius.size(); ++k) {
     const Vec<D> x = flat<D>(file.position[k], b.out.many_file, k);
     b.grains.push_back(solid_grain(x, file.radius[k], density, material));
-    b.wall_of.push_back(wall_around(b, x));
+    b.wall_of.push_back(wall_around(b.walls, x));
     note_outside(b);
   }
 }
@@ -147,10 +135,10 @@ void add_drawn(Builder<D>& b, const SceneTable& root, const SceneTable& t, const
   }
   const std::int32_t material = material_index(b.materials, t, kMaterialOfManyKey);
   const double density = density_of(b, t, material);
-  DrawnParticles<D> drawn = read_drawn<D>(root, t, b.walls, b.grains, seed);
+  DrawnParticles<D> drawn = read_drawn<D>(root, t, b.walls, b.grains, b.out.many_box, seed);
   for (std::size_t k = 0; k < drawn.position.size(); ++k) {
     b.grains.push_back(solid_grain(drawn.position[k], drawn.radius[k], density, material));
-    b.wall_of.push_back(wall_around(b, drawn.position[k]));
+    b.wall_of.push_back(wall_around(b.walls, drawn.position[k]));
     note_outside(b);
   }
   b.out.sizes = std::move(drawn.sizes);

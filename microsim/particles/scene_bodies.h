@@ -45,12 +45,13 @@ struct DrawnParticles {
 };
 
 /// `count`, `sizes`, `seed` (or that of the root; `seed` of the command line goes first), `low` and `high` (corners of
-/// the box of places; without them [cell], whose periodic axes are closed) of the table `t` = [particles]: largest
-/// first at random places, without overlap with each other, with `others` or with walls. Throws InputError when one
-/// finds none.
+/// the box of places; without them [cell]) of the table `t` = [particles]: largest first at random places, without
+/// overlap with each other, with `others` or with walls, nor with images in a periodic cell; `in_file`: edges of a cell
+/// with size = "file". Throws InputError when one finds none.
 template <int D>
 DrawnParticles<D> read_drawn(const SceneTable& root, const SceneTable& t, const std::vector<SceneWall<D>>& walls,
-                             const std::vector<NewBody<D>>& others, const std::optional<std::uint64_t>& seed);
+                             const std::vector<NewBody<D>>& others, const Vec3& in_file,
+                             const std::optional<std::uint64_t>& seed);
 
 /// Bodies as slots: particles in the order of the scene ([[particle]] tables, then the file), sphere-insides, planes.
 template <int D>

@@ -13,6 +13,7 @@
 #include "common/io/scene.h"
 #include "common/packing/grading_scene.h"
 #include "microsim/particles/scene_memory.h"
+#include "microsim/particles/scene_walls.h"
 
 namespace softgrain {
 
@@ -29,21 +30,38 @@ template <int D>
 struct Region {
   Vec<D> low{};
   Vec<D> high{};
-  std::array<bool, D> periodic{};
+  std::array<bool, D> periodic{};  ///< the region is the cell along this axis
+  Vec<D> period{};                 ///< of the cell, where the region is another; 0: none
 };
 
+/// Periodic edges of the cell; `in_file`: those of size = "file". 0 along other axes.
 template <int D>
-Region<D> read_region(const SceneTable& root, const SceneTable& t) {
+Vec<D> periods_of(const SceneTable& root, const Vec3& in_file) {
+  Vec<D> out;
+  if (!root.has("cell")) return out;
+  const SceneTable cell = root.table("cell");
+  if (!cell.has("size") || !cell.has("periodic")) return out;  // said where the cell is read
+  const bool of_file = cell.is_text("size");
+  const Vec<D> size = of_file ? Vec<D>{} : read_vector<D>(cell, "size", Unit::length);
+  const std::vector<bool> flags = cell.flags("periodic");
+  for (int k = 0; k < D && k < std::ssize(flags); ++k)
+    if (flags[static_cast<std::size_t>(k)]) out[k] = of_file ? in_file[k] : size[k];
+  return out;
+}
+
+template <int D>
+Region<D> read_region(const SceneTable& root, const SceneTable& t, const Vec3& in_file) {
   Region<D> region;
   if (t.has("low") || t.has("high") || !root.has("cell") || root.table("cell").is_text("size")) {
     region.low = read_vector<D>(t,
                                 {"low",
-                                 "lower corner of the box for random places instead of the cell; periodic axes of the "
-                                 "cell then count as closed",
+                                 "lower corner of the box for random places instead of the cell; its faces are then "
+                                 "closed",
                                  "the cell"},
                                 Unit::length);
     region.high = read_vector<D>(
         t, {"high", "upper corner of the box for random places instead of the cell", "the cell"}, Unit::length);
+    region.period = periods_of<D>(root, in_file);
   } else {
     const SceneTable cell = root.table("cell");
     region.high = read_vector<D>(cell, "size", Unit::length);
@@ -60,7 +78,7 @@ Region<D> read_region(const SceneTable& root, const SceneTable& t) {
 template <int D>
 class PlacedParticles {
  public:
-  PlacedParticles(const Region<D>& region, double largest) : region_(region) {
+  PlacedParticles(const Region<D>& region, double largest) : region_(region), largest_(largest) {
     std::size_t all = 1;
     for (int k = 0; k < D; ++k) {
       const double length = region.high[k] - region.low[k];
@@ -78,7 +96,23 @@ class PlacedParticles {
     });
     return room;
   }
-  void add(const Vec<D>& x, double r) {
+  /// With all images that something in the region may touch; cells of less than two diameters are refused elsewhere.
+  void add(const Vec<D>& x, double r) { add_images(x, r, 0); }
+
+ private:
+  void add_images(const Vec<D>& x, double r, int axis) {
+    if (axis == D) return add_one(x, r);
+    const double period = region_.period[axis];
+    if (!(period >= 4.0 * largest_)) return add_images(x, r, axis + 1);
+    const double reach = r + largest_;
+    const double last = std::floor((region_.high[axis] + reach - x[axis]) / period);
+    for (double n = std::ceil((region_.low[axis] - reach - x[axis]) / period); n <= last; ++n) {
+      Vec<D> image = x;
+      image[axis] += n * period;
+      add_images(image, r, axis + 1);
+    }
+  }
+  void add_one(const Vec<D>& x, double r) {
     std::size_t cell = 0;
     for (std::size_t k = 0; k < D; ++k)
       cell = cell * static_cast<std::size_t>(count_[k]) + static_cast<std::size_t>(index(x, k));
@@ -86,8 +120,6 @@ class PlacedParticles {
     x_.push_back(x);
     r_.push_back(r);
   }
-
- private:
   [[nodiscard]] std::int64_t index(const Vec<D>& x, std::size_t k) const {
     const auto a = static_cast<int>(k);
     double share = (x[a] - region_.low[a]) / (region_.high[a] - region_.low[a]);
@@ -124,17 +156,26 @@ class PlacedParticles {
   }
 
   Region<D> region_;
+  double largest_;
   std::array<std::int64_t, D> count_{};
   std::vector<std::vector<std::size_t>> cells_;
   std::vector<Vec<D>> x_;
   std::vector<double> r_;
 };
 
+/// Of several sphere-insides the particle has to be within the one that will hold it.
 template <int D>
 bool clear_of_walls(const std::vector<SceneWall<D>>& walls, const Vec<D>& x, double r) {
-  return std::all_of(walls.begin(), walls.end(), [&](const SceneWall<D>& w) {
-    return w.plane ? dot(x - w.body.x, w.normal) >= r : norm(x - w.body.x) + r <= w.body.r;
-  });
+  const bool spheres = std::any_of(walls.begin(), walls.end(), [](const auto& w) { return !w.plane; });
+  const std::ptrdiff_t around = wall_around(walls, x);
+  if (spheres && around < 0) return false;
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const SceneWall<D>& w = walls[k];
+    if (w.plane ? dot(x - w.body.x, w.normal) < r
+                : static_cast<std::ptrdiff_t>(k) == around && norm(x - w.body.x) + r > w.body.r)
+      return false;
+  }
+  return true;
 }
 
 template <int D>
@@ -163,6 +204,12 @@ void require_room(const SceneTable& t, const Region<D>& region, const std::vecto
     if (region.high[k] - region.low[k] < 2.0 * largest)
       t.throw_error("sizes",
                     fmt::format("the largest particle, of radius {:g} m, is wider than the box of places", largest));
+  for (int k = 0; k < D; ++k)
+    if (region.period[k] > 0.0 && region.high[k] - region.low[k] > region.period[k])
+      t.throw_error("high",
+                    fmt::format("the box of places is wider than the cell, which is periodic along {}; allowed: "
+                                "at most {:g} m above low",
+                                "xyz"[k], region.period[k]));
 }
 
 template <int D>
@@ -204,7 +251,8 @@ std::uint64_t read_seed(const SceneTable& root, const SceneTable& t) {
 
 template <int D>
 DrawnParticles<D> read_drawn(const SceneTable& root, const SceneTable& t, const std::vector<SceneWall<D>>& walls,
-                             const std::vector<NewBody<D>>& others, const std::optional<std::uint64_t>& seed) {
+                             const std::vector<NewBody<D>>& others, const Vec3& in_file,
+                             const std::optional<std::uint64_t>& seed) {
   DrawnParticles<D> out;
   const std::int64_t count = t.count(
       {"count", "instead of a file: this many particles of `sizes`, placed at random without overlap, largest first"},
@@ -212,7 +260,7 @@ DrawnParticles<D> read_drawn(const SceneTable& root, const SceneTable& t, const 
   out.seed = seed.value_or(read_seed(root, t));
   if (!t.has("sizes")) (void)t.table("sizes");  // says that it is missing
   out.sizes = read_sizes(t, {"sizes", "size distribution of the particles of `count`"}, {}, D);
-  const Region<D> region = read_region<D>(root, t);
+  const Region<D> region = read_region<D>(root, t, in_file);
   if (!out.sizes || t.has_errors() || root.has_errors()) return out;
   if (const std::string problem = memory_problem(count, available_memory()); !problem.empty())
     t.throw_error("count", problem);
@@ -226,8 +274,10 @@ DrawnParticles<D> read_drawn(const SceneTable& root, const SceneTable& t, const 
 }
 
 template DrawnParticles<2> read_drawn<2>(const SceneTable&, const SceneTable&, const std::vector<SceneWall<2>>&,
-                                         const std::vector<NewBody<2>>&, const std::optional<std::uint64_t>&);
+                                         const std::vector<NewBody<2>>&, const Vec3&,
+                                         const std::optional<std::uint64_t>&);
 template DrawnParticles<3> read_drawn<3>(const SceneTable&, const SceneTable&, const std::vector<SceneWall<3>>&,
-                                         const std::vector<NewBody<3>>&, const std::optional<std::uint64_t>&);
+                                         const std::vector<NewBody<3>>&, const Vec3&,
+                                         const std::optional<std::uint64_t>&);
 
 }  // namespace softgrain

@@ -64,10 +64,11 @@ class PlaceCheck {
     for (Slot i = 0; i < p.grains; ++i)
       for (Slot plane = p.first_plane(); plane < p.size(); ++plane) {
         const double height = dot(p.normal_of(plane), centre(i) - p.sphere[at(plane)].x);
-        if (height < 0.0)
-          out.add(i, fmt::format("the centre of particle {} is {:.3g} m behind the wall '{}', whose normal points to "
-                                 "where particles are; move the particle, or turn the normal",
-                                 i, -height, wall_name_[at(plane - p.grains)]));
+        if (height >= 0.0) continue;
+        out.add(i, fmt::format("the centre of particle {} is {:.3g} m behind the wall '{}', whose normal points to "
+                               "where particles are; move the particle, or turn the normal",
+                               i, -height, wall_name_[at(plane - p.grains)]));
+        break;
       }
     return out;
   }

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "common/core/error.h"
+#include "common/core/particles.h"
 #include "common/dynamics/time_step.h"
 
 namespace softgrain {
@@ -41,13 +42,40 @@ double spread(const std::vector<Vector>& values) {
   return std::sqrt(norm2(high - low));
 }
 
+/// What a constant acceleration leads to by the end, or over a way, whichever is less.
+double speed_after(double acceleration, double end, double way) {
+  return acceleration > 0.0 ? std::min(acceleration * end, std::sqrt(2.0 * acceleration * way)) : 0.0;
+}
+
+/// How much faster images of a body are than itself, over all periodic axes of a deforming cell.
+template <int D>
+double speed_of_images(const Cell<D>& cell) {
+  double sum = 0.0;
+  for (int k = 0; k < D; ++k) {
+    if (!cell.periodic[static_cast<std::size_t>(k)]) continue;
+    Vec<D> edge;
+    for (int row = 0; row < D; ++row) edge[row] = cell.edges[row][k];
+    sum += norm(cell.velocity_gradient * edge);
+  }
+  return sum;
+}
+
+/// What planes that a load drives towards the particles may reach.
+template <int D>
+double speed_of_loads(const Particles<D>& p, double end, double way) {
+  double sum = 0.0;
+  for (Slot w = p.first_plane(); w < p.size(); ++w)
+    sum += speed_after(p.plane_load[at(w - p.first_plane())] * p.inverse_mass[at(w)], end, way);
+  return sum;
+}
+
 template <int D>
 double largest_relative_speed(const System<D>& s, double end) {
   std::vector<Vec<D>> places;
   for (const auto& sphere : s.particles.sphere) places.push_back(sphere.x);
-  const double g = norm(s.gravity);
-  const double fall = g > 0.0 ? std::min(g * end, std::sqrt(2.0 * g * spread(places))) : 0.0;
-  return spread(s.particles.velocity) + fall;
+  const double way = spread(places);
+  return spread(s.particles.velocity) + speed_after(norm(s.gravity), end, way) + speed_of_images(s.cell) +
+         speed_of_loads(s.particles, end, way);
 }
 
 /// Impact of two equal spheres of radius r and mass 1/inverse_mass under one law.
@@ -101,13 +129,31 @@ std::int64_t steps_to(const SceneTable& t, double end, double step) {
   return std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
 }
 
+/// Takes the shorter one of two steps, with the sentence that says what set it.
+void limit_to(double step, const std::string& sentence, double& wanted, SceneTime& out) {
+  if (!(step < wanted)) return;
+  wanted = step;
+  out.limited_by = sentence;
+}
+
 template <int D>
 void choose_step(const SceneTable& t, const System<D>& s, double fraction, SceneTime& out) {
-  double wanted = std::min(
-      {fraction * out.natural_time, out.contact_time / kStepsPerImpact, out.reach_time / kStepsPerReach, out.end});
+  double wanted = kForever;
+  limit_to(fraction * out.natural_time, out.stiffest, wanted, out);
+  limit_to(out.contact_time / kStepsPerImpact,
+           "set by the shortest impact: 1/" + shown(kStepsPerImpact) + " of " + shown(out.contact_time) + " s", wanted,
+           out);
+  limit_to(out.reach_time / kStepsPerReach,
+           "set by the attraction at a distance: 1/" + shown(kStepsPerReach) + " of the " + shown(out.reach_time) +
+               " s in which it is crossed",
+           wanted, out);
+  limit_to(out.end, "set by the end of the run", wanted, out);
   if (!std::isfinite(wanted)) t.throw_error("step", "\"auto\" needs a contact law that the particles take part in");
   judge_contacts(s, wanted, Dashpots::count, out);
-  wanted = std::min(wanted, kLargestStableShare * out.stable_step);
+  limit_to(kLargestStableShare * out.stable_step,
+           "set by the contacts at the start: " + shown(kLargestStableShare) + " of their largest stable step, " +
+               shown(out.stable_step) + " s" + (out.crowded.empty() ? "" : "; " + out.crowded),
+           wanted, out);
   if (out.steps > 0) {
     out.step = wanted;
     return;
@@ -119,10 +165,12 @@ void choose_step(const SceneTable& t, const System<D>& s, double fraction, Scene
 template <int D>
 void take_step(const SceneTable& t, const System<D>& s, double largest, SceneTime& out) {
   out.step = t.number(kStepKey, Unit::time, Range::positive());
+  out.is_given = true;
+  out.limited_by = "given by the scene";
   const double limit = largest * out.natural_time;
   if (out.step > limit)
-    t.throw_error(
-        "step", "above the stable limit " + shown(limit) + " s = " + shown(largest) + " sqrt(m/k), " + out.limited_by);
+    t.throw_error("step",
+                  "above the stable limit " + shown(limit) + " s = " + shown(largest) + " sqrt(m/k), " + out.stiffest);
   judge_contacts(s, out.step, Dashpots::leave_out, out);
   const double crowded = kLargestStableShare * out.stable_step;
   if (out.step > crowded)
@@ -172,10 +220,10 @@ SceneTime read_time(const SceneTable& t, const System<D>& system, const std::vec
                     bool valid) {
   SceneTime out;
   read_extent(t, out);
-  const double fraction = t.number(
-      {"step_fraction",
-       "with `step = \"auto\"`: step over sqrt(m/k) of the stiffest contact; an impact always has at least 200 steps"},
-      Unit::none, Range{0.0, largest_fraction<D>(), true, false}, kDefaultFraction);
+  const double fraction = t.number({"step_fraction",
+                                    "with `step = \"auto\"`: step over sqrt(m/k) of the stiffest contact; an impact at "
+                                    "the speeds in sight has at least 200 steps"},
+                                   Unit::none, Range{0.0, largest_fraction<D>(), true, false}, kDefaultFraction);
   const Key warm_up{"warm_up_steps", "first steps, left out of the measured cost"};
   const bool automatic = !t.has("step") || (t.is_text("step") && t.text(kStepKey) == "auto");
   if (!automatic)
@@ -187,7 +235,7 @@ SceneTime read_time(const SceneTable& t, const System<D>& system, const std::vec
   }
   const StepLimit limit = step_limit(system);
   out.natural_time = limit.body >= 0 ? limit.natural_time : kForever;
-  if (limit.body >= 0) out.limited_by = limit_sentence(limit, system, law_description);
+  if (limit.body >= 0) out.stiffest = limit_sentence(limit, system, law_description);
   out.contact_time = shortest_impact(system, out.end);
   out.reach_time = shortest_reach(system, out.end);
   out.stable_step = kForever;

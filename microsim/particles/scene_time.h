@@ -19,7 +19,9 @@ struct SceneTime {
   double stable_step = 0.0;        ///< largest step at which the contacts of the start are stable; infinite without [s]
   double contact_time = 0.0;       ///< shortest duration of an impact at the speeds of the scene; infinite at rest [s]
   double reach_time = 0.0;         ///< time to pass the shortest attraction at a distance; infinite without [s]
-  std::string limited_by;          ///< sentence: which body and law set the natural time
+  bool is_given = false;           ///< the scene says the step in seconds
+  std::string stiffest;            ///< sentence: which body and law set the natural time
+  std::string limited_by;          ///< sentence: what the step comes from
   std::string crowded;             ///< sentence: which body and contacts set the stable step; empty: one contact does
 };
 
@@ -34,7 +36,8 @@ SceneTime read_time(const SceneTable& time, const System<D>& system, const std::
                     bool valid);
 
 /// Duration of the shortest impact between a particle and an equal one at the largest relative speed in sight (present
-/// velocities, free fall through the scene). Hertz [closed form]: h = (5 m12 v^2/(4 K))^(2/5), F = K h^(3/2),
+/// velocities, free fall through the scene, images in a cell that is sheared, planes that a load drives through the
+/// scene). Hertz [closed form]: h = (5 m12 v^2/(4 K))^(2/5), F = K h^(3/2),
 /// T = 2 h/v int_0^1 dx/sqrt(1 - x^(5/2)) = (4/5) B(2/5, 1/2) h/v; linear spring: T = pi sqrt(m12/k). Cohesive disks
 /// the same, without their adhesion. Infinite at rest.
 /// `end` may be infinite. [s]

@@ -1,5 +1,7 @@
 #include "microsim/particles/scene_walls.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -7,6 +9,7 @@
 #include "common/core/error.h"
 #include "common/data/snapshot.h"
 #include "common/io/scene.h"
+#include "common/neighbours/skin.h"
 
 namespace softgrain {
 
@@ -74,6 +77,8 @@ template <int D>
 void require_new_name(const SceneTable& t, const std::vector<SceneWall<D>>& walls, const std::string& name) {
   const auto same = std::find_if(walls.begin(), walls.end(), [&](const auto& w) { return w.name == name; });
   if (same != walls.end()) t.add_error("name", "another wall is called '" + name + "' (" + same->where + ")");
+  if (name == kNoWall)
+    t.add_error("name", "must be another: inside = \"none\" of a particle says that no wall holds it");
 }
 
 }  // namespace
@@ -152,25 +157,29 @@ Cell<D> read_cell(const SceneTable& root, const SceneBodies<D>& bodies) {
 }
 
 template <int D>
-void require_wide_cell(const SceneTable& root, const Particles<D>& p, const Cell<D>& cell) {
+void require_wide_cell(const SceneTable& root, const System<D>& s) {
+  const Particles<D>& p = s.particles;
+  const Cell<D>& cell = s.cell;
   if (!cell.any_periodic()) return;
   double largest = 0.0;
   for (Slot i = 0; i < p.grains; ++i) largest = std::max(largest, p.sphere[static_cast<std::size_t>(i)].r);
+  const double half = half_reach(s.laws);
+  const double least = (largest + half) / kShareOfPeriod;
   // Shear does not bring images nearer: beyond half an edge the cell is replaced by the one that leans the other way.
   for (int k = 0; k < D; ++k) {
     if (!cell.periodic[static_cast<std::size_t>(k)]) continue;
     const double width = cell.edges[k][k];
-    if (width >= 4.0 * largest) continue;
-    root.table("cell").add_error("size", "the periodic axis " + std::string(1, "xyz"[k]) + " is " +
-                                             std::to_string(width) + " m wide; allowed: at least " +
-                                             std::to_string(4.0 * largest) +
-                                             " m, two diameters of the largest particle");
+    if (width > least) continue;
+    root.table("cell").add_error(
+        "size", fmt::format("the periodic axis {} is {:.6g} m wide; allowed: above {:.6g} m, 4.02 radii of the largest "
+                            "particle{}",
+                            "xyz"[k], width, least, half > 0.0 ? " with half its reach" : ""));
   }
 }
 
 template Cell<2> read_cell<2>(const SceneTable&, const SceneBodies<2>&);
 template Cell<3> read_cell<3>(const SceneTable&, const SceneBodies<3>&);
-template void require_wide_cell<2>(const SceneTable&, const Particles<2>&, const Cell<2>&);
-template void require_wide_cell<3>(const SceneTable&, const Particles<3>&, const Cell<3>&);
+template void require_wide_cell<2>(const SceneTable&, const System<2>&);
+template void require_wide_cell<3>(const SceneTable&, const System<3>&);
 
 }  // namespace softgrain

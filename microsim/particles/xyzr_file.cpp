@@ -74,6 +74,8 @@ std::array<double, 4> four_numbers(std::string_view line, const LineReader& read
     if (error != std::errc{} || !std::isfinite(value))
       reader.wrong("must be four finite numbers, " + std::string(what));
     line.remove_prefix(static_cast<std::size_t>(end - line.data()));
+    if (!line.empty() && kBlank.find(line.front()) == std::string_view::npos)
+      reader.wrong("must be four numbers with blanks or tabs between them, " + std::string(what));
   }
   if (line.find_first_not_of(kBlank) != std::string_view::npos)
     reader.wrong("must be four numbers, " + std::string(what));

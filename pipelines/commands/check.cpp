@@ -1,5 +1,6 @@
 // softgrain check: is this file sound, and what follows from it. Runs nothing that takes more than a moment.
 #include <fmt/format.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -25,7 +26,17 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
   const SceneKind& kind = kind_of(scene);
   out.add("kind", kind.name, std::string("scene of kind ") + kind.name);
   if (!options.law.empty() && !kind.takes_law) throw InputError("check: --law goes with scenes of kind \"macro\"");
+  if (options.bands > 0 && !kind.takes_law) throw InputError("check: --bands goes with scenes of kind \"macro\"");
   kind.check(scene, options, out);
+}
+
+/// What is said of a scene.
+void refuse_scene_options(const std::string& path, const CommonOptions& options) {
+  const std::string what = ": " + path + " is no scene";
+  if (!options.overrides.empty()) throw InputError("--set" + what);
+  if (options.seed_given) throw InputError("--seed" + what);
+  if (!options.law.empty()) throw InputError("--law" + what);
+  if (options.bands > 0) throw InputError("--bands" + what);
 }
 
 /// Laws and scenes are both TOML; cards and tables of laws have a schema at the top.
@@ -36,8 +47,7 @@ void check_file(const std::string& path, const CommonOptions& options, Findings&
   const auto form = file_form(path);
   const bool directory = std::filesystem::is_directory(path, ignored);
   const bool scene = !directory && (!form || form == FileForm::toml) && !holds_laws(path);
-  if (!scene && !options.overrides.empty()) throw InputError("--set: " + path + " is no scene");
-  if (!scene && options.seed_given) throw InputError("--seed: " + path + " is no scene");
+  if (!scene) refuse_scene_options(path, options);
   if (directory)
     check_directory(path, out);
   else if (form == FileForm::hdf5)
@@ -65,6 +75,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 ExitStatus command_check(const CommonOptions& options) {
   if (options.inputs.size() != 1) throw InputError("check: give one file");
   const std::string& path = options.inputs[0];
+  if (options.threads > 0) omp_set_num_threads(options.threads);
   Findings out;
   check_file(path, options, out);
   out.close_times();

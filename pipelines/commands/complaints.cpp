@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -47,13 +49,19 @@ const std::vector<Form>& forms() {
   return known;
 }
 
+/// False for a number that is too large: it is none of a line.
+bool is_whole(const std::string& digits, std::int64_t& number) {
+  return std::from_chars(digits.data(), digits.data() + digits.size(), number).ec == std::errc{};
+}
+
 json error_object(const std::string& text) {
   static const std::regex placed("^([^:]+):([0-9]+): (.*)$");
   static const std::regex set("^([^:]+ \\(--set [^)]+\\)): (.*)$");
   std::smatch parts;
   json out;
-  if (std::regex_match(text, parts, placed))
-    out = {{"file", parts[1].str()}, {"line", std::stol(parts[2].str())}, {"message", parts[3].str()}};
+  std::int64_t line = 0;
+  if (std::regex_match(text, parts, placed) && is_whole(parts[2].str(), line))
+    out = {{"file", parts[1].str()}, {"line", line}, {"message", parts[3].str()}};
   else
     out = {{"message", text}};
   const std::string message = std::regex_match(text, parts, set) ? parts[2].str() : out["message"].get<std::string>();

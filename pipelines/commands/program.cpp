@@ -202,6 +202,9 @@ void refuse_idle_options(const Command& command, const CommonOptions& options) {
   if (options.resume && !command.saves)
     throw InputError(
         fmt::format("--resume: {} saves nothing on its way; run, microsim, macrosim and sweep go on", command.name));
+  if (!options.out.empty() && (command.function == command_report || command.function == command_check))
+    throw InputError(fmt::format("--out: {} makes no run directory{}", command.name,
+                                 command.function == command_report ? "; the page stands in DIR" : ""));
   if (command.settings) return;
   if (!options.overrides.empty()) throw InputError(fmt::format("--set: {} reads no scene", command.name));
   if (options.seed_given) throw InputError(fmt::format("--seed: {} draws no random numbers", command.name));

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <numeric>
 #include <optional>
+#include <utility>
 
 #include "common/core/error.h"
 #include "common/io/scene.h"
@@ -27,27 +30,38 @@ struct Entry {
 
 struct Series {
   ExportedSeries facts;
-  std::string moment_name;
+  std::string moment;  ///< "time [s]"; empty: states have none
   std::vector<Entry> entries;
 };
 
-/// The index of a series for ParaView: which file is of which moment.
+/// What tells states of a series apart beside their frame, with its unit.
+std::string moment_header(const Snapshot& s) {
+  if (s.moment_name() == Moment::frame) return "";
+  return fmt::format("{} [{}]", to_string(s.moment_name()), s.moment_name() == Moment::time ? s.time_unit : "1");
+}
+
+/// The index of a series for ParaView: which file is of which time.
 std::string collection(const std::vector<Entry>& entries, std::string Entry::*file) {
+  std::vector<double> moments;
+  for (const Entry& e : entries) moments.push_back(e.moment);
+  const std::vector<double> times = times_of(std::move(moments));
   std::string text =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
       "  <Collection>\n";
-  for (const Entry& e : entries)
-    if (!(e.*file).empty())
-      text += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", e.moment, e.*file);
+  for (std::size_t k = 0; k < entries.size(); ++k)
+    if (const std::string& name = entries[k].*file; !name.empty())
+      text += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", times[k], name);
   return text + "  </Collection>\n</VTKFile>\n";
 }
 
 std::string table(const Series& s) {
-  std::string text = fmt::format("number,frame,{},particles,contacts,particles_file,contacts_file\n", s.moment_name);
+  const bool has_moment = !s.moment.empty();
+  std::string text =
+      fmt::format("number,frame,{}particles,contacts,particles_file,contacts_file\n", has_moment ? s.moment + "," : "");
   for (std::size_t k = 0; k < s.entries.size(); ++k) {
     const Entry& e = s.entries[k];
-    text += fmt::format("{},{},{},{},{},{},{}\n", k, e.frame, e.moment, e.particles, e.contacts, e.particles_file,
-                        e.contacts_file);
+    text += fmt::format("{},{},{}{},{},{},{}\n", k, e.frame, has_moment ? fmt::format("{},", e.moment) : "",
+                        e.particles, e.contacts, e.particles_file, e.contacts_file);
   }
   return text;
 }
@@ -56,7 +70,10 @@ class Exporter {
  public:
   /// What an earlier export of this form left in the directory goes.
   Exporter(ExportFormat format, std::string directory)
-      : format_(format), directory_(std::move(directory)), list_(directory_, format_) {
+      : format_(format),
+        directory_(std::move(directory)),
+        list_(directory_, format_),
+        unlisted_(list_.is_default_folder() && !list_.exists()) {
     list_.remove_listed();
   }
 
@@ -87,9 +104,9 @@ class Exporter {
   Series& series_of(const Snapshot& s) {
     for (Series& known : all_)
       if (known.facts.name == s.series) return known;
-    all_.push_back({{s.series, s.kind, 0, 0, {}}, to_string(s.moment_name()), {}});
+    all_.push_back({{s.series, s.kind, 0, 0, {}}, moment_header(s), {}});
     // More states than this series has would play after its own.
-    list_.remove_series(s.series);
+    if (unlisted_) list_.remove_series(s.series);
     return all_.back();
   }
 
@@ -105,7 +122,13 @@ class Exporter {
     return format_ == ExportFormat::csv ? csv_files(s, number) : dump_files(s, number);
   }
 
+  /// Throws InputError, and takes back what was written, where a file of this name is there that no export listed.
   void write(const std::string& name, const std::string& text) const {
+    if (list_.holds(name)) {
+      list_.remove_listed();
+      throw InputError(fmt::format(
+          "{}/{}: is there already and of no earlier export: move it away, or choose another --out", directory_, name));
+    }
     list_.add(name);
     write_text_atomic(directory_ + "/" + name, text);
   }
@@ -129,10 +152,18 @@ class Exporter {
   ExportFormat format_;
   std::string directory_;
   ExportList list_;
+  bool unlisted_;  ///< an export of an earlier version, which kept no list, may have left files here
   std::vector<Series> all_;
 };
 
 }  // namespace
+
+std::vector<double> times_of(std::vector<double> moments) {
+  const auto grows = [](double a, double b) { return a < b; };
+  if (std::adjacent_find(moments.begin(), moments.end(), std::not_fn(grows)) != moments.end())
+    std::iota(moments.begin(), moments.end(), 0.0);
+  return moments;
+}
 
 ExportFormat export_format(const std::string& name) {
   if (const auto format = parse_enum<ExportFormat>(name)) return *format;

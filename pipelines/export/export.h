@@ -46,6 +46,10 @@ std::string state_file_name(const Snapshot& snapshot, StateContent content, std:
                             const std::string& extension);
 std::string file_name_of(const std::string& series);
 
+/// Times of the states of a series for programs that sort states by them: their moments, or, where these do not grow
+/// from each state to the next (strains of unloading, of a hold), the numbers of the states from 0.
+std::vector<double> times_of(std::vector<double> moments);
+
 /// What a series became.
 struct ExportedSeries {
   std::string name;
@@ -57,7 +61,7 @@ struct ExportedSeries {
 
 /// Writes all states of a run (as read_snapshots() takes it) to `directory`, which is made; every file atomically. What
 /// an earlier export of the same form left there is removed first (export_files.h); other files stay.
-/// Throws InputError when there are none, IoError.
+/// Throws InputError when there are no states, or a file is in the way that no export listed; IoError.
 std::vector<ExportedSeries> export_states(const std::string& run, ExportFormat format, const std::string& directory);
 
 // Small XDMF files beside HDF5 files, through which ParaView reads the states in them without a copy.

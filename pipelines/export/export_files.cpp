@@ -59,6 +59,16 @@ bool ExportList::exists() const {
   return fs::exists(directory_ + "/.export-" + to_string(format_), error);
 }
 
+bool ExportList::is_default_folder() const {
+  const fs::path path(directory_);
+  return (path.has_filename() ? path : path.parent_path()).filename() == export_folder(format_);
+}
+
+bool ExportList::holds(const std::string& name) const {
+  std::error_code error;
+  return fs::exists(fs::symlink_status(directory_ + "/" + name, error));
+}
+
 void ExportList::remove(const std::string& name) const {
   const std::string path = directory_ + "/" + name;
   std::error_code error;

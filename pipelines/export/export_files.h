@@ -15,8 +15,8 @@ class ExportList {
 
   /// Removes the files that an earlier export of this form listed, and the list. Throws IoError.
   void remove_listed() const;
-  /// Removes the files of one series by the names that this form gives them, whether listed or not: earlier versions
-  /// kept no list.
+  /// Removes the files of one series by the names that this form gives them, whether listed or not: what an earlier
+  /// version, which kept no list, left in a directory that it named.
   void remove_series(const std::string& series) const;
   /// Removes every file with a name that this form gives.
   void remove_named() const;
@@ -24,6 +24,10 @@ class ExportList {
   void add(const std::string& name) const;
   /// Whether an export of this form kept a list here.
   [[nodiscard]] bool exists() const;
+  /// Whether the directory has the name that exports of this form get by default.
+  [[nodiscard]] bool is_default_folder() const;
+  /// Whether something of this name is in the directory.
+  [[nodiscard]] bool holds(const std::string& name) const;
 
  private:
   void remove(const std::string& name) const;

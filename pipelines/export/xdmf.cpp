@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <map>
+#include <utility>
 #include <vector>
 
 #include "common/core/text.h"
@@ -173,6 +173,17 @@ double moment_of(const h5::Group& state) {
   return static_cast<double>(state.integer("frame"));
 }
 
+/// Series in order, with the names of their states.
+std::vector<std::pair<std::string, std::vector<std::string>>> series_of(const h5::Group& states) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> out;
+  for (const std::string& name : states.children()) {
+    const std::string series = states.open(name).text("series");
+    if (out.empty() || out.back().first != series) out.emplace_back(series, std::vector<std::string>{});
+    out.back().second.push_back(name);
+  }
+  return out;
+}
+
 std::string collections(const std::vector<std::pair<std::string, std::string>>& series) {
   std::string text;
   for (const auto& [name, grids] : series)
@@ -198,16 +209,18 @@ void write_states_xdmf(const std::string& states_file) {
   const std::string file = fs::path(states_file).filename().string();
   std::vector<std::pair<std::string, std::string>> particles;  // series in order, and their grids
   std::vector<std::pair<std::string, std::string>> contacts;
-  for (const std::string& name : states.children()) {
-    const h5::Group one = states.open(name);
-    const std::string series = one.text("series");
-    if (particles.empty() || particles.back().first != series) {
-      particles.emplace_back(series, "");
-      contacts.emplace_back(series, "");
+  for (const auto& [series, names] : series_of(states)) {
+    std::vector<double> moments;
+    for (const std::string& name : names) moments.push_back(moment_of(states.open(name)));
+    const std::vector<double> times = times_of(std::move(moments));
+    particles.emplace_back(series, "");
+    contacts.emplace_back(series, "");
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const h5::Group one = states.open(names[k]);
+      const std::string path = file + ":/states/" + names[k];
+      particles.back().second += particles_of_state(one, path, times[k]);
+      if (one.has("contacts")) contacts.back().second += contacts_of_state(one, path, times[k]);
     }
-    const std::string path = file + ":/states/" + name;
-    particles.back().second += particles_of_state(one, path, moment_of(one));
-    if (one.has("contacts")) contacts.back().second += contacts_of_state(one, path, moment_of(one));
   }
   write_document(beside(states_file, ".xdmf"), collections(particles));
   write_document(beside(states_file, "_contacts.xdmf"), collections(contacts));

@@ -124,18 +124,33 @@ void add_contact(const Snapshot& s, const SnapshotContact& c, const Vec3& shift,
   for (int k = 0; k < 3; ++k) state.ends.push_back(static_cast<float>(end[k]));
 }
 
-/// The strongest contacts stay, in their order.
+/// Contacts of every grain and the sum of their forces, before some are left out.
+void note_contacts(PackingState& state) {
+  state.touching.assign(state.grains(), 0);
+  state.load.assign(state.grains(), 0.0F);
+  for (std::size_t c = 0; c < state.contacts(); ++c)
+    for (const std::int32_t k : {state.pairs[2 * c], state.pairs[2 * c + 1]}) {
+      if (static_cast<std::size_t>(k) >= state.grains()) continue;
+      ++state.touching[static_cast<std::size_t>(k)];
+      state.load[static_cast<std::size_t>(k)] += std::abs(state.forces[c]);
+    }
+}
+
+/// The strongest contacts stay, in their order; of equal ones the first.
 void keep_strongest(PackingState& state, std::size_t count) {
   if (state.contacts() <= count) return;
   std::vector<float> sizes;
   for (const float f : state.forces) sizes.push_back(std::abs(f));
   std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(count), sizes.end(), std::greater<>());
   const float limit = sizes[count];
+  auto equal = static_cast<std::ptrdiff_t>(count) -
+               std::count_if(sizes.begin(), sizes.end(), [&](float f) { return f > limit; });  // as many of these
   PackingState kept;
   std::size_t b = 0;
   for (std::size_t c = 0; c < state.contacts(); ++c) {
     const bool bent = b < state.bent.size() && static_cast<std::size_t>(state.bent[b]) == c;
-    if (std::abs(state.forces[c]) > limit) {
+    const float size = std::abs(state.forces[c]);
+    if (size > limit || (size == limit && equal-- > 0)) {
       if (bent) {
         kept.bent.push_back(static_cast<std::int32_t>(kept.contacts()));
         for (std::size_t k = 0; k < 3; ++k) kept.ends.push_back(state.ends[3 * b + k]);
@@ -155,6 +170,9 @@ void keep_strongest(PackingState& state, std::size_t count) {
 std::size_t contact_bytes(const PackingState& s) {
   return 4 * (s.pairs.size() + s.forces.size() + s.bent.size() + s.ends.size()) / 3 * 4;
 }
+
+/// Bytes of what is known of contacts that are left out.
+std::size_t noted_bytes(std::size_t grains) { return (sizeof(std::uint16_t) + sizeof(float)) * grains / 3 * 4; }
 
 std::size_t total(const std::vector<PackingSeries>& series) {
   std::size_t sum = 0;
@@ -198,6 +216,8 @@ nlohmann::json state_json(const PackingState& s) {
                      {"forces", array_text(s.forces)},
                      {"bent", array_text(s.bent)},
                      {"ends", array_text(s.ends)},
+                     {"touching", array_text(s.touching)},
+                     {"load", array_text(s.load)},
                      {"walls", nlohmann::json::array()},
                      {"cell", nullptr}};
   for (const SnapshotWall& w : s.walls) out["walls"].push_back(wall_json(w));
@@ -211,7 +231,7 @@ static_assert(std::endian::native == std::endian::little, "the page reads little
 
 std::size_t PackingState::bytes() const {
   const std::size_t grains = 4 * (spheres.size() + body.size() + ids.size()) + role.size();
-  return grains / 3 * 4 + contact_bytes(*this) + 160 * walls.size() + 300;
+  return grains / 3 * 4 + contact_bytes(*this) + noted_bytes(load.size()) + 160 * walls.size() + 330;
 }
 
 std::size_t PackingSeries::bytes() const {
@@ -277,7 +297,9 @@ std::vector<std::string> fit_into(std::vector<PackingSeries>& series, std::size_
       const std::size_t all = state.contacts();
       const std::size_t bare = state.bytes() - contact_bytes(state);
       if (state.bytes() <= share || bare >= share) continue;
-      keep_strongest(state, all * (share - bare) / contact_bytes(state));
+      const std::size_t noted = bare + noted_bytes(state.grains());
+      if (noted < share) note_contacts(state);  // else none are shown
+      keep_strongest(state, noted < share ? all * (share - noted) / contact_bytes(state) : 0);
       said.push_back(fmt::format("{}: the {} strongest of {} contacts.", s.label,
                                  format_count(static_cast<std::int64_t>(state.contacts())),
                                  format_count(static_cast<std::int64_t>(all))));

@@ -22,6 +22,9 @@ struct PackingState {
   std::vector<float> forces;        ///< normal force of each contact
   std::vector<std::int32_t> bent;   ///< contacts whose line does not end at the centre of grain j: walls, images
   std::vector<float> ends;          ///< x, y, z where their lines end
+  // Of all contacts of each grain, where some are left out; else empty.
+  std::vector<std::uint16_t> touching;  ///< their number
+  std::vector<float> load;              ///< sum of their normal forces
   std::vector<SnapshotWall> walls;
   std::vector<Vec3> cell;  ///< edges, zero along open axes; empty: no cell
 

@@ -106,12 +106,12 @@ std::string grading_section(const RunData& run) {
       {.id = "grading",
        .title = "Grading curve",
        .x = {.label = metres ? "diameter [mm]" : "diameter [" + curves.front().unit + "]", .scale = Scale::logarithmic},
-       .y = {.label = curves.front().dimension == 2 ? "passing [% of the area]" : "passing [% of the volume]",
+       .y = {.label = fmt::format("passing [% of the {}]", share_of(curves.front().dimension)),
              .low = 0.0,
              .high = 100.0}});
   for (std::size_t k = 0; k < curves.size(); ++k)
     if (curves[k].unit == curves.front().unit) plot.add(passing(curves[k], k));
-  return section("grading", "Grading curve", "Particle size distribution, as asked for and as drawn.",
+  return section("grading", "Grading curve", "Particle size distribution of the grains and bodies of the run.",
                  figure_row({figure(
                      plot.svg(),
                      "Share of the volume (of disks the area) in grains smaller than the diameter, as a sieve analysis "

@@ -156,15 +156,16 @@ std::string passing_figure(const SizesSummary& one, std::size_t number) {
   Plot plot({.id = fmt::format("passing-{}", number),
              .title = "Passing: " + one.of,
              .x = {.label = metres ? "diameter [mm]" : "diameter over the largest", .scale = Scale::logarithmic},
-             .y = {.label = "passing [% of the volume]", .low = 0.0, .high = 100.0}});
+             .y = {.label = fmt::format("passing [% of the {}]", share_of(one.dimension)), .low = 0.0, .high = 100.0}});
   plot.add(found);
   plot.add(wanted);
   return figure(
       plot.svg(),
       fmt::format("{}, by {}: {} in the mean of {}; what passes differs from what was asked by at most {} % of "
-                  "the volume. One grain of the largest size is {} %: no sample comes closer than half that.",
+                  "the {}. One grain of the largest size is {} %: no sample comes closer than half that.",
                   one.of, one.form, format_number(one.grains), one.samples,
-                  format_number(100.0 * one.largest_difference), format_number(100.0 * one.largest_grain)));
+                  format_number(100.0 * one.largest_difference), share_of(one.dimension),
+                  format_number(100.0 * one.largest_grain)));
 }
 
 }  // namespace

@@ -31,8 +31,9 @@ inline constexpr auto enum_names<RunStatus> = enum_name_list<RunStatus>({{RunSta
 
 /// Grains of one kind whose sizes a distribution said: what was asked, and what came out in the mean of samples.
 struct SizesSummary {
-  std::string of;    ///< "solid grains"
-  std::string form;  ///< form of the distribution
+  std::string of;     ///< "solid grains"
+  std::string form;   ///< form of the distribution
+  int dimension = 3;  ///< 2: of disks, whose shares are of the area
   std::int64_t samples = 0;
   double grains = 0.0;              ///< mean number of grains
   double largest_difference = 0.0;  ///< largest difference of the volume share that passes, over all samples and sizes
@@ -46,6 +47,7 @@ struct SizesSummary {
 void fields(auto&& visit, Of<SizesSummary> auto& s) {
   visit("of", s.of);
   visit("form", s.form);
+  visit("dimension", s.dimension);
   visit("samples", s.samples);
   visit("grains", s.grains);
   visit("largest_difference", s.largest_difference);
@@ -55,6 +57,9 @@ void fields(auto&& visit, Of<SizesSummary> auto& s) {
   visit("asked", s.asked);
   visit("obtained", s.obtained);
 }
+
+/// What shares of sizes are of, for people: "volume", of disks "area".
+inline const char* share_of(int dimension) { return dimension == 2 ? "area" : "volume"; }
 
 /// What the summary of every kind begins with.
 struct SummaryHead {
@@ -66,10 +71,10 @@ struct SummaryHead {
   /// What may make the result wrong for its purpose, with what to do about it; the most important first.
   std::vector<std::string> warnings{};
 
-  /// Not usable, and why.
+  /// Not usable, and why: before all other remarks, as the first is taken for the reason (warnings_of).
   void mark_unusable(const std::string& remark) {
+    remarks.insert(status == RunStatus::not_usable ? remarks.end() : remarks.begin(), remark);
     status = RunStatus::not_usable;
-    remarks.push_back(remark);
   }
 };
 

@@ -183,8 +183,11 @@ void RunContext::begin(const Scene& scene, std::uint64_t seed, const std::string
                            {"bands", options_.bands}};
   if (!part_ && resume()) {
     const nlohmann::json before = earlier_run(path(kRunFile), path("summary.json"));
-    for (const auto& [key, what] :
-         {std::pair{"scene", "text"}, {"seed", "seed"}, {"beside", "law"}, {"engine", "engine"}, {"bands", "--bands"}})
+    for (const auto& [key, what] : {std::pair{"scene", "text"},
+                                    {"seed", "seed"},
+                                    {"beside", "law or data file"},
+                                    {"engine", "engine"},
+                                    {"bands", "--bands"}})
       if (before.contains(key) && before[key] != now[key])
         throw FingerprintMismatch(
             fmt::format("{}: belongs to another scene (its {} is another); run without --resume to start anew, or "

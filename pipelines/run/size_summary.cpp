@@ -52,6 +52,7 @@ SizesSummary summary_of(const DrawnSizes& sizes) {
   const Worst worst = worst_of(sizes);
   SizesSummary out{.of = sizes.of,
                    .form = to_string(sizes.asked.form()),
+                   .dimension = sizes.asked.dimension(),
                    .samples = static_cast<std::int64_t>(sizes.samples.size()),
                    .grains = worst.grains,
                    .largest_difference = worst.difference,
@@ -92,13 +93,13 @@ void add_sizes(Findings& out, const std::vector<DrawnSizes>& all) {
     if (sizes.samples.empty()) continue;
     const Worst worst = worst_of(sizes);
     const double share = largest_share(sizes, worst.grains);
+    const char* whole = share_of(sizes.asked.dimension());
     out.add("sizes of " + sizes.of, {{"largest_difference", worst.difference}, {"largest_grain", share}},
-            fmt::format("{}: {}; passing differs from what is asked by at most {:.2g} % of the volume, {:.0f} grains",
-                        sizes.of, to_string(sizes.asked.form()), 100.0 * worst.difference, worst.grains));
+            fmt::format("{}: {}; passing differs from what is asked by at most {:.2g} % of the {}, {:.0f} grains",
+                        sizes.of, to_string(sizes.asked.form()), 100.0 * worst.difference, whole, worst.grains));
     if (share > kCoarse)
-      out.warn(
-          fmt::format("{}: the largest is {:.2g} of the volume of all {:.0f}: so few cannot follow the distribution",
-                      sizes.of, share, worst.grains));
+      out.warn(fmt::format("{}: the largest is {:.2g} of the {} of all {:.0f}: so few cannot follow the distribution",
+                           sizes.of, share, whole, worst.grains));
   }
 }
 

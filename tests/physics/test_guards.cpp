@@ -182,6 +182,20 @@ TEST(Guards, GrainsBehindAWallHaveEscaped) {
   EXPECT_NE(r.reason.find("particle 0 has escaped: its centre is behind a wall"), std::string::npos) << r.reason;
 }
 
+/// Behind two walls and outside the room: one grain.
+TEST(Guards, AGrainThatLeftInSeveralWaysIsOne) {
+  std::string walls;
+  for (const char* normal : {"[0.0, 0.0, 1.0]", "[0.0, 1.0, 0.0]"})
+    walls += std::string("[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = ") + normal +
+             "\nmaterial = \"glass\"\n";
+  const ParticlesScene scene = read_particles_scene(Scene::parse(
+      head(1.0) + particle("0.0, -0.001, -0.001", "0.0, 0.0, 0.0") + particle("0.0, 0.05, 0.05", "0.0, 0.0, 0.0") +
+          walls + "[time]\nend = 1e-6\nstep = 1e-6\n[guards.escape]\nlow = [-1.0, 0.0, 0.0]\naction = \"count\"\n",
+      "scene.toml"));
+  for (const std::string& remark : scene.remarks) EXPECT_EQ(remark.find("more)"), std::string::npos) << remark;
+  EXPECT_EQ(run_particles(scene, {}).guards.escape.worst, 1.0);
+}
+
 TEST(Guards, AWallThatItsLoadMovesMustNotRunAway) {
   const std::string lid =
       "[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, 0.05]\nnormal = [0.0, 0.0, -1.0]\nmaterial = \"glass\"\n"

@@ -199,9 +199,66 @@ steps = 1000
   std::string apart = text;
   apart.replace(apart.find("0.015"), 5, "0.025");
   EXPECT_TRUE(warned(scene_facts(apart), "the step is 0.50 sqrt(m/k)"));
-  EXPECT_NE(found["limited_by"].get<std::string>().find("set by particle"), std::string::npos);
+  EXPECT_NE(found["limited_by"].get<std::string>().find("set by the contacts at the start"), std::string::npos);
   // Of the state as it is given, not of where some steps bring it.
   EXPECT_EQ(found["contacts"], 1);
+}
+
+/// What the step comes from, and what comes out of times that are no whole numbers of steps.
+TEST_F(Check, WhatTheStepIsAndWhatItMakesOfTimesIsSaid) {
+  const auto pair = [](const std::string& velocity, const std::string& time) {
+    return "kind = \"particles\"\n[material.glass]\ndensity = 2500\n[[contact]]\npair = [\"glass\", \"glass\"]\nlaw = "
+           "\"linear-spring\"\nnormal_stiffness = 1000\nrestitution = 0.9\nmu = 0\n[[particle]]\nmaterial = "
+           "\"glass\"\nradius = 0.001\nposition = [0, 0, 0]\n" +
+           velocity + "[[particle]]\nmaterial = \"glass\"\nradius = 0.001\nposition = [0.003, 0, 0]\n[time]\n" + time;
+  };
+  const auto limited_by = [&](const std::string& text) { return scene_facts(text)["limited_by"].get<std::string>(); };
+  const std::string moves = "velocity = [1, 0, 0]\n";
+  EXPECT_NE(limited_by(pair("", "end = 1e-3\n")).find("set by particle"), std::string::npos);
+  EXPECT_NE(limited_by(pair(moves, "end = 1e-3\n")).find("set by the shortest impact: 1/200"), std::string::npos);
+  EXPECT_NE(limited_by(pair("", "end = 1e-9\n")).find("set by the end"), std::string::npos);
+  EXPECT_EQ(limited_by(pair(moves, "end = 1e-3\nstep = 1e-6\n")), "given by the scene");
+  const json uneven = scene_facts(pair("", "end = 1e-5\nstep = 3e-6\n[output]\nevery = 4.6e-6\n"));
+  EXPECT_TRUE(warned(uneven, "end = 1e-05 s comes out as 1.2e-05 s")) << uneven["warnings"];
+  EXPECT_TRUE(warned(uneven, "every = 4.6e-06 s comes out as 6e-06 s")) << uneven["warnings"];
+  EXPECT_EQ(scene_facts(pair("", "end = 1.2e-5\nstep = 3e-6\n[output]\nevery = 6e-6\n"))["warnings"], json::array());
+  EXPECT_TRUE(warned(scene_facts(pair("", "end = 1e-3\n[output]\nevery = 1e-9\n")), "every = 1e-09 s comes out as"));
+  const json lost = scene_facts(pair("velocity = [1000, 0, 0]\n", "end = 1e-3\nstep = 2e-6\n"));
+  EXPECT_TRUE(warned(lost, "particle 0 moves 2 of its radius in one step")) << lost["warnings"];
+}
+
+TEST_F(Check, OptionsOfTheCommandLineAreThoseOfTheRunOrRefused) {
+  const std::string text =
+      "kind = \"particles\"\n[material.m]\ndensity = 1\n[[contact]]\npair = [\"m\", \"m\"]\nlaw = \"linear-spring\"\n"
+      "normal_stiffness = 1\nrestitution = 1\nmu = 0\n[[particle]]\nmaterial = \"m\"\nradius = 1e-3\nposition = [0, 0, "
+      "0]\n[time]\nsteps = 1\n";
+  (void)scene_facts(text);
+  const auto said = [&](const std::string& more) {
+    return run_the_program("check '" + directory_.file("scene.toml") + "' " + more);
+  };
+  EXPECT_NE(said("--threads 1").output.find("with 1 threads"), std::string::npos) << said("--threads 1").output;
+  for (const char* option : {"--law law.toml", "--bands 50"}) {
+    const test::ProgramOutcome refused = said(option);
+    EXPECT_EQ(refused.status, 2) << refused.output;
+    EXPECT_NE(refused.output.find("goes with scenes of kind \"macro\""), std::string::npos) << refused.output;
+  }
+}
+
+/// With the contacts that some frames keep.
+TEST_F(Check, TheFileOfARunIsAsLargeAsSaid) {
+  std::string text =
+      "kind = \"particles\"\n[material.glass]\ndensity = 2500\n[[contact]]\npair = [\"glass\", \"glass\"]\nlaw = "
+      "\"linear-spring\"\nnormal_stiffness = 1000\nrestitution = 0.9\nmu = 0\n[cell]\nsize = [7.9e-3, 7.9e-3, "
+      "7.9e-3]\nperiodic = [true, true, true]\n[time]\nstep = 1e-6\nsteps = 500\n[output]\nevery = 5e-6\n";
+  for (int n = 0; n < 64; ++n)
+    text += "[[particle]]\nmaterial = \"glass\"\nradius = 1e-3\nposition = [" + std::to_string(1.975e-3 * (n % 4)) +
+            ", " + std::to_string(1.975e-3 * (n / 4 % 4)) + ", " + std::to_string(1.975e-3 * (n / 16)) + "]\n";
+  const json found = scene_facts(text);
+  const test::ProgramOutcome ran = run_the_program("microsim '" + directory_.file("scene.toml") + "' --quiet --out '" +
+                                                   directory_.file("out") + "'");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  const auto real = static_cast<double>(fs::file_size(directory_.file("out/run.h5")));
+  EXPECT_NEAR(found["disk_bytes"].get<double>(), real, 0.3 * real);
 }
 
 TEST_F(Check, ParticlesThatNoWallOrCellHoldsAreSaid) {

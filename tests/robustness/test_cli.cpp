@@ -71,6 +71,10 @@ TEST(CommandLine, BadOptionsAreBadInput) {
   expect("calibrate x.csv --resume", 2, "--resume: calibrate saves nothing on its way");
   expect("compare a b --set macro.bodies=3", 2, "--set: compare reads no scene");
   expect("report a --seed 3", 2, "--seed: report draws no random numbers");
+  expect("report a --out b", 2, "--out: report makes no run directory; the page stands in DIR");
+  expect("check a --out b", 2, "--out: check makes no run directory");
+  expect("check absent.csv --law law.toml", 2, "--law: absent.csv is no scene");
+  expect("check absent.csv --bands 50", 2, "--bands: absent.csv is no scene");
   expect("check absent.csv --set unloading=drop", 2, "--set: absent.csv is no scene");
   expect("run x.toml --law l.toml", 2, "--law");
 }

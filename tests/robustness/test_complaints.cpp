@@ -64,6 +64,16 @@ TEST(Complaints, JsonSaysKeyValueAllowedAndNearest) {
   EXPECT_FALSE(by_key["nu"].contains("line"));
 }
 
+/// A name of a file may look like a place in one.
+TEST(Complaints, JsonOfALineThatIsNoNumberOfALine) {
+  const ProgramOutcome refused = run_the_program("check 'a:99999999999999999999: b' --json", "/dev/null");
+  EXPECT_EQ(refused.status, 4) << refused.output;
+  const json told = json::parse(refused.output);
+  EXPECT_FALSE(told.at("errors").at(0).contains("line"));
+  EXPECT_NE(told.at("errors").at(0).at("message").get<std::string>().find("a:99999999999999999999: b"),
+            std::string::npos);
+}
+
 TEST(Complaints, JsonAlsoForTheCommandLine) {
   const ProgramOutcome refused = run_the_program("microsim --threads none scene.toml --json", "/dev/null");
   EXPECT_EQ(refused.status, 2);

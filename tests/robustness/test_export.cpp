@@ -86,11 +86,28 @@ TEST(Export, LeavesNothingOfAnEarlierExportAndEverythingElse) {
     // Of another run with other series too.
     exported(runs.out("other"), to);
     EXPECT_EQ(exported(runs.out("short"), to), expected) << form;
-    // Earlier versions kept no list: states of the same series go by their names.
+    // What no export listed is of somebody else, ...
     exported(runs.out("long"), to);
     fs::remove(to + "/.export-" + form);
-    EXPECT_EQ(exported(runs.out("short"), to), expected) << form;
-    for (const std::string& name : mine) EXPECT_EQ(read_text(to + "/" + name), "mine");
+    const std::set<std::string> before = names(to);
+    const ProgramOutcome refused =
+        run_the_program("export " + quoted(runs.out("short")) + " --to " + form + " --out " + quoted(to));
+    EXPECT_EQ(refused.status, 2) << refused.output;
+    EXPECT_NE(refused.output.find("is there already"), std::string::npos) << refused.output;
+    EXPECT_EQ(names(to), before);
+    // ... but for states of the same series where a version without lists has named the directory.
+    const std::string named = runs.out("of-" + form) + "/export-" + form;
+    fs::create_directory(runs.out("of-" + form));
+    fs::rename(to, named);
+    EXPECT_EQ(exported(runs.out("short"), named), expected) << form;
+    for (const std::string& name : mine) EXPECT_EQ(read_text(named + "/" + name), "mine");
+    // An index may have the name of somebody's table.
+    if (form != "csv") continue;
+    fs::create_directory(to);
+    write_text_atomic(to + "/particles.csv", "mine");
+    EXPECT_EQ(run_the_program("export " + quoted(runs.out("short")) + " --to csv --out " + quoted(to)).status, 2);
+    EXPECT_EQ(names(to), std::set<std::string>{"particles.csv"});
+    EXPECT_EQ(read_text(to + "/particles.csv"), "mine");
   }
 }
 

@@ -59,8 +59,8 @@ class ParticlesBadInput : public ::testing::Test {
   void expect_text(const std::string& text, const std::vector<std::string>& words,
                    const std::string& command = "microsim") {
     write_text_atomic(directory_.file("scene.toml"), text);
-    const ProgramOutcome outcome = run_the_program(command + " '" + directory_.file("scene.toml") +
-                                                   "' --quiet --out '" + directory_.file("out") + "'");
+    const std::string out = command == "check" ? "" : " --out '" + directory_.file("out") + "'";
+    const ProgramOutcome outcome = run_the_program(command + " '" + directory_.file("scene.toml") + "' --quiet" + out);
     EXPECT_EQ(outcome.status, 2) << outcome.output << "\n" << text;
     for (const std::string& word : words)
       EXPECT_NE(outcome.output.find(word), std::string::npos) << word << " not in: " << outcome.output;
@@ -162,6 +162,7 @@ TEST_F(ParticlesBadInput, Walls) {
          "material = \"rigid\"\nname = \"a\"\n[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.0, "
          "0.0, 1.0]\nmaterial = \"rigid\"\nname = \"a\"\n",
          {"scene.toml:38: name", "scene.toml:28"});
+  expect("material = \"rigid\"\n", "material = \"rigid\"\nname = \"none\"\n", {"scene.toml:32: name", "inside"});
 }
 
 TEST_F(ParticlesBadInput, PlacesThatNothingHolds) {
@@ -199,6 +200,7 @@ TEST_F(ParticlesBadInput, CellTimeAndOutput) {
   expect("end = 1e-3", "end = 1e-3\n[output]\nrecord = false\nevery = 1e-4", {"scene.toml:36: every", "record"});
   expect("end = 1e-3", "end = 1e-3\n[output]\nrecord = 0", {"scene.toml:35: record"});
   expect("end = 1e-3", "end = 1e-3\n[output]\nevery = 0.0", {"scene.toml:35: every"});
+  expect("end = 1e-3", "end = 1e-3\nstep = 1e-6\n[output]\nevery = 5e-7", {"scene.toml:36: every", "at least 1e-06 s"});
   expect("end = 1e-3", "end = 1e-3\n[output]\nevry = 1e-4", {"scene.toml:35: unknown key 'evry'", "'every'"});
   expect("end = 1e-3", "end = 1e-3\n[checkpoint]\nevery_steps = -1", {"scene.toml:35: every_steps"});
 }
@@ -208,6 +210,8 @@ TEST_F(ParticlesBadInput, CellsFromFilesAndNarrowCells) {
   expect("[time]", "[cell]\nsize = \"file\"\n" + periodic, {"scene.toml:33: size", "[particles] file"});
   expect("[time]", "[cell]\nsize = \"fill\"\n" + periodic, {"scene.toml:33: size", "nearest is \"file\""});
   expect("[time]", "[cell]\nsize = [1.0, 0.039, 1.0]\n" + periodic, {"scene.toml:33: size", "axis y", "0.04"});
+  // Neighbour lists need a little more room than two diameters.
+  expect("[time]", "[cell]\nsize = [1.0, 0.0401, 1.0]\n" + periodic, {"scene.toml:33: size", "axis y", "0.0401606"});
   const std::string cell = "[cell]\nsize = \"file\"\n" + periodic;
   write_text_atomic(directory_.file("many.xyzr"), "1 0 1 1\n0 0 1 0.01\n");
   expect("[time]", "[particles]\nfile = \"many.xyzr\"\nmaterial = \"glass\"\n" + cell, {"many.xyzr:1", "above 0"});

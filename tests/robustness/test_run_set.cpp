@@ -155,7 +155,7 @@ TEST_F(RunSet, FinishedRunsAreNotRepeatedAndMoreCanBeAdded) {
   stiffer.pairs[0].normal.a.value *= 2.0;
   stiffer.pairs[0].normal.c.value *= 2.0;
   save_card(stiffer, file("law.toml"));
-  expect(program("sweep", "--over macro.bodies=6,7 --resume " + out), 2, {"its law is another"});
+  expect(program("sweep", "--over macro.bodies=6,7 --resume " + out), 2, {"its law or data file is another"});
   // Anew: runs of the earlier sweep go, files of others stay.
   write_text_atomic(file("out") + "/bodies=7/notes.txt", "mine");
   expect(program("sweep", "--over macro.bodies=6 " + out), 0);
@@ -163,6 +163,37 @@ TEST_F(RunSet, FinishedRunsAreNotRepeatedAndMoreCanBeAdded) {
   EXPECT_FALSE(fs::exists(file("out") + "/bodies=8"));
   EXPECT_FALSE(fs::exists(file("out") + "/bodies=7/macro.h5"));
   EXPECT_EQ(read_text(file("out") + "/bodies=7/notes.txt"), "mine");
+}
+
+/// A file that a scene takes particles from may change while its text stays.
+TEST_F(RunSet, FinishedRunsOfAnotherParticleFileAreRefused) {
+  write_text_atomic(file("two.toml"), R"(kind = "particles"
+[material.glass]
+density = 2500.0
+[[contact]]
+pair = ["glass", "glass"]
+law = "linear-spring"
+normal_stiffness = 1000.0
+restitution = 0.9
+mu = 0.0
+[particles]
+file = "two.xyzr"
+material = "glass"
+[cell]
+size = "file"
+periodic = [true, true, true]
+[time]
+steps = 10
+)");
+  write_text_atomic(file("two.xyzr"), "2 1 1 1\n0 0 0 0.001\n0 0 0.0019 0.001\n");
+  const std::string command = "sweep " + quoted("two.toml") + "--quiet --threads 1 --out " + quoted("out") +
+                              "--resume --over contact.0.restitution=0.9,0.8";
+  expect(run_the_program(command), 0);
+  expect(run_the_program(command + ",0.7"), 0);
+  for (const char* changed : {"2 1 1 1\n0 0 0 0.001\n0 0 0.0015 0.001\n", "2 1 1 2\n0 0 0 0.001\n0 0 0.0019 0.001\n"}) {
+    write_text_atomic(file("two.xyzr"), changed);
+    expect(run_the_program(command), 2, {"its law or data file is another"});
+  }
 }
 
 /// Stopped in the midst and gone on with: the same numbers as without a stop.

@@ -92,11 +92,11 @@ TEST(ContactWatch, FindsTheDeepestContactAndWhatIsBehindAPlane) {
   ContactWatch<3> watch = watch_contacts(s);
   EXPECT_NEAR(watch.overlap, 0.9, 1e-12) << "of the large sphere with the plane";
   EXPECT_EQ(watch.j, 2);
-  EXPECT_EQ(watch.behind_planes, 0);
+  EXPECT_TRUE(watch.behind_planes.empty());
   s.particles.sphere[2].x[2] = 0.05;
   force_pass(s, 0.0);
   watch = watch_contacts(s);
-  EXPECT_EQ(watch.behind_planes, 1);
+  EXPECT_EQ(watch.behind_planes, std::vector<Slot>{0});
   EXPECT_EQ(watch.behind, 0);
 }
 

@@ -1,7 +1,9 @@
 // Where radii are drawn a distribution of sizes is what they follow; what is measured on it remembers it.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "common/core/error.h"
@@ -142,6 +144,72 @@ TEST(DrawnSizes, OfSingleParticlesWithoutOverlapAcrossTheCell) {
   };
   EXPECT_EQ(place({"seed=2"}), other.system.particles.sphere[30].x[0]);
   EXPECT_EQ(place({"seed=3"}, 2), other.system.particles.sphere[30].x[0]);
+}
+
+std::string drawn_scene(const std::string& particles, const std::string& more) {
+  return "kind = \"particles\"\n[material.m]\ndensity = 1.0\nE = 1e6\nnu = 0.2\n[[contact]]\npair = [\"m\", "
+         "\"m\"]\nlaw = \"hertz-tsuji\"\nrestitution = 0.5\nmu = 0.5\n[time]\nend = 1e-5\n[particles]\nmaterial = "
+         "\"m\"\nsizes = { form = \"list\", radii = [1.0] }\n" +
+         particles + more;
+}
+
+/// The least of (distance - radii) over all pairs, by the nearest images in a cell of edge 10 along x.
+double least_gap(const ParticlesScene& scene) {
+  const auto& sphere = scene.system.particles.sphere;
+  double least = 1e300;
+  for (std::size_t i = 0; i < sphere.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      Vec3 apart = sphere[i].x - sphere[j].x;
+      apart[0] -= 10.0 * std::round(apart[0] / 10.0);
+      least = std::min(least, norm(apart) - sphere[i].r - sphere[j].r);
+    }
+  return least;
+}
+
+/// In a box of places of their own too, within the cell or across its faces.
+TEST(DrawnSizes, ParticlesStandClearOfImagesInEveryBoxOfPlaces) {
+  const std::string cell =
+      "[cell]\nsize = [10.0, 10.0, 10.0]\nperiodic = [true, false, false]\n[[particle]]\nmaterial = \"m\"\nradius = "
+      "1.0\nposition = [9.9, 1.5, 1.5]\n";
+  for (const char* low : {"0.0", "-3.0", "7.0", "17.0"}) {
+    const double from = std::stod(low);
+    for (int seed = 1; seed <= 5; ++seed) {
+      const std::string box =
+          fmt::format("count = 2\nseed = {}\nlow = [{}, 0.0, 0.0]\nhigh = [{}, 3.0, 8.0]\n", seed, from, from + 3.5);
+      EXPECT_GE(least_gap(read_particles_scene<3>(Scene::parse(drawn_scene(box, cell), "s"))), 0.0) << box;
+    }
+  }
+  const std::string whole = "count = 20\nlow = [-4.0, 0.0, 0.0]\nhigh = [6.0, 10.0, 10.0]\n";
+  EXPECT_GE(least_gap(read_particles_scene<3>(Scene::parse(drawn_scene(whole, cell), "s"))), 0.0);
+  const std::string wide = "count = 2\nlow = [0.0, 0.0, 0.0]\nhigh = [10.5, 3.0, 3.0]\n";
+  try {
+    (void)read_particles_scene<3>(Scene::parse(drawn_scene(wide, cell), "s"));
+    ADD_FAILURE();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("wider than the cell, which is periodic along x"), std::string::npos)
+        << e.what();
+  }
+}
+
+/// Spheres beside each other, each filled.
+TEST(DrawnSizes, ParticlesAreWithinOneOfSeveralSpheres) {
+  std::string walls;
+  for (const char* x : {"0.0", "20.0"})
+    walls += std::string("[[wall]]\nshape = \"sphere-inside\"\ncenter = [") + x +
+             ", 0.0, 0.0]\nradius = 5.0\nmaterial = \"m\"\n";
+  const ParticlesScene scene = read_particles_scene<3>(
+      Scene::parse(drawn_scene("count = 20\nlow = [-5.0, -5.0, -5.0]\nhigh = [25.0, 5.0, 5.0]\n", walls), "s"));
+  const auto& p = scene.system.particles;
+  std::array<int, 2> held{};
+  for (Slot i = 0; i < p.grains; ++i) {
+    const auto& a = p.sphere[static_cast<std::size_t>(i)];
+    const Slot shell = p.shell[static_cast<std::size_t>(i)];
+    ASSERT_GE(shell, p.grains);
+    EXPECT_LE(norm(a.x - p.sphere[static_cast<std::size_t>(shell)].x) + a.r, 5.0);
+    ++held[static_cast<std::size_t>(shell - p.grains)];
+  }
+  EXPECT_GT(held[0], 0);
+  EXPECT_GT(held[1], 0);
 }
 
 /// Where nothing is drawn a seed would have no effect; two of them would be one too many.

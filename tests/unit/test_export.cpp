@@ -5,7 +5,10 @@
 #include <sstream>
 
 #include "common/core/error.h"
+#include "common/data/snapshot_io.h"
+#include "common/io/text_file.h"
 #include "pipelines/export/export.h"
+#include "tests/support/temporary_directory.h"
 
 namespace {
 
@@ -194,6 +197,40 @@ TEST(ExportFiles, TablesHaveUnitsAndAsManyCellsAsTheirHeader) {
   EXPECT_EQ(contacts[1][1], "1");
   EXPECT_EQ(contacts[3][1], "");
   EXPECT_EQ(contacts[3][2], "0");
+}
+
+/// Strains of unloading and of a hold: programs that sort by time would mix such states.
+TEST(ExportFiles, TimesGrowFromStateToState) {
+  const std::vector<double> grow{0.0, 0.25, 1.0};
+  EXPECT_EQ(times_of(grow), grow);
+  EXPECT_EQ(times_of({0.0, 0.04, 0.03, 0.04, 0.04}), (std::vector<double>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(times_of({0.5, 0.5}), (std::vector<double>{0, 1}));
+  EXPECT_EQ(times_of({0.5}), std::vector<double>{0.5});
+}
+
+/// States of a file, as an index and as XDMF name them.
+TEST(ExportFiles, IndicesSayUnitsAndNumberWhatGoesBack) {
+  const test::TemporaryDirectory directory;
+  Snapshot s = a_state();
+  s.series = "free-0";
+  s.time = Snapshot::kNone;
+  std::vector<Snapshot> states;
+  for (const double strain : {0.0, 0.02, 0.01}) {
+    s.strain = strain;
+    states.push_back(s);
+  }
+  const std::string file = directory.file("states_macro.h5");
+  save_snapshots(states, file, {});
+  (void)export_states(file, ExportFormat::csv, directory.file("csv"));
+  EXPECT_EQ(cells_of(read_text(directory.file("csv/free-0.csv")))[0][2], "strain [1]");
+  EXPECT_EQ(cells_of(read_text(directory.file("csv/free-0.csv")))[3][2], "0.01");
+  (void)export_states(file, ExportFormat::vtp, directory.file("vtp"));
+  const std::string index = read_text(directory.file("vtp/free-0_particles.pvd"));
+  EXPECT_NE(index.find("timestep=\"2\" part=\"0\" file=\"free-0_particles_000002.vtp\""), std::string::npos) << index;
+  write_states_xdmf(file);
+  const std::string xdmf = read_text(directory.file("states_macro.xdmf"));
+  EXPECT_NE(xdmf.find("<Time Value=\"2\"/>"), std::string::npos) << xdmf;
+  EXPECT_EQ(xdmf.find("<Time Value=\"0.01\"/>"), std::string::npos) << xdmf;
 }
 
 TEST(ExportFiles, UnknownFormsAreRefused) {

@@ -118,7 +118,7 @@ TEST(PackingData, StatesGiveWayFirstThenWeakContactsThenSeries) {
   const report::PackingState& state = series[0].states.at(0);
   EXPECT_LE(series[0].bytes(), one / 2);
   EXPECT_EQ(state.grains(), 500u);
-  EXPECT_GT(state.contacts(), 100u);
+  EXPECT_GT(state.contacts(), 50u);
   EXPECT_EQ(state.forces.back(), 1500.0F);
   EXPECT_EQ(state.forces.front(), 1501.0F - static_cast<float>(state.contacts()));
   EXPECT_EQ(said.size(), 2u);
@@ -127,6 +127,26 @@ TEST(PackingData, StatesGiveWayFirstThenWeakContactsThenSeries) {
   EXPECT_NE(report::fit_into(series, one / 10).back().find("500 grains are too many"), std::string::npos);
   ASSERT_EQ(series.size(), 1u);
   EXPECT_EQ(series[0].states.at(0).grains(), 10u);
+}
+
+/// A page that lacks contacts still says of every grain how many it has, and what they carry.
+TEST(PackingData, WhereContactsAreLeftOutGrainsKnowTheirOwn) {
+  std::vector<report::PackingSeries> series{large_series(500, 1)};
+  const report::PackingState all = series[0].states[0];
+  EXPECT_TRUE(all.touching.empty());
+  report::fit_into(series, 2 * all.bytes() / 3);
+  const report::PackingState& state = series[0].states.at(0);
+  ASSERT_LT(state.contacts(), all.contacts());
+  ASSERT_EQ(state.touching, std::vector<std::uint16_t>(500, 6));
+  EXPECT_EQ(state.load[1], 1.0F + 2.0F + 501.0F + 502.0F + 1001.0F + 1002.0F);
+  EXPECT_LE(series[0].bytes(), 2 * all.bytes() / 3);
+  const std::size_t kept = state.contacts();
+  EXPECT_GT(kept, 100u);
+  // Of equal forces as many stay as there is room for.
+  series[0].states[0] = all;
+  for (float& force : series[0].states[0].forces) force = 1.0F;
+  report::fit_into(series, 2 * all.bytes() / 3);
+  EXPECT_EQ(series[0].states.at(0).contacts(), kept);
 }
 
 TEST(PackingData, NothingInItEndsTheScript) {

@@ -87,6 +87,26 @@ TEST(ParticlesScene, AutomaticStepResolvesImpactsAndDividesTheEnd) {
   EXPECT_DOUBLE_EQ(scene.time.step * static_cast<double>(scene.time.steps), 0.01);
 }
 
+/// Also where nothing moves yet: a cell that is sheared, a plane that a load drives.
+TEST(ParticlesScene, AutomaticStepResolvesImpactsThatAreDriven) {
+  const std::string pair = kHead + particle(0.2, 0.5, 0.5, 0.01) + particle(0.8, 0.5, 0.5, 0.01);
+  const std::string cell = "[cell]\nsize = [1.0, 1.0, 1.0]\nperiodic = [true, true, true]\n";
+  const std::string end = "[time]\nend = 1.0\n";
+  EXPECT_TRUE(std::isinf(scene_of_text(pair + cell + end).time.contact_time));
+  const SceneTime sheared = scene_of_text(pair + cell + "shear_rate = 50.0\n" + end).time;
+  const SceneTime same =
+      scene_of_text(pair + particle(0.5, 0.2, 0.5, 0.01, "velocity = [50.0, 0.0, 0.0]\n") + end).time;
+  EXPECT_DOUBLE_EQ(sheared.contact_time, same.contact_time);
+  EXPECT_LE(sheared.step, sheared.contact_time / 200.0);
+  const std::string lid =
+      "[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, 0.5]\nnormal = [1.0, 0.0, 0.0]\nmaterial = \"glass\"\nmotion = "
+      "\"force\"\nmass = 0.1\nforce = ";
+  const SceneTime pressed = scene_of_text(pair + lid + "500.0\n" + end).time;
+  EXPECT_TRUE(std::isfinite(pressed.contact_time));
+  EXPECT_LE(pressed.step, pressed.contact_time / 200.0);
+  EXPECT_TRUE(std::isinf(scene_of_text(pair + lid + "-500.0\n" + end).time.contact_time)) << "it goes away";
+}
+
 TEST(ParticlesScene, FilesOfManySpheresPlainAndPacked) {
   const TemporaryDirectory directory;
   const std::string content = "2 1 1 1\n0.0\t0.25 0.5 0.01\n1e-1 0.0 0.0 2.0e-2\n";

@@ -155,7 +155,60 @@ TEST(Summaries, TheConfirmedCurveIsAsSureAsItsPackingsAreMany) {
 TEST(Summaries, OfVariantsLast) { expect_lasting(variants(), report::powder_variants_section); }
 TEST(Summaries, OfMacroRunsLast) { expect_lasting(macro(), report::cost_section); }
 TEST(Summaries, OfParticlesLast) { expect_lasting(particles(), report::particles_section); }
+
+/// Whatever else there is to say of the run: here a number that no law uses.
+TEST(Summaries, OfParticlesThatAreLostSayItFirst) {
+  const ParticlesScene scene = read_particles_scene(Scene::parse(R"(kind = "particles"
+[material.glass]
+density = 2500.0
+E = "1 GPa"
+nu = 0.2
+[[contact]]
+pair = ["glass", "glass"]
+law = "linear-spring"
+normal_stiffness = 1000.0
+restitution = 1.0
+mu = 0.0
+[[particle]]
+material = "glass"
+radius = 0.001
+position = [0.0, 0.0, 0.0]
+velocity = [1000.0, 0.0, 0.0]
+[time]
+end = 0.002
+step = 2e-6
+)",
+                                                                 "lost.toml"));
+  ASSERT_FALSE(scene.remarks.empty());
+  const auto known = record_of<AnySummary>(json_of(summary_of(scene, run_particles(scene, {}), 0.0)));
+  EXPECT_EQ(known.status, "not usable");
+  ASSERT_EQ(warnings_of(known).size(), 1 + scene.remarks.size());
+  EXPECT_NE(warnings_of(known).front().find("is lost"), std::string::npos) << warnings_of(known).front();
+}
 TEST(Summaries, OfExperimentsLast) { expect_lasting(experiment(), report::laws_section); }
+
+/// Stresses of disks are forces per length, shares of their sizes are of the area; more particles than are listed.
+TEST(Summaries, OfDisksHaveTheirUnits) {
+  ParticlesSummary s;
+  s.dimension = 2;
+  s.particle_count = 1331;
+  s.particles.resize(60);
+  s.contact_state = {{"pressure", 2.0}};
+  SizesSummary sizes;
+  sizes.dimension = 2;
+  sizes.unit = "m";
+  sizes.diameter = {1.0, 2.0};
+  sizes.asked = sizes.obtained = {0.0, 1.0};
+  s.head.sizes = {sizes};
+  report::RunData run;
+  run.summary = json_of(s);
+  for (const RunValue& value : particles_results().values(run))
+    EXPECT_EQ(value.unit, value.name == "pressure" ? "N/m" : value.name.starts_with("kinetic") ? "J" : "");
+  EXPECT_NE(report::particles_section(run).find("The first 50 of 1331."), std::string::npos);
+  const std::string drawn = report::sizes_section(run);
+  EXPECT_NE(drawn.find("% of the area"), std::string::npos);
+  EXPECT_EQ(drawn.find("% of the volume"), std::string::npos);
+}
 
 TEST(Summaries, OfPowdersLast) {
   // A fit that is read has numbers or none; the covariance, which says so when it is written, stays in powder.h5.

@@ -25,4 +25,19 @@ TEST(XyzrFile, PlusSignsAreRead) {
   }
 }
 
+/// Columns of a fixed width that have grown together would give other numbers.
+TEST(XyzrFile, NumbersWithoutABlankBetweenThemAreRefused) {
+  const test::TemporaryDirectory directory;
+  const std::string path = directory.file("a.xyzr");
+  for (const char* wrong : {"1.25001.5000 2.0 0.25", "1.0-2.0 3.0 0.25", "1.0,2.0 3.0 0.25", "1.0 2.0 3.0 0.25x"}) {
+    write_text_atomic(path, std::string("1 1 1 1\n") + wrong + "\n");
+    try {
+      (void)read_xyzr(path);
+      ADD_FAILURE() << wrong;
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find(":2: must be four numbers with blanks"), std::string::npos) << e.what();
+    }
+  }
+}
+
 }  // namespace

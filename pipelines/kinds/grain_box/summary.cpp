@@ -134,8 +134,9 @@ nlohmann::json arrangements_json(const std::vector<GrainBoxResult>& results) {
 
 std::vector<std::string> grain_box_remarks(const std::vector<GrainBoxResult>& results) {
   std::vector<std::string> remarks;
-  for (const GrainBoxResult& r : results) {
+  for (const GrainBoxResult& r : results)  // first, as the first remark is taken for the reason
     if (!r.usable) remarks.push_back(fmt::format("pack '{}' broke off: {}", r.spec.name, r.reason));
+  for (const GrainBoxResult& r : results) {
     if (!r.state.failures.empty())
       remarks.push_back(
           fmt::format("pack '{}': {} tries of increments did not reach equilibrium and were halved or repeated; "

@@ -267,7 +267,7 @@ std::string evaluations_table(const InverseSetup& setup, const InverseResult& r)
 }
 
 std::vector<std::string> remarks_of(const InverseSetup& setup, const InverseResult& r, double misfit) {
-  std::vector<std::string> out = setup.remarks;
+  std::vector<std::string> out;
   const InverseAnswer& a = r.answer;
   const std::size_t d = setup.search.size();
   if (!(misfit <= kReached))
@@ -276,6 +276,7 @@ std::vector<std::string> remarks_of(const InverseSetup& setup, const InverseResu
                     "the ranges, or "
                     "search another parameter",
                     misfit, kReached));
+  out.insert(out.end(), setup.remarks.begin(), setup.remarks.end());
   for (std::size_t k = 0; k < d; ++k)
     if (a.open[k])
       out.push_back(fmt::format("{}: the interval reaches the end of the range, the target does not close it",

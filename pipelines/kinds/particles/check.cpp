@@ -75,14 +75,32 @@ void warn_of_radius(const System<D>& s, Findings& out) {
   if (D == 3) out.warn_of_metres("the largest particle", largest);
 }
 
-/// Frames of the trajectory: place, turn, velocity and spin of every body.
+/// Frames of the trajectory with place, velocity and spin of every body, and the contacts that some of them keep: as
+/// many as at the start.
 template <int D>
-double recorded_bytes(const ParticlesSceneOf<D>& scene, const System<D>& s) {
-  constexpr double kBytesPerBody = 13.0 * 8.0;
+double recorded_bytes(const ParticlesSceneOf<D>& scene, std::int64_t contacts) {
+  constexpr double kBytesPerBody = 9.0 * 8.0;
+  constexpr double kBytesPerContact = 18.0 * 8.0;  // pair, ends, point, force, its normal part, shift
   if (!scene.record) return 0.0;
-  const double frames =
-      scene.output_stride > 0 ? 2.0 + static_cast<double>(scene.time.steps / scene.output_stride) : 2.0;
-  return frames * kBytesPerBody * static_cast<double>(s.particles.size());
+  const auto frames = static_cast<double>(scene.frames());
+  const double with_contacts = std::min(frames, static_cast<double>(scene.snapshots));
+  return frames * kBytesPerBody * static_cast<double>(scene.system.particles.size()) +
+         with_contacts * kBytesPerContact * static_cast<double>(contacts);
+}
+
+/// A run looks for such particles before its first step and ends there.
+template <int D>
+void warn_of_fast(const System<D>& s, double step, Findings& out) {
+  for (Slot i = 0; i < s.particles.grains; ++i) {
+    const auto u = static_cast<std::size_t>(i);
+    const double move = norm(s.particles.velocity[u]) * step / s.particles.sphere[u].r;
+    if (move < 1.0) continue;
+    out.warn(
+        fmt::format("particle {} moves {:.3g} of its radius in one step, from 1 on a particle counts as lost: the "
+                    "run will end at once; take a step below {:.3g} s",
+                    i, move, step / move));
+    return;
+  }
 }
 
 void warn_of_step(const SceneTime& time, Findings& out) {
@@ -115,7 +133,8 @@ void check_particles(const ParticlesSceneOf<D>& scene, Findings& out) {
   out.add("bodies", s.particles.size(),
           fmt::format("{} {}, {} walls", s.particles.grains, D == 3 ? "grains" : "disks", scene.wall_name.size()));
   out.add("time_step", scene.time.step,
-          fmt::format("step {:.4g} s to {:.4g} s: {} steps", scene.time.step, scene.time.end, scene.time.steps));
+          fmt::format("step {:.4g} s to {:.4g} s: {} steps", scene.time.step,
+                      scene.time.step * static_cast<double>(scene.time.steps), scene.time.steps));
   add_sizes(out, drawn_sizes(scene));
   warn_of_radius(s, out);
   if (limit.body >= 0)
@@ -136,11 +155,12 @@ void check_particles(const ParticlesSceneOf<D>& scene, Findings& out) {
                       totals.coordination_number, first.contacts.size()));
   const double memory = estimated_memory(s.particles.grains, static_cast<double>(s.contacts.size()), D);
   out.add("bytes", memory, fmt::format("memory: about {:.1f} MB beside the program's own", memory / 1e6));
-  const double recorded = recorded_bytes(scene, s);
+  const double recorded = recorded_bytes(scene, totals.contacts);
   if (recorded > 0.0) out.add_disk(recorded);
   add_overlap(first, out);
   for (const std::string& remark : scene.remarks) out.warn(remark);
   warn_of_step(scene.time, out);
+  warn_of_fast(scene.system, scene.time.step, out);
   constexpr double kDay = 86400.0;
   if (seconds > kDay) out.warn("it takes about " + time_text(seconds));
   out.add("seconds", seconds,

@@ -29,15 +29,15 @@ std::string vector_text(const std::vector<double>& v) {
 /// The id of a grain, the name of a wall.
 std::string body_text(const nlohmann::json& body) { return body.is_string() ? body.get<std::string>() : body.dump(); }
 
-/// The first rows, and how many more there are.
+/// The first rows, and how many there are in all; the list may have the first of them alone.
 template <class Row>
-std::string table_of(const std::vector<Row>& list, const std::vector<std::string>& header,
+std::string table_of(const std::vector<Row>& list, std::size_t all, const std::vector<std::string>& header,
                      std::vector<std::string> (*cells)(const Row&)) {
   if (list.empty()) return "";
   HtmlTable table(header);
   for (std::size_t i = 0; i < std::min(kRows, list.size()); ++i) table.row(cells(list[i]));
-  if (list.size() <= kRows) return table.html();
-  return table.html() + paragraph(fmt::format("The first {} of {}.", kRows, list.size()));
+  if (all <= kRows) return table.html();
+  return table.html() + paragraph(fmt::format("The first {} of {}.", kRows, all));
 }
 
 std::vector<std::string> grain_row(const GrainState& s) {
@@ -53,10 +53,11 @@ std::vector<std::string> pair_row(const PairSummary& s) {
 
 std::string particles_section(const RunData& run) {
   const auto summary = run.summary_as<ParticlesSummary>();
-  const std::string states =
-      table_of(summary.particles, {"particle", "position [m]", "velocity [m/s]", "spin [rad/s]"}, grain_row);
-  const std::string contacts = table_of(summary.contacts.value_or(std::vector<PairSummary>{}),
-                                        {"pair", "duration [s]", "largest force [N]", "largest overlap [m]"}, pair_row);
+  const std::string states = table_of(summary.particles, static_cast<std::size_t>(particle_count(summary)),
+                                      {"particle", "position [m]", "velocity [m/s]", "spin [rad/s]"}, grain_row);
+  const std::vector<PairSummary> pairs = summary.contacts.value_or(std::vector<PairSummary>{});
+  const std::string contacts =
+      table_of(pairs, pairs.size(), {"pair", "duration [s]", "largest force [N]", "largest overlap [m]"}, pair_row);
   return section("particles", "Particles at the end",
                  "Position, velocity and spin of every particle at the end of the run.", states) +
          section("contacts", "Contacts", "How long every contact lasted, with its largest force and overlap.",
@@ -240,7 +241,7 @@ void check_particles_file(const std::string& path, Findings& out) {
 std::vector<HeadLine> lines_of(const report::RunData& run) {
   const auto scene = run.summary_as<ParticlesSummary>();
   if (scene.particles.empty()) return {};
-  const std::int64_t count = std::max<std::int64_t>(scene.particle_count, std::ssize(scene.particles));
+  const std::int64_t count = particle_count(scene);
   return {{"Scene", count == 1 ? "1 explicit particle." : fmt::format("{} explicit particles.", count)}};
 }
 
@@ -249,8 +250,8 @@ std::vector<RunValue> values_of(const report::RunData& run) {
   std::vector<RunValue> out;
   if (scene.particles.empty()) return out;
   out.push_back({"kinetic energy at the end", "J", scene.kinetic_energy});
-  for (const auto& [key, name, unit] :
-       {std::tuple{"coordination_number", "coordination number at the end", ""}, {"pressure", "pressure", "Pa"}})
+  for (const auto& [key, name, unit] : {std::tuple{"coordination_number", "coordination number at the end", ""},
+                                        {"pressure", "pressure", scene.dimension == 2 ? "N/m" : "Pa"}})
     if (const auto at = scene.contact_state.find(key); at != scene.contact_state.end() && at->is_number())
       out.push_back({name, unit, at->get<double>()});
   if (!scene.contacts || scene.contacts->empty()) return out;

@@ -36,7 +36,8 @@ template <int D>
 ExitStatus run_scene(const Scene& scene, const CommonOptions& options) {
   const double memory_before = peak_memory();
   ParticlesSceneOf<D> setup = read_particles_scene<D>(scene, seed_of(options));
-  const Run run(scene, options, "microsim", {.seed = setup.seed, .files = contact_law_files(scene)});
+  const Run run(scene, options, "microsim",
+                {.seed = setup.seed, .files = contact_law_files(scene), .text = content_of(setup, setup.system)});
   const ParticlesResultOf<D> result = run_with_progress(setup, std::move(setup.system), run.context);
   ParticlesSummary summary = summary_of(setup, result, memory_before);
   summary.head.sizes = summaries_of(drawn_sizes(setup));

@@ -165,10 +165,7 @@ ParticlesSummary summary_of(const ParticlesSceneOf<D>& scene, const ParticlesRes
                             double memory_before) {
   const System<D>& s = result.system;
   const ContactTotals<D> totals = contact_totals(s);
-  ParticlesSummary out{.head = {result.usable ? RunStatus::good : RunStatus::not_usable,
-                                scene.title,
-                                guard_remarks(scene.guards, result.guards, s),
-                                {}},
+  ParticlesSummary out{.head = {RunStatus::good, scene.title, guard_remarks(scene.guards, result.guards, s), {}},
                        .reason = result.reason,
                        .dimension = D,
                        .particle_count = s.particles.grains,
@@ -188,15 +185,15 @@ ParticlesSummary summary_of(const ParticlesSceneOf<D>& scene, const ParticlesRes
                        .guards = guards_json(scene.guards, result.guards, s)};
   if (result.watched) out.contacts = pairs_of(scene, result);
   out.head.remarks.insert(out.head.remarks.end(), scene.remarks.begin(), scene.remarks.end());
+  if (!result.usable) out.head.mark_unusable(result.reason);
   return out;
 }
 
 template <int D>
 std::string particles_text(const ParticlesResultOf<D>& result) {
   const System<D>& s = result.system;
-  const std::string end = result.usable ? "" : "NOT USABLE: " + result.reason + "\n";
-  return end + fmt::format("{} particles, {} steps to {:.6g} s in {:.2f} s; kinetic energy {:.6g} J",
-                           s.particles.grains, s.step, s.time, s.cost.seconds, kinetic_energy(s.particles));
+  return fmt::format("{} particles, {} steps to {:.6g} s in {:.2f} s; kinetic energy {:.6g} J", s.particles.grains,
+                     s.step, s.time, s.cost.seconds, kinetic_energy(s.particles));
 }
 
 template ParticlesSummary summary_of<2>(const ParticlesSceneOf<2>&, const ParticlesResultOf<2>&, double);

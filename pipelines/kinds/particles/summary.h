@@ -1,7 +1,10 @@
 // The summary of a run of explicit particles, for programs and for people.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -95,6 +98,11 @@ void fields(auto&& visit, Of<ParticlesSummary> auto& s) {
   visit("contact_state", s.contact_state);
   visit("cost", s.cost);
   visit("guards", s.guards);
+}
+
+/// Number of all particles; what is listed counts in summaries that do not say it.
+inline std::int64_t particle_count(const ParticlesSummary& s) {
+  return std::max<std::int64_t>(s.particle_count, std::ssize(s.particles));
 }
 
 /// Everything but provenance and files: state, contacts, cost. `memory_before`: peak of the process before the scene

@@ -71,8 +71,13 @@ class PackingState {
     bent.forEach((c, k) => this.ends.set(ends.subarray(3 * k, 3 * k + 3), 3 * c));
   }
 
-  /// Contacts per grain, and the sum of their normal forces.
+  /// Contacts per grain, and the sum of their normal forces; the page has them where it lacks some contacts.
   gather() {
+    if (this.raw.load) {
+      this.touching = packingArray(this.raw.touching, Uint16Array);
+      this.load = packingArray(this.raw.load, Float32Array);
+      return;
+    }
     this.touching = new Uint16Array(this.count);
     this.load = new Float32Array(this.count);
     for (let c = 0; c < this.contacts; ++c) {
@@ -125,11 +130,18 @@ class PackingSeries {
     return [Math.min(low, high), high];
   }
 
-  /// A force that few contacts exceed: the measure of tubes.
+  /// Whether any state has contacts.
+  touches() {
+    return this.raw.states.some((state) => state.forces !== "");
+  }
+
+  /// A force that few contacts exceed, in the last state that has any: the measure of tubes.
   strongForce() {
     if (this.strong === undefined) {
       const forces = [];
-      const last = this.state(this.states - 1);
+      let index = this.states - 1;
+      while (index > 0 && this.raw.states[index].forces === "") --index;
+      const last = this.state(index);
       for (let c = 0; c < last.contacts; ++c) forces.push(Math.abs(last.forces[c]));
       forces.sort((a, b) => a - b);
       this.strong = forces.length > 0 ? forces[Math.floor(0.98 * (forces.length - 1))] : 0;
@@ -160,7 +172,7 @@ const packingColorings = {
     label: "force",
     text: (s) => "sum of the normal forces on a grain",
     value: (state, k) => state.load[k],
-    there: (series) => series.state(series.states - 1).contacts > 0,
+    there: (series) => series.touches(),
     log: true,
     unit: (raw) => raw.force,
   },
@@ -176,7 +188,7 @@ const packingColorings = {
     label: "number of contacts",
     text: () => "contacts of a grain that carry force",
     value: (state, k) => state.touching[k],
-    there: (series) => series.state(series.states - 1).contacts > 0,
+    there: (series) => series.touches(),
     log: false,
     unit: () => "",
   },

@@ -111,7 +111,7 @@ class PackingView {
     this.moment.max = this.series.states - 1;
     this.moment.value = this.series.states - 1;
     this.moment.hidden = this.play.hidden = this.series.states < 2;
-    this.chains.disabled = this.series.state(this.series.states - 1).contacts === 0;
+    this.chains.disabled = !this.series.touches();
     this.lookAtAll();
     this.goTo(this.series.states - 1);
     this.recolor();
@@ -286,8 +286,8 @@ class PackingView {
       let largest = 0;
       for (let c = 0; c < state.contacts; ++c)
         if (state.pairs[2 * c] === k || state.pairs[2 * c + 1] === k) largest = Math.max(largest, Math.abs(state.forces[c]));
-      rows.push("contacts " + state.touching[k], "normal forces, sum " + packingQuantity(state.load[k], raw.force),
-        "largest " + packingQuantity(largest, raw.force));
+      rows.push("contacts " + state.touching[k], "normal forces, sum " + packingQuantity(state.load[k], raw.force));
+      if (largest > 0 || state.touching[k] === 0) rows.push("largest " + packingQuantity(largest, raw.force));
     }
     this.card.replaceChildren(packingElement("b", {}, `${kind} ${state.id(k)}`), ...rows.map((t) => packingElement("div", {}, t)));
   }
