@@ -55,19 +55,42 @@ void check_models(const MaterialModelsScene& scene, Findings& out) {
   for (const MaterialModel& m : scene.models) out.lines += "  model " + m.name + ": " + to_string(m.kind) + "\n";
 }
 
+/// As SceneKind::starter.
+constexpr const char* kMaterialModelsStarter = R"(title = "A resolved material and two models of it"
+seed = 1
+samples = 2
+[grains]
+count = 120
+ratio = 2.0
+[packing]
+preparation = "fast"
+[test]
+steps = 3
+strain = 0.05
+[[model]]
+name = "substitute"
+kind = "substitute"
+split = 0.8
+smallest = 0.6
+[[model]]
+name = "coarse"
+kind = "coarse"
+split = 0.8
+)";
+
 }  // namespace
 
 SceneKind material_models_kind() {
-  return scene_kind(
-      TypedKind<MaterialModelsScene>{.name = "material-models",
-                                     .command = "run",
-                                     .read = read_material_models_scene,
-                                     .inputs = inputs_of,
-                                     .run = run_material_models,
-                                     .check = check_models,
-                                     .results = material_models_results(),
-                                     .keeps = {.measurements = true, .packings = true},
-                                     .explored_from = {"", explored_stages(), explored_stages("variant")}});
+  return scene_kind(TypedKind<MaterialModelsScene>{.name = "material-models",
+                                                   .command = "run",
+                                                   .read = read_material_models_scene,
+                                                   .inputs = inputs_of,
+                                                   .run = run_material_models,
+                                                   .check = check_models,
+                                                   .results = material_models_results(),
+                                                   .keeps = {.measurements = true, .packings = true},
+                                                   .explored_from = {"", explored_stages(), explored_stages("variant")},
+                                                   .starter = kMaterialModelsStarter});
 }
 
 }  // namespace softgrain
