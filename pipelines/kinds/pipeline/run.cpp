@@ -300,11 +300,11 @@ E = "0.5 MPa"
 mu = 0.3
 [packing]
 shell_radius = "16 mm"
-polydispersity = 5.0
+polydispersity = 8.0
 rmax_over_shell = 0.5
 beta = 3.0
 placement = "voids"
-count = 8
+count = 12
 [measure]
 relaxation = "damped"
 [measure.damped]
