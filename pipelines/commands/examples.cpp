@@ -26,6 +26,7 @@ using nlohmann::json;
 
 constexpr const char* kFirstExample = "quickstart.toml";  ///< a folder with this scene is that of all
 constexpr std::size_t kExampleColumns = 99;
+constexpr std::size_t kLongestTime = 130;  ///< characters of a sentence about time; longer ones are about more
 
 /// What the list says of a scene.
 struct Example {
@@ -44,13 +45,13 @@ std::string heading_of(const std::string& scene) {
   return heading;
 }
 
-/// The first sentence of a heading that speaks of seconds, minutes or hours.
+/// The first short sentence of a heading that speaks of seconds, minutes or hours.
 std::string time_said(const std::string& heading) {
   static const std::regex time("\\b([Ss]econds?|[Mm]inutes?|[Hh]ours?)\\b");
   for (std::size_t at = 0; at < heading.size();) {
     const std::size_t end = std::min(heading.find(". ", at), heading.size());
     const std::string sentence = heading.substr(at, end + 1 - at);
-    if (std::regex_search(sentence, time)) return sentence;
+    if (sentence.size() <= kLongestTime && std::regex_search(sentence, time)) return sentence;
     at = end + 2;
   }
   return "";

@@ -191,7 +191,8 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
   if ((runs_scenes && command.function != command_microsim) || command.function == command_check) {
     app.add_option("--bands", o.bands,
                    "Macro scenes: error bars from so many draws of the law; default as the scene says (none)")
-        ->check(CLI::Range(8, 100000));
+        ->option_text("N")
+        ->check(CLI::Range(8, 100000).description(""));
     app.add_option("--law", o.law,
                    "Macro scenes: law card or law table of the soft particles; default that of the scene")
         ->option_text("LAW.toml");

@@ -23,6 +23,7 @@ from softgrain.figures import Drawn
 from softgrain.results import Run
 from softgrain.toml_text import scene_text, settings
 
+
 @contextmanager
 def _scene_file(scene):
     """Path of the scene, and what stands in its lines. A dict goes into a file in the working directory for the while, so that paths
