@@ -100,7 +100,7 @@ def write_kind(root, name):
            f'}},\n    {{R"({MISTAKEN.replace("NAME", name)})",\n     R"({MESSAGE})"')
     guide = root / "pipelines/guide"
     (guide / f"scene_{snake}.md").write_text(PAGE.replace("NAME", name))
-    insert(guide / "scenes.md", '| `"grain-box"` |', f'| `"{name}"` | `softgrain run` | [scenes of this kind](scene_{snake}.md) |\n')
+    insert(guide / "scenes.md", '| `"grain-box"` |', f'| `"{name}"` | [scenes of this kind](scene_{snake}.md) |\n')
     insert(guide / "choosing.md", "| How does a result depend on a key,",
            f"| How long does an impact last? | `{name}` | `run my_scene.toml` | [scenes of this kind](scene_{snake}.md) |\n")
     insert(guide / "README.md", "[single particles and walls](scene_particles.md), [a cohesive powder]",

@@ -220,16 +220,7 @@ class Session:
             self.problems.append(f"{where}: a scene without kind cannot be run")
             return
         (self.work / "block.toml").write_text(text)
-        self.execute(where, f"softgrain {self.command_of(text)} block.toml --quiet", (0,))
-
-    def command_of(self, text):
-        """The command that runs a scene of this kind: any other one names it."""
-        kind = re.search(r"^kind =.*$", text, re.M)[0]
-        (self.work / "kind.toml").write_text(kind + "\n")
-        said = subprocess.run(["sh", "-c", "softgrain run kind.toml"], cwd=self.work, env=self.environment, text=True,
-                              stdin=subprocess.DEVNULL, capture_output=True, check=False).stderr
-        other = re.search(r"scenes of this kind run with softgrain (\w+)", said)
-        return other[1] if other else "run"
+        self.execute(where, "softgrain run block.toml --quiet", (0,))
 
     def program(self, where, text):
         """The includes of a block, the rest of it inside main, and the last variable printed."""

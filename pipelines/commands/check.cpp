@@ -25,8 +25,7 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
   const Scene scene = Scene::load(path, overrides);
   const SceneKind& kind = kind_of(scene);
   out.add("kind", kind.name, std::string("scene of kind ") + kind.name);
-  if (!options.law.empty() && !kind.takes_law) throw InputError("check: --law goes with scenes of kind \"macro\"");
-  if (options.bands > 0 && !kind.takes_law) throw InputError("check: --bands goes with scenes of kind \"macro\"");
+  refuse_idle_options(kind, options);
   kind.check(scene, options, out);
 }
 

@@ -1,5 +1,5 @@
 // What the files of this folder have from each other, beside the commands of run_context.h: parts of calibrate, check
-// and run, and schema.
+// and run, schema, new and examples, and what commands say of each other.
 #pragma once
 
 #include <optional>
@@ -105,5 +105,70 @@ void add_schema_command(CLI::App& app, SchemaOptions& options);
 
 /// Prints what was asked for. Throws InputError.
 ExitStatus command_schema(const SchemaOptions& options);
+
+// softgrain new: a scene to begin with.
+
+struct NewOptions {
+  bool chosen = false;
+  std::string kind{};  ///< empty: the list of kinds
+  std::string out{};   ///< empty: standard output
+  bool all = false;    ///< also the keys of tables that the scene does without
+};
+
+/// Adds `new` to the program's command line.
+void add_new_command(CLI::App& app, NewOptions& options);
+
+/// Writes the small scene of a kind (SceneKind::starter), with what every key means and the other keys as comments.
+/// Throws InputError (no such kind, the file is there), IoError.
+ExitStatus command_new(const NewOptions& options);
+
+// softgrain examples: the scenes that come with the program.
+
+struct ExampleOptions {
+  bool chosen = false;
+  std::string name{};  ///< of the file, without .toml; empty: the list
+  std::string out{};   ///< empty: standard output
+  bool json = false;
+};
+
+/// Adds `examples` to the program's command line.
+void add_examples_command(CLI::App& app, ExampleOptions& options);
+
+/// Lists them, or writes one, which finds the files that it names from anywhere. Throws InputError (no such scene, the
+/// file is there), IoError (no scenes are installed).
+ExitStatus command_examples(const ExampleOptions& options);
+
+/// Folder of the scenes that come with the program: pipelines/ of the source tree that the program was built in, or
+/// share/softgrain/pipelines of the prefix where it is installed; empty when neither is there.
+std::string shipped_scenes();
+
+/// The text of a scene, with every file that it names relative to `folder` named by its full path; names of what is no
+/// file there stay.
+std::string with_full_paths(const std::string& scene, const std::string& folder);
+
+/// Writes `text` to a file that is not there yet and says `told` on standard output; to standard output where `path` is
+/// empty. Throws InputError when it is there, IoError.
+void write_new_text(const std::string& path, const std::string& text, const std::string& told);
+
+// Words of the command line that are about commands: softgrain help and version, words that no command knows.
+
+/// "softgrain 0.2.0 (1a2b3c4)".
+std::string version_text();
+
+/// Adds `help` and `version` to the program's command line; `version` becomes true where it is asked for.
+void add_help_commands(CLI::App& app, bool& version);
+
+/// The command line with `help COMMAND` replaced by `COMMAND --help`.
+std::vector<std::string> without_help_command(std::vector<std::string> words);
+
+/// Names of all commands.
+std::vector<std::string> command_names(const CLI::App& app);
+
+/// "run ", "law show ": the command that was given, as far as it is known; empty for none.
+std::string command_on_line(const CLI::App& app);
+
+/// What to say of an option (or the name of a part of a command) that was given and is unknown: the nearest one of the
+/// command, or which commands know it. Empty when there was none.
+std::string unknown_word_text(const CLI::App& app);
 
 }  // namespace softgrain

@@ -39,31 +39,34 @@ struct Command {
   int most;
   bool saves;     ///< whether it saves at a signal what it has done; others end at once
   bool settings;  ///< whether --set and --seed mean anything
+  bool writes;    ///< whether it writes where --out says
   ExitStatus (*function)(const CommonOptions&);
 };
 
 constexpr std::array<Command, 9> kCommands{{
-    {"run", "End to end: pack, measure, fit, macro, resolved twin, compare, report", "PIPELINE.toml", "pipeline to run",
-     1, 1, true, true, command_run},
+    {"run",
+     "One scene of any kind: a pipeline from packings to the resolved twin, a law table, a material, a macro scene ...",
+     "SCENE.toml", "scene to run", 1, 1, true, true, true, command_run},
     {"microsim",
      "One particle-scale scene: soft particles packed and measured, particles and walls, a grain box, a cohesive "
      "powder",
-     "SCENE.toml", "scene to run", 1, 1, true, true, command_microsim},
+     "SCENE.toml", "scene to run", 1, 1, true, true, true, command_microsim},
     {"calibrate", "Fits contact laws to measurements and writes the law card and its table", "DATA",
-     "files of measurements: .h5 of this program, or .csv of an experiment", 1, 1000, false, true, command_calibrate},
+     "files of measurements: .h5 of this program, or .csv of an experiment", 1, 1000, false, true, true,
+     command_calibrate},
     {"macrosim", "One macro scene with soft particles that act by a fitted law", "SCENE.toml", "scene to run", 1, 1,
-     true, true, command_macrosim},
+     true, true, true, command_macrosim},
     {"sweep", "One scene over values of its keys and over seeds, each run in a directory of its own; a table and plots",
-     "SCENE.toml", "scene to run", 1, 1, true, true, command_sweep},
+     "SCENE.toml", "scene to run", 1, 1, true, true, true, command_sweep},
     {"compare", "What differs between runs, their numbers, error norms and cost: A, B, ... against the last one", "RUN",
      "run directories or result files, the reference last; one: what a run holds within itself", 1, kMostCompared,
-     false, false, command_compare},
+     false, false, true, command_compare},
     {"report", "Writes a self-contained report.html of a run directory", "DIR", "run directory", 1, 1, false, false,
-     command_report},
+     false, command_report},
     {"check", "Validates a scene, card, result or run directory and says what follows from it, without running", "FILE",
-     "file or run directory to check", 1, 1, false, true, command_check},
+     "file or run directory to check", 1, 1, false, true, false, command_check},
     {"export", "Writes the states of a run for ParaView, OVITO and others; default RUN/export-FORM", "RUN",
-     "run directory, or one of its files with states", 1, 1, false, false, command_export},
+     "run directory, or one of its files with states", 1, 1, false, false, true, command_export},
 }};
 
 constexpr const char* kFooter =
@@ -95,28 +98,37 @@ CLI::Validator whole_number(const char* option, std::int64_t low, std::int64_t h
           "", "whole number"};
 }
 
-void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::string& observables) {
-  app.add_option(command.inputs, o.inputs, command.inputs_help)->option_text(" ");
-  app.add_option(
-         "--out", o.out,
-         "Run directory; default results/<name of the first input>, with _run behind where that holds kept results")
-      ->option_text("DIR");
-  app.add_option("--threads", o.threads, "Threads to use; default all cores. Results do not depend on it")
-      ->option_text("N")
-      ->transform(whole_number("--threads", 1, kMostThreads));
-  app.add_option("--seed", o.seed, "Seed of the random numbers; default that of the scene")
-      ->option_text("N")
-      ->transform(whole_number("--seed", 0, std::numeric_limits<std::int64_t>::max()));
-  app.add_option("--set", o.overrides, "Replaces a key of the scene: --set packing.beta=2.5 (repeatable)")
-      ->option_text("KEY=VALUE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->allow_extra_args(false);
+/// Options that are of use to some of the commands only: no other knows them, so that its help shows its own alone.
+void add_options_of_runs(CLI::App& app, const Command& command, CommonOptions& o) {
+  if (command.writes)
+    app.add_option(
+           "--out", o.out,
+           "Run directory; default results/<name of the first input>, with _run behind where that holds kept results")
+        ->option_text("DIR");
+  if (command.settings) {
+    app.add_option("--seed", o.seed, "Seed of the random numbers; default that of the scene")
+        ->option_text("N")
+        ->transform(whole_number("--seed", 0, std::numeric_limits<std::int64_t>::max()));
+    app.add_option("--set", o.overrides, "Replaces a key of the scene: --set packing.beta=2.5 (repeatable)")
+        ->option_text("KEY=VALUE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->allow_extra_args(false);
+  }
+  if (!command.saves) return;
   app.add_flag("--resume", o.resume, "Continues from the checkpoint in the run directory");
   app.add_option("--checkpoint-every", o.checkpoint_seconds,
                  "Seconds between two checkpoints within a recorded point; default 5, 0: whenever possible")
       ->option_text("S")
       ->check(CLI::Range(0.0, 1e9).description(""));
+}
+
+void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::string& observables) {
+  app.add_option(command.inputs, o.inputs, command.inputs_help)->option_text(" ");
+  app.add_option("--threads", o.threads, "Threads to use; default all cores. Results do not depend on it")
+      ->option_text("N")
+      ->transform(whole_number("--threads", 1, kMostThreads));
+  add_options_of_runs(app, command, o);
   app.add_flag("--quiet", o.quiet, "No log and no progress on standard error");
   app.add_flag("--json", o.json, "Summary as one JSON object on standard output");
   const bool sweeps = command.function == command_sweep;
@@ -169,19 +181,20 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
   }
   if (runs_scenes && command.function != command_microsim) {
     app.add_option("--engine", o.engine,
-                   command.function != command_macrosim
-                       ? "What runs a material: softgrain (default) or lammps"
-                       : "What runs the scene with the law: softgrain (default) or lammps")
+                   "What runs a material, or a macro scene with its law: softgrain (default) or lammps")
         ->option_text("NAME");
     app.add_option("--ranks", o.ranks, "With --engine lammps: MPI ranks; default 1")
         ->option_text("N")
         ->transform(whole_number("--ranks", 1, kMostRanks));
     if (!sweeps) app.add_flag("--write-only", o.write_only, "With --engine lammps: writes its input files and stops");
   }
-  if (sweeps || command.function == command_macrosim || command.function == command_check) {
-    app.add_option("--bands", o.bands, "Error bars from so many draws of the law; default as the scene says (none)")
-        ->check(CLI::Range(8, 100000));
-    app.add_option("--law", o.law, "Law card or law table of the soft particles; default that of the scene")
+  if ((runs_scenes && command.function != command_microsim) || command.function == command_check) {
+    app.add_option("--bands", o.bands,
+                   "Macro scenes: error bars from so many draws of the law; default as the scene says (none)")
+        ->option_text("N")
+        ->check(CLI::Range(8, 100000).description(""));
+    app.add_option("--law", o.law,
+                   "Macro scenes: law card or law table of the soft particles; default that of the scene")
         ->option_text("LAW.toml");
   }
 }
@@ -197,26 +210,10 @@ void require_inputs(const Command& command, const CommonOptions& options) {
                                command.inputs, given, command.name));
 }
 
-/// Options that all commands know and that this one has no use for.
-void refuse_idle_options(const Command& command, const CommonOptions& options) {
-  if (options.resume && !command.saves)
-    throw InputError(
-        fmt::format("--resume: {} saves nothing on its way; run, microsim, macrosim and sweep go on", command.name));
-  if (!options.out.empty() && (command.function == command_report || command.function == command_check))
-    throw InputError(fmt::format("--out: {} makes no run directory{}", command.name,
-                                 command.function == command_report ? "; the page stands in DIR" : ""));
-  if (command.settings) return;
-  if (!options.overrides.empty()) throw InputError(fmt::format("--set: {} reads no scene", command.name));
-  if (options.seed_given) throw InputError(fmt::format("--seed: {} draws no random numbers", command.name));
-}
-
 /// A first word that is no command: names the nearest.
-void require_command(int argc, char** argv) {
+void require_command(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
-  std::vector<std::string> names;
-  for (const Command& c : kCommands) names.emplace_back(c.name);
-  names.emplace_back("law");
-  names.emplace_back("schema");
+  const std::vector<std::string> names = command_names(app);
   const std::string word = argv[1];
   if (std::ranges::find(names, word) != names.end()) return;
   const std::string near = nearest_word(word, names);
@@ -262,13 +259,22 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
     sub->footer(kFooter);
     add_options(*sub, command, options, observables);
     sub->callback([&chosen, &command] { chosen = &command; });
-    sub->parse_complete_callback([&options, sub] { options.seed_given = sub->count("--seed") > 0; });
+    if (command.settings)
+      sub->parse_complete_callback([&options, sub] { options.seed_given = sub->count("--seed") > 0; });
   }
   LawOptions law;
   add_law_command(app, law);
   SchemaOptions schema;
   add_schema_command(app, schema);
-  require_command(argc, argv);
+  NewOptions fresh;
+  add_new_command(app, fresh);
+  ExampleOptions examples;
+  add_examples_command(app, examples);
+  bool version = false;
+  add_help_commands(app, version);
+  // One command at most: a scene or a kind may have the name of another.
+  app.require_subcommand(0, 1);
+  require_command(app, argc, argv);
   app.parse(argc, argv);
   // A file that may not grow beyond a limit is trouble with a file, to be told as such, not a reason to be killed.
   std::signal(SIGXFSZ, SIG_IGN);
@@ -276,6 +282,12 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   law.command_line = options.command_line;
   if (law.action) return command_law(law);
   if (schema.chosen) return command_schema(schema);
+  if (fresh.chosen) return command_new(fresh);
+  if (examples.chosen) return command_examples(examples);
+  if (version) {
+    write_standard_output(version_text() + "\n");
+    return ExitStatus::good;
+  }
   if (chosen == nullptr) {
     std::fputs(app.help().c_str(), stderr);
     return ExitStatus::bad_input;
@@ -286,7 +298,6 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
     if (options.write_only) throw InputError("--observables: nothing is observed with --write-only");
     if (options.out.empty()) options.out = observables + "_run";
   }
-  refuse_idle_options(*chosen, options);
   const FreshDirectory out(options.out);
   if (!options.out.empty()) require_writable_directory(options.out);
   for (const std::string& cache : {options.law_cache, options.packing_cache, options.twin_cache})
@@ -306,11 +317,13 @@ int end_of_parsing(const CLI::App& app, const CLI::ParseError& e, bool as_json) 
     write_standard_output(text.str());
     return static_cast<int>(ExitStatus::good);
   }
+  const std::string command = command_on_line(app);
   std::string message = e.what();
+  if (const std::string unknown = unknown_word_text(app); !unknown.empty()) message = unknown;
   // CLI11 puts "--threads: " before the message of a validator, which names the option itself.
   for (const std::string option : {"--threads", "--seed", "--ranks"})
     if (message.starts_with(option + ": " + option)) message.erase(0, option.size() + 2);
-  return complain(ExitStatus::bad_input, message + " (see softgrain COMMAND --help)", as_json);
+  return complain(ExitStatus::bad_input, message + " (see softgrain " + command + "--help)", as_json);
 }
 
 /// Known before anything is parsed: mistakes in the command line are told in the same form.
@@ -333,13 +346,10 @@ void occupy_closed_streams() {
     if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
 }
 
-}  // namespace
-
-int run_program(int argc, char** argv) {
-  occupy_closed_streams();
+/// Everything from the command line to the exit status.
+int run_words(int argc, char** argv) {
   CLI::App app{"softgrain: contact laws of soft particles for extremely polydisperse packings", "softgrain"};
-  const Provenance build = build_provenance();
-  app.set_version_flag("--version", "softgrain " + build.version + " (" + build.commit + ")");
+  app.set_version_flag("--version", version_text());
   app.footer(kFooter);
   const bool as_json = wants_json(argc, argv);
   try {
@@ -353,6 +363,17 @@ int run_program(int argc, char** argv) {
   } catch (const std::exception& e) {
     return complain(ExitStatus::not_usable, std::string("unexpected: ") + e.what(), as_json);
   }
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv) {
+  occupy_closed_streams();
+  std::vector<std::string> words = without_help_command({argv, argv + argc});
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  return run_words(static_cast<int>(words.size()), pointers.data());
 }
 
 }  // namespace softgrain

@@ -1,4 +1,4 @@
-// softgrain run, microsim, macrosim: one scene; its `kind` says which.
+// softgrain run: one scene; its `kind` says which. softgrain microsim and macrosim: the same for some of the kinds.
 // softgrain sweep SCENE --over key=a,b,c: one scene over values of its keys, and over seeds.
 #include <fmt/format.h>
 #include <omp.h>
@@ -15,14 +15,6 @@
 namespace softgrain {
 
 namespace {
-
-/// "material" (softgrain run) and ...
-std::string kinds_with_engine() {
-  std::string text;
-  for (const SceneKind& kind : scene_kinds())
-    if (kind.takes_engine) append_part(text, fmt::format("\"{}\" (softgrain {})", kind.name, kind.command), " and ");
-  return text;
-}
 
 /// Results do not depend on the number, time does.
 void warn_of_cores(const CommonOptions& options) {
@@ -43,12 +35,7 @@ ExitStatus run_scene(const CommonOptions& options, const std::string& command) {
     throw InputError(command + ": one scene is needed (softgrain " + command + " SCENE.toml)");
   const Scene scene = Scene::load(options.inputs.front(), options.overrides);
   const SceneKind& kind = kind_of(scene, command);
-  if (!kind.takes_engine && (!options.engine.empty() || options.ranks > 0 || options.write_only))
-    throw InputError(
-        fmt::format("{}: scenes of kind \"{}\" run in our own engine alone: --engine, --ranks and --write-only "
-                    "go with {}",
-                    command, kind.name, kinds_with_engine()));
-  refuse_idle_caches(kind, options);
+  refuse_idle_options(kind, options);
   warn_of_cores(options);
   if (!options.seeds.empty()) {
     if (options.seed_given) throw InputError("--seeds: goes without --seed");

@@ -11,6 +11,7 @@
 #include "common/core/text.h"
 #include "common/io/key_record.h"
 #include "common/io/text_file.h"
+#include "pipelines/commands/key_text.h"
 #include "pipelines/kinds/kinds.h"
 
 namespace softgrain {
@@ -20,100 +21,6 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kRoot = ".";
-constexpr double kUnlimited = 1e11;  // counts up to this have no upper end that means anything
-
-const SceneKind& kind_named(const std::string& name) {
-  std::vector<std::string> names;
-  for (const SceneKind& k : scene_kinds()) {
-    if (name == k.name) return k;
-    names.emplace_back(k.name);
-  }
-  const std::string near = nearest_word(name, names);
-  throw InputError(fmt::format("schema {}: no such kind; {}", name,
-                               near.empty() ? "kinds are " + join_text(names) : "nearest is '" + near + "'"));
-}
-
-/// "[packing]", "[[stage]]", "mu".
-std::string written(const ExploredKey& key) {
-  if (key.asked.form == KeyForm::table) return "[" + key.path() + "]";
-  if (key.asked.form == KeyForm::tables) return "[[" + key.path() + "]]";
-  return key.name;
-}
-
-/// An end of a range with six digits; what only allows for rounding is left out.
-double shown_end(double end) {
-  constexpr double kRounding = 1e-8;
-  if (!std::isfinite(end)) return end;
-  return std::abs(end) < kRounding ? 0.0 : std::stod(rounded_text(end, {6}));
-}
-
-Range allowed(const AskedKey& k) {
-  Range range = k.range;
-  range.low = shown_end(range.low);
-  range.high = shown_end(range.high);
-  if (k.form == KeyForm::count && range.high > kUnlimited) range.high = std::numeric_limits<double>::infinity();
-  return range;
-}
-
-/// "m, above 0", "\"fast\", \"slow\"", "list, above 0". `quote` stands on both sides of a word.
-std::string allowed_text(const AskedKey& k, const std::string& quote = "\"") {
-  const std::string range = range_text(allowed(k));
-  std::string unit = si_unit(k.unit);
-  switch (k.form) {
-    case KeyForm::choice:
-      return join_text(k.words, ", ", [&](const std::string& w) { return quote + w + quote; });
-    case KeyForm::flag:
-      return "true, false";
-    case KeyForm::flags:
-      return "list of true, false";
-    case KeyForm::text:
-      return "text";
-    case KeyForm::texts:
-      return "list of texts";
-    case KeyForm::count:
-      return range.empty() ? "whole number" : "whole number, " + range;
-    case KeyForm::vector:
-      append_part(unit, "three numbers", ", ");
-      return unit.starts_with(", ") ? unit.substr(2) : unit;
-    case KeyForm::numbers: {
-      std::string text = "list";
-      if (!unit.empty()) append_part(text, unit, ", ");
-      if (!range.empty()) append_part(text, range, ", ");
-      return text;
-    }
-    case KeyForm::number:
-      if (!range.empty()) append_part(unit, range, ", ");
-      return unit.empty() ? "number" : unit;
-    case KeyForm::any:
-    case KeyForm::table:
-    case KeyForm::tables:
-      return "";
-  }
-  return "";
-}
-
-/// All forms that the key may have.
-std::string allowed_forms(const ExploredKey& key, const std::string& quote = "\"") {
-  std::string text = allowed_text(key.asked, quote);
-  for (const AskedKey& other : key.also) append_part(text, allowed_text(other, quote), "; or ");
-  return text;
-}
-
-/// "-" for a key that must be there, "none" for one that need not.
-std::string default_text(const ExploredKey& key) {
-  if (!key.asked.usual.empty()) return key.asked.usual;
-  if (key.required) return "-";
-  if (key.defaults.empty()) return "none";
-  return join_text(key.defaults, " or ", [](const std::string& d) { return d == "\"\"" ? "none" : d; });
-}
-
-/// Keys that stand in a table; tables that stand in it come as one row each.
-std::vector<ExploredKey> in_table(const std::vector<ExploredKey>& all, const std::string& table) {
-  std::vector<ExploredKey> some;
-  std::ranges::copy_if(all, std::back_inserter(some), [&](const ExploredKey& k) { return k.table == table; });
-  return some;
-}
-
 /// Throws InputError for a table that the kind does not have.
 void require_table(const std::vector<ExploredKey>& all, const SchemaOptions& o) {
   std::vector<std::string> tables;
@@ -228,7 +135,8 @@ std::string as_json(const std::vector<ExploredKey>& all, const SchemaOptions& o)
 
 std::string list_of_kinds() {
   std::string text = "softgrain schema KIND: the keys of a kind of scenes. Kinds:\n";
-  for (const SceneKind& k : scene_kinds()) text += fmt::format("  {:<18} softgrain {}\n", k.name, k.command);
+  for (const SceneKind& k : scene_kinds())
+    text += fmt::format("  {:<18} softgrain {}\n", k.name, commands_of(k, ", softgrain "));
   return text;
 }
 
@@ -262,7 +170,7 @@ ExitStatus command_schema(const SchemaOptions& o) {
     write_standard_output(list_of_kinds());
     return ExitStatus::good;
   }
-  const std::vector<ExploredKey> all = keys_of(kind_named(o.kind));
+  const std::vector<ExploredKey> all = keys_of(kind_named(o.kind, "schema"));
   require_table(all, o);
   const std::vector<ExploredKey> shown = in_table(all, table_name(o));
   if (o.form == SchemaForm::json)

@@ -1,9 +1,14 @@
 #include "pipelines/kinds/kinds.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
+#include "common/core/error.h"
+#include "common/core/text.h"
 #include "pipelines/kinds/cohesive_powder/scene.h"
 #include "pipelines/kinds/grain_box/scene.h"
 #include "pipelines/kinds/hierarchy/scene.h"
@@ -30,12 +35,34 @@ const SceneKind* find(const std::string& name) {
   return at == kinds.end() ? nullptr : &*at;
 }
 
-/// Names of the kinds that `command` runs; names of all kinds when it is empty.
+constexpr const char* kAnyKind = "run";  ///< the command that runs all of them
+
+bool runs(const std::string& command, const SceneKind& kind) { return command == kAnyKind || command == kind.command; }
+
+/// Names of the kinds that `command` runs.
 std::vector<const char*> names_of(const std::string& command) {
   std::vector<const char*> names;
   for (const SceneKind& k : scene_kinds())
-    if (command.empty() || command == k.command) names.push_back(k.name);
+    if (runs(command, k)) names.push_back(k.name);
   return names;
+}
+
+/// "--engine, --ranks" of options and whether they are given.
+std::string given_of(std::initializer_list<std::pair<const char*, bool>> options) {
+  std::string text;
+  for (const auto& [name, given] : options)
+    if (given) append_part(text, name, ", ");
+  return text;
+}
+
+/// Throws InputError for options that are given (`options` names them) where `takes` does not hold for the kind.
+template <class Takes>
+void refuse_options(const SceneKind& kind, const std::string& options, const char* why, const Takes& takes) {
+  if (options.empty() || takes(kind)) return;
+  std::string kinds;
+  for (const SceneKind& one : scene_kinds())
+    if (takes(one)) append_part(kinds, fmt::format("\"{}\"", one.name), ", ");
+  throw InputError(fmt::format("{}: scenes of kind \"{}\" {}; those of {} do", options, kind.name, why, kinds));
 }
 
 }  // namespace
@@ -60,15 +87,36 @@ const std::vector<KindResults>& results_of_kinds() {
   return results;
 }
 
-const SceneKind& kind_of(const Scene& scene) { return *find(scene.root().choice("kind", names_of(""))); }
+const SceneKind& kind_of(const Scene& scene) { return *find(scene.root().choice("kind", names_of(kAnyKind))); }
 
 const SceneKind& kind_of(const Scene& scene, const std::string& command) {
   const SceneTable root = scene.root();
   const SceneKind* named = root.is_text("kind") ? find(root.text("kind")) : nullptr;
-  if (named != nullptr && command != named->command)
+  if (named != nullptr && !runs(command, *named))
     root.throw_error("kind",
-                     "scenes of this kind run with softgrain " + std::string(named->command) + ", not with " + command);
+                     "scenes of this kind run with softgrain " + commands_of(*named, " or ") + ", not with " + command);
   return *find(root.choice("kind", names_of(command)));
+}
+
+std::string commands_of(const SceneKind& kind, const char* separator) {
+  std::string text = kAnyKind;
+  if (text != kind.command) append_part(text, kind.command, separator);
+  return text;
+}
+
+void refuse_idle_options(const SceneKind& kind, const CommonOptions& o) {
+  constexpr const char* kNothing = "have nothing to keep there";
+  refuse_options(kind, given_of({{"--law-cache", !o.law_cache.empty()}}), kNothing,
+                 [](const SceneKind& k) { return k.keeps.measurements; });
+  refuse_options(kind, given_of({{"--packing-cache", !o.packing_cache.empty()}}), kNothing,
+                 [](const SceneKind& k) { return k.keeps.packings; });
+  refuse_options(kind, given_of({{"--twin-cache", !o.twin_cache.empty()}}), kNothing,
+                 [](const SceneKind& k) { return k.keeps.twins; });
+  refuse_options(kind, given_of({{"--law", !o.law.empty()}, {"--bands", o.bands > 0}}),
+                 "take no law from the command line", [](const SceneKind& k) { return k.takes_law; });
+  refuse_options(
+      kind, given_of({{"--engine", !o.engine.empty()}, {"--ranks", o.ranks > 0}, {"--write-only", o.write_only}}),
+      "run in our own engine alone and take none of LAMMPS", [](const SceneKind& k) { return k.takes_engine; });
 }
 
 }  // namespace softgrain

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "pipelines/run/scene_kind.h"
 
@@ -13,8 +14,15 @@ std::span<const SceneKind> scene_kinds();
 /// The kind that the scene names. Throws InputError.
 const SceneKind& kind_of(const Scene& scene);
 
-/// The kind that the scene names, if `command` runs it. Otherwise throws InputError at `kind`, naming the command that
-/// does.
+/// The kind that the scene names, if `command` runs it: "run" does in any case, else the kind's own command. Otherwise
+/// throws InputError at `kind`, naming the commands that do.
 const SceneKind& kind_of(const Scene& scene, const std::string& command);
+
+/// "run or macrosim": names of the commands that run scenes of the kind.
+std::string commands_of(const SceneKind& kind, const char* separator);
+
+/// Throws InputError for options of the command line that scenes of this kind have no use for: caches, the law and its
+/// bands, LAMMPS.
+void refuse_idle_options(const SceneKind& kind, const CommonOptions& options);
 
 }  // namespace softgrain

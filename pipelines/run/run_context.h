@@ -34,9 +34,9 @@ struct CommonOptions {
   bool quiet = false;                              ///< --quiet
   bool json = false;                               ///< --json
   double checkpoint_seconds = kCheckpointSeconds;  ///< --checkpoint-every S
-  std::string law;                                 ///< --law law.toml (macrosim)
-  std::int64_t bands = 0;                          ///< --bands N (macrosim); 0: not given
-  std::string engine;                              ///< --engine softgrain or lammps (run, macrosim); empty: not given
+  std::string law;                                 ///< --law law.toml (run, macrosim, sweep, check)
+  std::int64_t bands = 0;                          ///< --bands N (the same); 0: not given
+  std::string engine;                              ///< --engine softgrain or lammps (of runs); empty: not given
   std::int64_t ranks = 0;                          ///< --ranks N of --engine lammps; 0: not given
   bool write_only = false;                         ///< --write-only of --engine lammps
   std::string kind;                                ///< --kind of measurements in CSV (calibrate)

@@ -23,8 +23,9 @@ struct KeptBetweenRuns {
 };
 
 struct SceneKind {
-  const char* name = "";     ///< value of the key `kind`
-  const char* command = "";  ///< command that runs it: "run", "microsim" or "macrosim"
+  const char* name = "";  ///< value of the key `kind`
+  /// Command that its runs record, and that runs it as `softgrain run` does: "run", "microsim" or "macrosim".
+  const char* command = "";
   /// Reads the scene, runs it, writes what came out and the report; see the folder of the kind. Throws Error.
   std::function<ExitStatus(const Scene& scene, const CommonOptions& options)> run{};
   /// What follows from the scene without running it. Throws InputError, IoError.
@@ -35,11 +36,14 @@ struct SceneKind {
   /// Throws all that run() refuses before it begins, files that the scene names included; empty: as `read`.
   std::function<void(const Scene& scene, const CommonOptions& options)> refuse{};
   KindResults results{};
-  bool takes_law = false;     ///< whether --law goes with it
+  bool takes_law = false;     ///< whether --law and --bands go with it
   bool takes_engine = false;  ///< whether --engine and what belongs to it do
   KeptBetweenRuns keeps{};
   /// What scenes must have, as TOML, before keys that go by it are asked for: one each (softgrain schema).
   std::vector<std::string> explored_from{""};
+  /// A small scene that runs in seconds, as TOML without `kind`: one table's name or one key with its value a line.
+  /// Files are named as by a scene of pipelines/ (softgrain new).
+  const char* starter = "";
 };
 
 /// All keys of the kind, by what its reader asks for.

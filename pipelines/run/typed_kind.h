@@ -19,7 +19,7 @@ struct Outcome {
 template <class Setup>
 struct TypedKind {
   const char* name = "";     ///< value of the key `kind`
-  const char* command = "";  ///< command that runs it: "run" or "microsim"
+  const char* command = "";  ///< as SceneKind::command
   /// All that the scene says. Throws InputError.
   Setup (*read)(const Scene& scene) = nullptr;
   /// Seed of the scene, and what determines a run besides it and the scene's text.
@@ -31,6 +31,7 @@ struct TypedKind {
   KindResults results{};
   KeptBetweenRuns keeps{};                     ///< as SceneKind::keeps
   std::vector<std::string> explored_from{""};  ///< as SceneKind::explored_from
+  const char* starter = "";                    ///< as SceneKind::starter
 };
 
 /// The entry of such a kind in the table; each function of it reads the scene once.
@@ -50,7 +51,8 @@ SceneKind scene_kind(const TypedKind<Setup>& kind) {
       .read = [kind](const Scene& scene) { (void)kind.read(scene); },
       .results = kind.results,
       .keeps = kind.keeps,
-      .explored_from = kind.explored_from};
+      .explored_from = kind.explored_from,
+      .starter = kind.starter};
 }
 
 }  // namespace softgrain

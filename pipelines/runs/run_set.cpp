@@ -20,20 +20,6 @@
 
 namespace softgrain {
 
-void refuse_idle_caches(const SceneKind& kind, const CommonOptions& options) {
-  const auto refuse = [&](const char* option, const std::string& folder, bool KeptBetweenRuns::*kept) {
-    if (folder.empty() || kind.keeps.*kept) return;
-    std::string kinds;
-    for (const SceneKind& one : scene_kinds())
-      if (one.keeps.*kept) append_part(kinds, fmt::format("\"{}\"", one.name), ", ");
-    throw InputError(
-        fmt::format("{}: scenes of kind \"{}\" have nothing to keep there; those of {} do", option, kind.name, kinds));
-  };
-  refuse("--law-cache", options.law_cache, &KeptBetweenRuns::measurements);
-  refuse("--packing-cache", options.packing_cache, &KeptBetweenRuns::packings);
-  refuse("--twin-cache", options.twin_cache, &KeptBetweenRuns::twins);
-}
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -91,12 +77,8 @@ class AllErrors {
 };
 
 void validate_options(const SceneKind& kind, const CommonOptions& options) {
-  refuse_idle_caches(kind, options);
+  refuse_idle_options(kind, options);
   if (options.write_only) throw InputError("--write-only: goes with one run; leave it out, or --over and --seeds");
-  if (!kind.takes_law && (!options.law.empty() || options.bands > 0))
-    throw InputError("--law and --bands go with scenes of kind \"macro\"");
-  if (!kind.takes_engine && (!options.engine.empty() || options.ranks > 0))
-    throw InputError("--engine and --ranks go with scenes of kinds \"macro\" and \"material\"");
 }
 
 /// What the kind refuses before it begins.

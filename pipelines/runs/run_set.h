@@ -12,11 +12,6 @@
 
 namespace softgrain {
 
-struct SceneKind;
-
-/// Throws InputError for a cache that scenes of this kind have nothing for.
-void refuse_idle_caches(const SceneKind& kind, const CommonOptions& options);
-
 struct PlannedRun {
   std::string name;                 ///< name of its directory: "bodies=40_seed=2"
   std::vector<std::string> values;  ///< one per key

@@ -84,6 +84,15 @@ Outcome run_example(const ExampleSetup& setup, const Run& run) {
   return {json_of(summary), console};
 }
 
+/// As SceneKind::starter.
+constexpr const char* kExampleStarter = R"(title = "Impacts of a grain"
+[grain]
+radius = "5 mm"
+E = "70 GPa"
+[impacts]
+speeds = [0.1, 1.0]
+)";
+
 }  // namespace
 
 SceneKind example_kind() {
@@ -93,7 +102,8 @@ SceneKind example_kind() {
                                             .inputs = inputs_of,
                                             .run = run_example,
                                             .check = check_example,
-                                            .results = example_results()});
+                                            .results = example_results(),
+                                            .starter = kExampleStarter});
 }
 
 }  // namespace softgrain

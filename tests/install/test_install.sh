@@ -29,6 +29,15 @@ if grep -rlF "$source/" "$prefix/include" "$prefix/share" >told; then fail "name
 for scene in quickstart macro_vs_resolved; do
   "$prefix/bin/softgrain" check --quiet "$prefix/share/softgrain/pipelines/$scene.toml" >/dev/null || fail "check of $scene"
 done
+place=$(readlink -f "$prefix")
+"$prefix/bin/softgrain" examples >examples.txt
+grep -qF "scenes of $place/share/softgrain/pipelines" examples.txt || fail "examples are those of another place"
+"$prefix/bin/softgrain" examples macro_vs_resolved --out copy.toml >/dev/null && "$prefix/bin/softgrain" new macro --out new.toml >/dev/null ||
+  fail "no scene could be written"
+for scene in copy new; do
+  "$prefix/bin/softgrain" check --quiet $scene.toml >/dev/null || fail "check of $scene"
+  grep -qF "\"$place/share/softgrain/results/" $scene.toml || fail "$scene names no installed law"
+done
 mapfile -t commands < <("$prefix/bin/softgrain" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z-]*\) .*/\1/p')
 ((${#commands[@]} >= 7)) || fail "--help lists ${#commands[@]} commands"
 for command in "${commands[@]}"; do

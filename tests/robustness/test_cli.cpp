@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "common/io/text_file.h"
 #include "tests/support/temporary_directory.h"
@@ -44,16 +46,57 @@ void expect(const std::string& arguments, int status, const std::string& words) 
 TEST(CommandLine, HelpAndVersionAreGood) {
   expect("--help", 0, "macrosim");
   expect("--version", 0, "softgrain 0.");
-  for (const char* command : {"run", "microsim", "calibrate", "macrosim", "sweep", "compare", "report", "check"}) {
+  for (const char* command : {"run", "microsim", "calibrate", "macrosim", "sweep", "compare", "report", "check"})
     expect(std::string(command) + " --help", 0, "--threads");
+  for (const char* command : {"run", "microsim", "macrosim", "sweep"})
     expect(std::string(command) + " --help", 0, "--resume");
-  }
-  expect("macrosim --help", 0, "--law");
+  for (const char* command : {"run", "macrosim"}) expect(std::string(command) + " --help", 0, "--law");
+}
+
+TEST(CommandLine, HelpAndVersionAreCommandsToo) {
+  EXPECT_EQ(program("help").output, program("--help").output);
+  EXPECT_EQ(program("help sweep").output, program("sweep --help").output);
+  EXPECT_EQ(program("help law eval").output, program("law eval --help").output);
+  EXPECT_EQ(program("version").output, program("--version").output);
+  expect("version", 0, "softgrain 0.");
+  expect("help", 0, "The scenes that come with the program");
+  expect("help mircosim", 2, "nearest is 'microsim'");
+  expect("help --help", 0, "command to explain");
+}
+
+TEST(CommandLine, HelpShowsTheOptionsOfTheCommandAlone) {
+  const auto lacks = [](const std::string& command, const std::vector<std::string>& options) {
+    const std::string help = program(command + " --help").output;
+    for (const std::string& option : options)
+      EXPECT_EQ(help.find("\n  " + option + " "), std::string::npos) << command << option;
+  };
+  lacks("check", {"--out", "--resume", "--checkpoint-every", "--over"});
+  lacks("report", {"--out", "--seed", "--set", "--resume"});
+  lacks("compare", {"--seed", "--set", "--resume", "--law"});
+  lacks("microsim", {"--law", "--engine", "--over"});
 }
 
 TEST(CommandLine, NoCommandShowsTheHelp) { expect("", 2, "Subcommands:"); }
 
-TEST(CommandLine, UnknownCommandNamesTheNearest) { expect("mircosim x.toml", 2, "nearest is 'microsim'"); }
+TEST(CommandLine, UnknownCommandNamesTheNearest) {
+  expect("mircosim x.toml", 2, "nearest is 'microsim'");
+  expect("law shwo x.toml", 2, "unknown command 'law shwo'; nearest is 'show'");
+}
+
+TEST(CommandLine, UnknownOptionNamesTheNearestOfTheCommand) {
+  expect("run x.toml --thread 2", 2,
+         "--thread: run has no such option; nearest is '--threads' (see softgrain run --help)");
+  expect("run x.toml --pakcing-cache=d", 2, "--pakcing-cache: run has no such option; nearest is '--packing-cache'");
+  expect("law eval l.toml --detla 0.1", 2, "--detla: law eval has no such option; nearest is '--delta'");
+  expect("run x.toml --over a=1", 2, "--over: run has no such option; commands with it are sweep");
+  expect("--verison", 2, "--verison: softgrain has no such option; nearest is '--version' (see softgrain --help)");
+}
+
+/// Only the first word is a command.
+TEST(CommandLine, AFileMayHaveTheNameOfACommand) {
+  expect("check absent_a check", 2, "check needs 1 FILE, 2 given");
+  expect("compare absent_a report", 4, "absent_a: no such file or directory");
+}
 
 TEST(CommandLine, BadOptionsAreBadInput) {
   expect("run x.toml --threads 0", 2, "softgrain: --threads 0: must be a whole number, from 1 to");
@@ -62,21 +105,21 @@ TEST(CommandLine, BadOptionsAreBadInput) {
   expect("run x.toml --threads 1.5", 2, "--threads 1.5");
   expect("run x.toml --seed -1", 2, "--seed -1: must be a whole number, at least 0");
   expect("run x.toml --bogus", 2, "--bogus");
-  expect("run x.toml y.toml", 2, "run needs 1 PIPELINE.toml, 2 given");
-  expect("run", 2, "run needs 1 PIPELINE.toml, 0 given");
+  expect("run x.toml y.toml", 2, "run needs 1 SCENE.toml, 2 given");
+  expect("run", 2, "run needs 1 SCENE.toml, 0 given");
   expect("compare", 2, "compare needs at least 1 RUN, 0 given");
   expect("compare absent_a absent_b absent_c", 4, "absent_a: no such file or directory");
   expect("sweep x.toml y.toml --over a=1", 2, "sweep needs 1 SCENE.toml, 2 given");
   expect("calibrate x.csv --seeds 1..2", 2, "--seeds");
-  expect("calibrate x.csv --resume", 2, "--resume: calibrate saves nothing on its way");
-  expect("compare a b --set macro.bodies=3", 2, "--set: compare reads no scene");
-  expect("report a --seed 3", 2, "--seed: report draws no random numbers");
-  expect("report a --out b", 2, "--out: report makes no run directory; the page stands in DIR");
-  expect("check a --out b", 2, "--out: check makes no run directory");
+  expect("calibrate x.csv --resume", 2, "--resume: calibrate has no such option; commands with it are run,");
+  expect("compare a b --set macro.bodies=3", 2, "--set: compare has no such option");
+  expect("report a --seed 3", 2, "--seed: report has no such option");
+  expect("check a --out b", 2, "--out: check has no such option");
+  expect("report a --out b", 2, "--out: report has no such option");
   expect("check absent.csv --law law.toml", 2, "--law: absent.csv is no scene");
   expect("check absent.csv --bands 50", 2, "--bands: absent.csv is no scene");
   expect("check absent.csv --set unloading=drop", 2, "--set: absent.csv is no scene");
-  expect("run x.toml --law l.toml", 2, "--law");
+  expect("microsim x.toml --law l.toml", 2, "--law: microsim has no such option; commands with it are run,");
 }
 
 TEST(CommandLine, MissingSceneIsFileTroubleAndMakesNothing) {

@@ -93,10 +93,10 @@ TEST_F(MacroLammps, OptionsThatMeanNothingAreRefusedBeforeAnyWork) {
   expect(macro("run", "--engine lammps --write-only --set macro.preparation=lammps --set macro.construction=voids"), 2,
          {"preparation", "mixed"});
   expect(macro("run", "--set macro.preparation=lamps"), 2, {"lammps"});
-  expect(run_the_program("run '" + file("scene.toml") + "' --engine lammps"), 2, {"softgrain macrosim, not with run"});
+  expect(run_the_program("microsim '" + file("scene.toml") + "'"), 2, {"softgrain run or macrosim, not with microsim"});
   write_text_atomic(file("pipeline.toml"), kTinyPipeline);
   expect(run_the_program("run '" + file("pipeline.toml") + "' --engine lammps --out '" + file("run") + "'"), 2,
-         {"\"pipeline\" run in our own engine alone", "\"material\" (softgrain run)"});
+         {"--engine: scenes of kind \"pipeline\" run in our own engine alone", "\"macro\", \"material\""});
   ::setenv("SOFTGRAIN_LAMMPS", "/nowhere/softgrain-lammps", 1);
   expect(macro("run", "--engine lammps"), 2, {"SOFTGRAIN_LAMMPS", "no program there"});
   EXPECT_FALSE(fs::exists(file("run") + "/log.txt"));
@@ -105,7 +105,7 @@ TEST_F(MacroLammps, OptionsThatMeanNothingAreRefusedBeforeAnyWork) {
 TEST_F(MacroLammps, ACommandThatRunsNoLammpsRefusesItsPreparation) {
   write_text_atomic(file("pipeline.toml"), std::string(kTinyPipeline) + "preparation = \"lammps\"\n");
   expect(run_the_program("run '" + file("pipeline.toml") + "' --out '" + file("run") + "'"), 2,
-         {"preparation", "softgrain macrosim", "--engine lammps"});
+         {"preparation", "kind \"macro\" and \"material\"", "--engine lammps"});
 }
 
 TEST_F(MacroLammps, WriteOnlyNeedsNoLammpsAndWritesTheSameTwice) {

@@ -117,17 +117,6 @@ TEST(PythonReader, ReadsAPipeline) {
   EXPECT_EQ(has_macro ? seen["macro"].size() : 0U, has_macro ? load_macro(run + "/macro.h5").size() : 0U);
 }
 
-/// Which command runs a kind is written in the package too.
-TEST(PythonReader, KnowsTheCommandOfEveryKind) {
-  const std::string python = python_with_h5py();
-  if (python.empty()) GTEST_SKIP() << "no Python with numpy (Debian: python3-h5py python3-numpy)";
-  for (const SceneKind& kind : scene_kinds()) {
-    const ProgramOutcome done = output_of("PYTHONDONTWRITEBYTECODE=1 PYTHONPATH='" + kPackage + "' " + python +
-                                          " -c 'import softgrain; print(softgrain.command_of(\"" + kind.name + "\"))'");
-    EXPECT_EQ(done.output, std::string(kind.command) + "\n") << kind.name;
-  }
-}
-
 TEST(PythonReader, ReadsParticles) {
   const std::string python = python_with_h5py();
   if (python.empty()) GTEST_SKIP() << "no Python with h5py (Debian: python3-h5py python3-numpy)";

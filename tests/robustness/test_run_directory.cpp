@@ -190,4 +190,23 @@ TEST_F(RunDirectory, ResumeOfAFinishedRunRefusesAnotherSceneSeedOrLaw) {
   EXPECT_NE(load_macro(out("macro.h5")).at(0).stress_axial.back(), stress);
 }
 
+/// The command of a kind and `run` are two names for the same: either goes on with what the other began.
+TEST_F(RunDirectory, RunAndTheCommandOfTheKindGoOnWithEachOther) {
+  const auto by_run = [&](const std::string& scene, const std::string& more) {
+    return run_the_program("run '" + file(scene) + "' --quiet --out '" + file("out") + "' " + more);
+  };
+  expect(by_run("macro.toml", "--law '" + file("law.toml") + "'"), 0);
+  EXPECT_EQ(summary_of(file("out"))["command"], "macrosim");
+  expect(macro("--resume"), 0);
+  expect(by_run("macro.toml", "--resume"), 0);
+  expect(by_run("macro.toml", "--resume --seed 7"), 2, {"belongs to another scene"});
+  expect(macro(), 0);
+  expect(by_run("macro.toml", "--resume"), 0);
+  expect(by_run("particles.toml", "--law '" + file("law.toml") + "' --bands 20"), 2,
+         {"--law, --bands: scenes of kind \"particles\" take no law", "\"macro\""});
+  expect(by_run("particles.toml", ""), 0);
+  EXPECT_EQ(summary_of(file("out"))["command"], "microsim");
+  expect(particles("--resume"), 0);
+}
+
 }  // namespace

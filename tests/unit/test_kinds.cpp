@@ -24,15 +24,49 @@ TEST(Kinds, EveryOneIsWholeAndNamedOnce) {
     EXPECT_TRUE(names.insert(k.name).second) << k.name;
     EXPECT_TRUE(k.run != nullptr && k.check != nullptr && k.read != nullptr) << k.name;
     EXPECT_EQ(complaint(k.name, k.command), "") << k.name;
+    EXPECT_EQ(complaint(k.name, "run"), "") << k.name;
+    EXPECT_STRNE(k.starter, "") << k.name;
     EXPECT_STREQ(kind_of(Scene::parse("kind = \"" + std::string(k.name) + "\"\n", "s.toml")).name, k.name);
   }
 }
 
-TEST(Kinds, TheCommandThatRunsAKindIsNamed) {
-  EXPECT_EQ(complaint("cohesive-powder", "run"),
-            "s.toml:1: kind = \"cohesive-powder\": scenes of this kind run with softgrain microsim, not with run");
-  EXPECT_NE(complaint("pipeline", "macrosim").find("softgrain run"), std::string::npos);
-  EXPECT_NE(complaint("macro", "microsim").find("softgrain macrosim"), std::string::npos);
+TEST(Kinds, TheCommandsThatRunAKindAreNamed) {
+  EXPECT_EQ(complaint("cohesive-powder", "macrosim"),
+            "s.toml:1: kind = \"cohesive-powder\": scenes of this kind run with softgrain run or microsim, not with "
+            "macrosim");
+  EXPECT_NE(complaint("pipeline", "macrosim").find("softgrain run, not with macrosim"), std::string::npos);
+  EXPECT_NE(complaint("macro", "microsim").find("softgrain run or macrosim"), std::string::npos);
+}
+
+/// What the command line asks for and the kind has no use for.
+std::string idle_options(const std::string& kind, const CommonOptions& options) {
+  try {
+    refuse_idle_options(kind_of(Scene::parse("kind = \"" + kind + "\"\n", "s.toml")), options);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Kinds, OptionsThatAKindHasNoUseForAreRefusedInOneMessage) {
+  CommonOptions law;
+  law.law = "law.toml";
+  law.bands = 20;
+  EXPECT_EQ(idle_options("pipeline", law),
+            "--law, --bands: scenes of kind \"pipeline\" take no law from the command line; those of \"macro\" do");
+  EXPECT_EQ(idle_options("macro", law), "");
+  CommonOptions lammps;
+  lammps.engine = "lammps";
+  lammps.ranks = 2;
+  EXPECT_EQ(
+      idle_options("particles", lammps),
+      "--engine, --ranks: scenes of kind \"particles\" run in our own engine alone and take none of LAMMPS; those "
+      "of \"macro\", \"material\" do");
+  for (const char* kind : {"macro", "material"}) EXPECT_EQ(idle_options(kind, lammps), "");
+  CommonOptions twins;
+  twins.twin_cache = "twins";
+  EXPECT_NE(idle_options("material", twins).find("--twin-cache: scenes of kind \"material\" have nothing to keep"),
+            std::string::npos);
 }
 
 /// What the reader of its kind says of a scene.

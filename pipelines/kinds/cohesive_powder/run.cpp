@@ -227,6 +227,21 @@ void read_any_powder(const Scene& scene) {
     (void)read_powder(scene);
 }
 
+/// As SceneKind::starter.
+constexpr const char* kCohesivePowderStarter = R"(title = "A small cohesive powder"
+seed = 1
+samples = 2
+[disks]
+count = 100
+solid_fraction = 0.36
+[contact]
+kappa = 1e3
+mu = 0.5
+[assembly]
+method = 1
+pressure = 0.01
+)";
+
 }  // namespace
 
 SceneKind cohesive_powder_kind() {
@@ -235,7 +250,8 @@ SceneKind cohesive_powder_kind() {
           .run = run_powder_scene,
           .check = [](const Scene& scene, const CommonOptions&, Findings& out) { check_powder(scene, out); },
           .read = read_any_powder,
-          .results = powder_results()};
+          .results = powder_results(),
+          .starter = kCohesivePowderStarter};
 }
 
 }  // namespace softgrain

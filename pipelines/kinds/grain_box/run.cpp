@@ -78,6 +78,25 @@ Outcome run_grain_boxes(const GrainBoxSetup& setup, const Run& run) {
   return {std::move(summary), console_summary(results)};
 }
 
+/// As SceneKind::starter.
+constexpr const char* kGrainBoxStarter = R"(title = "A small pack of glass beads"
+seed = 1
+[material]
+radius_min = "0.07 mm"
+radius_max = "0.13 mm"
+E = "70 GPa"
+nu = 0.2
+mu = 0.3
+[box]
+grains = 100
+[generation]
+pressure = "10 MPa"
+[loading]
+test = "uniaxial"
+increment = 5e-4
+end_stress = "30 MPa"
+)";
+
 }  // namespace
 
 SceneKind grain_box_kind() {
@@ -89,7 +108,8 @@ SceneKind grain_box_kind() {
       .run = run_grain_boxes,
       .check = check_grain_box,
       .results = grain_box_results(),
-      .explored_from = {"", "[loading]\ntest = \"polyaxial\"\ncontrol = [\"stress\", \"strain\", \"strain\"]\n"}});
+      .explored_from = {"", "[loading]\ntest = \"polyaxial\"\ncontrol = [\"stress\", \"strain\", \"strain\"]\n"},
+      .starter = kGrainBoxStarter});
 }
 
 }  // namespace softgrain

@@ -232,6 +232,46 @@ NextSteps next_of(const report::RunData& run) {
           "says what that takes)."};
 }
 
+/// As SceneKind::starter.
+constexpr const char* kHierarchyStarter = R"(title = "Soft particles within soft particles"
+seed = 1
+[packing]
+trials = 1000
+polydispersity = 3.0
+rmax_over_shell = 0.5
+beta = 3.0
+placement = "voids"
+[multi_contact]
+increment = 0.025
+packings_min = 6
+packings_max = 6
+points = 4
+[[configuration]]
+arrangement = "one"
+partner = "plane"
+overlap = 0.3
+[[configuration]]
+arrangement = "one"
+partner = "solid"
+ratio = 1.0
+overlap = 0.35
+[[configuration]]
+arrangement = "one"
+partner = "soft"
+ratio = 1.0
+overlap = 0.4
+[hierarchy]
+levels = 2
+form = "isotropic"
+replicates = 10
+[fixed_point]
+iterations = 2
+tolerance = 0.5
+[check]
+packings = 2
+overlaps = [0.2, 0.3]
+)";
+
 }  // namespace
 
 SceneKind hierarchy_kind() {
@@ -247,7 +287,8 @@ SceneKind hierarchy_kind() {
                   .values = values_of,
                   .next = next_of},
       .keeps = {.measurements = true},
-      .explored_from = {"", "[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"}});
+      .explored_from = {"", "[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"},
+      .starter = kHierarchyStarter});
 }
 
 }  // namespace softgrain

@@ -368,6 +368,33 @@ NextSteps next_of(const report::RunData& run) {
       "scene."};
 }
 
+/// As SceneKind::starter.
+constexpr const char* kInverseStarter = R"(title = "Which soft particle gives these forces?"
+seed = 1
+[packing]
+trials = 100
+polydispersity = 4.0
+beta = 8.0
+count = 2
+[measure]
+relaxation = "damped"
+[measure.damped]
+increment = 0.02
+tolerance = 1e-2
+[target]
+delta = [0.2, 0.3, 0.4]
+force = ["0.1 N", "0.5 N", "1.4 N"]
+error = ["0.01 N", "0.05 N", "0.14 N"]
+discrepancy = 0.05
+[search]
+mu = [0.05, 0.9]
+budget = 8
+design = 4
+batch = 2
+confirm = 2
+replicates = 20
+)";
+
 }  // namespace
 
 SceneKind inverse_kind() {
@@ -380,7 +407,8 @@ SceneKind inverse_kind() {
                                             .results = {.files = {{.names = "evaluations\\.csv"}},
                                                         .sections = {{Part::answer, report::inverse_section}},
                                                         .values = values_of,
-                                                        .next = next_of}});
+                                                        .next = next_of},
+                                            .starter = kInverseStarter});
 }
 
 }  // namespace softgrain

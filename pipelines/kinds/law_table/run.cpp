@@ -77,6 +77,36 @@ Outcome run_law_table(const LawTableSetup& setup, const Run& run) {
   return {summarise(setup, result, run), console_summary(result, run)};
 }
 
+/// As SceneKind::starter.
+constexpr const char* kLawTableStarter = R"(title = "One soft particle between several neighbours"
+seed = 1
+[packing]
+polydispersity = 5.0
+rmax_over_shell = 0.5
+beta = 3.0
+placement = "voids"
+[multi_contact]
+increment = 0.01
+packings_min = 12
+packings_max = 12
+points = 4
+[[configuration]]
+arrangement = "one"
+partner = "plane"
+overlap = 0.3
+[[configuration]]
+arrangement = "opposite"
+partner = "plane"
+overlap = 0.26
+[[configuration]]
+arrangement = "one"
+partner = "soft"
+ratio = 1.0
+overlap = 0.4
+[calibrate]
+replicates = 10
+)";
+
 }  // namespace
 
 SceneKind law_table_kind() {
@@ -89,7 +119,8 @@ SceneKind law_table_kind() {
       .check = check_law_table,
       .results = law_table_results(),
       .keeps = {.measurements = true},
-      .explored_from = {"", "[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"}});
+      .explored_from = {"", "[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"},
+      .starter = kLawTableStarter});
 }
 
 }  // namespace softgrain

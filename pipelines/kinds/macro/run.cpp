@@ -234,6 +234,19 @@ void check_with_options(const Scene& scene, const CommonOptions& options, Findin
   check_macro_scene(macro, out);
 }
 
+/// As SceneKind::starter.
+constexpr const char* kMacroStarter = R"(title = "Compression of solid grains and soft particles"
+seed = 1
+law = "../results/law_table/law_table.toml"
+[macro]
+bodies = 60
+soft_share = 0.45
+test = "oedometric"
+strain = 0.15
+steps = 10
+resolved = false
+)";
+
 }  // namespace
 
 SceneKind macro_kind() {
@@ -247,7 +260,8 @@ SceneKind macro_kind() {
           .takes_law = true,
           .takes_engine = true,
           .keeps = {.packings = true, .twins = true},
-          .explored_from = {"", explored_stages()}};
+          .explored_from = {"", explored_stages()},
+          .starter = kMacroStarter};
 }
 
 }  // namespace softgrain

@@ -309,10 +309,9 @@ void read_twin_motion(const SceneTable& t, TwinMotion& m) {
 
 void require_own_preparation(const SceneTable& macro, const MacroSetup& setup) {
   if (setup.spec.preparation == Preparation::lammps)
-    macro.add_error(
-        "preparation",
-        "\"lammps\" goes with scenes of kind \"macro\" (softgrain macrosim) and \"material\" (softgrain run), and "
-        "--engine lammps");
+    macro.add_error("preparation",
+                    "\"lammps\" goes with scenes of kind \"macro\" and \"material\", and "
+                    "--engine lammps");
 }
 
 MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& defaults) {

@@ -210,19 +210,45 @@ Outcome run_macro_comparison(const MacroComparisonSetup& setup, const Run& run) 
   return {json_of(summary), console_summary(results, run)};
 }
 
+/// As SceneKind::starter.
+constexpr const char* kMacroComparisonStarter = R"(title = "A law against its resolved twin"
+seed = 1
+[packing]
+polydispersity = 3.0
+trials = 200
+count = 2
+[law]
+card = "../results/published/law.toml"
+[macro]
+construction = "voids"
+bodies = 20
+soft_share = 0.35
+soft_radius_max = "12 mm"
+soft_polydispersity = 2.0
+steps = 5
+strain = 0.15
+[[scene]]
+samples = 2
+[[scene]]
+test = "shear"
+preload = 0.05
+preload_steps = 2
+strain = 0.05
+)";
+
 }  // namespace
 
 SceneKind macro_comparison_kind() {
-  return scene_kind(
-      TypedKind<MacroComparisonSetup>{.name = "macro-comparison",
-                                      .command = "run",
-                                      .read = read_macro_comparison,
-                                      .inputs = inputs_of,
-                                      .run = run_macro_comparison,
-                                      .check = check_macro_comparison,
-                                      .results = macro_comparison_results(),
-                                      .keeps = {.packings = true, .twins = true},
-                                      .explored_from = {"", explored_stages(), explored_stages("scene")}});
+  return scene_kind(TypedKind<MacroComparisonSetup>{.name = "macro-comparison",
+                                                    .command = "run",
+                                                    .read = read_macro_comparison,
+                                                    .inputs = inputs_of,
+                                                    .run = run_macro_comparison,
+                                                    .check = check_macro_comparison,
+                                                    .results = macro_comparison_results(),
+                                                    .keeps = {.packings = true, .twins = true},
+                                                    .explored_from = {"", explored_stages(), explored_stages("scene")},
+                                                    .starter = kMacroComparisonStarter});
 }
 
 }  // namespace softgrain

@@ -415,6 +415,21 @@ ExitStatus run_material(const Scene& scene, const CommonOptions& options) {
   return run.finish(json_of(summary), console_summary(summary));
 }
 
+/// As SceneKind::starter.
+constexpr const char* kMaterialStarter = R"(title = "Compression of a graded packing"
+seed = 1
+samples = 2
+[grains]
+count = 200
+ratio = 2.0
+[packing]
+preparation = "fast"
+[test]
+test = "oedometric"
+strain = 0.1
+steps = 10
+)";
+
 }  // namespace
 
 SceneKind material_kind() {
@@ -427,7 +442,8 @@ SceneKind material_kind() {
           .results = material_results(),
           .takes_engine = true,
           .keeps = {.measurements = true, .packings = true},
-          .explored_from = {"", explored_stages(), explored_stages("loading"), explored_stages("variant")}};
+          .explored_from = {"", explored_stages(), explored_stages("loading"), explored_stages("variant")},
+          .starter = kMaterialStarter};
 }
 
 }  // namespace softgrain

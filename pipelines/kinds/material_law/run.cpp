@@ -54,6 +54,27 @@ Outcome run_material_law(const MaterialLawScene& law, const Run& run) {
   return {json_of(summary), text};
 }
 
+/// As SceneKind::starter.
+constexpr const char* kMaterialLawStarter = R"(title = "Cell law of a material of ratio 2"
+seed = 1
+samples = 3
+[grains]
+count = 300
+ratio = 2.0
+[law]
+split = 0.7
+mixtures = [0.15, 0.3, 0.5, 0.75]
+cells = 40
+shear_strain = 0.04
+[packing]
+preparation = "fast"
+[test]
+strain = 0.05
+steps = 3
+increments_per_step = 2
+preload_steps = 1
+)";
+
 }  // namespace
 
 SceneKind material_law_kind() {
@@ -64,7 +85,8 @@ SceneKind material_law_kind() {
                                                 .run = run_material_law,
                                                 .check = check_material_law,
                                                 .results = material_law_results(),
-                                                .keeps = {.measurements = true, .packings = true}});
+                                                .keeps = {.measurements = true, .packings = true},
+                                                .starter = kMaterialLawStarter});
 }
 
 }  // namespace softgrain

@@ -55,6 +55,29 @@ void check_models(const MaterialModelsScene& scene, Findings& out) {
   for (const MaterialModel& m : scene.models) out.lines += "  model " + m.name + ": " + to_string(m.kind) + "\n";
 }
 
+/// As SceneKind::starter.
+constexpr const char* kMaterialModelsStarter = R"(title = "A resolved material and two models of it"
+seed = 1
+samples = 2
+[grains]
+count = 120
+ratio = 2.0
+[packing]
+preparation = "fast"
+[test]
+steps = 3
+strain = 0.05
+[[model]]
+name = "substitute"
+kind = "substitute"
+split = 0.8
+smallest = 0.6
+[[model]]
+name = "coarse"
+kind = "coarse"
+split = 0.8
+)";
+
 }  // namespace
 
 SceneKind material_models_kind() {
@@ -67,7 +90,8 @@ SceneKind material_models_kind() {
       .check = check_models,
       .results = material_models_results(),
       .keeps = {.measurements = true, .packings = true},
-      .explored_from = {"", explored_stages(), explored_stages("loading"), explored_stages("variant")}});
+      .explored_from = {"", explored_stages(), explored_stages("loading"), explored_stages("variant")},
+      .starter = kMaterialModelsStarter});
 }
 
 }  // namespace softgrain

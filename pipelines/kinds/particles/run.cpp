@@ -74,6 +74,32 @@ void read_any_particles(const Scene& scene, const std::optional<std::uint64_t>& 
     (void)read_particles_scene<3>(scene, seed);
 }
 
+/// As SceneKind::starter.
+constexpr const char* kParticlesStarter = R"(title = "Two glass beads meet"
+[material.glass]
+E = "1 MPa"
+nu = 0.2
+density = 2500.0
+[[contact]]
+pair = ["glass", "glass"]
+law = "hertz-tsuji"
+restitution = 0.8
+mu = 0.4
+[[particle]]
+material = "glass"
+radius = "5 mm"
+position = [0.0, 0.0, 0.0]
+velocity = [0.1, 0.0, 0.0]
+[[particle]]
+material = "glass"
+radius = "5 mm"
+position = ["12 mm", "2 mm", 0.0]
+[time]
+end = 0.2
+[output]
+every = 0.01
+)";
+
 }  // namespace
 
 SceneKind particles_kind() {
@@ -90,7 +116,8 @@ SceneKind particles_kind() {
                         "= \"cohesive\"\n"
                         "mu = 0.5\nrolling_stiffness = 0.1\n",
                         "[material.NAME]\ndensity = 1.0\n[[contact]]\npair = [\"NAME\", \"rigid\"]\nlaw = "
-                        "\"law-card\"\nfile = \"NAME\"\n"}};
+                        "\"law-card\"\nfile = \"NAME\"\n"},
+      .starter = kParticlesStarter};
 }
 
 }  // namespace softgrain

@@ -292,6 +292,39 @@ NextSteps next_of(const report::RunData& run) {
           "`softgrain run pipelines/law_table.toml`, more packings from `--set packing.count=32`."};
 }
 
+/// As SceneKind::starter.
+constexpr const char* kPipelineStarter = R"(title = "Measure, fit, simulate"
+seed = 1
+[material]
+E = "0.5 MPa"
+mu = 0.3
+[packing]
+shell_radius = "16 mm"
+polydispersity = 8.0
+rmax_over_shell = 0.5
+beta = 3.0
+placement = "voids"
+count = 12
+[measure]
+relaxation = "damped"
+[measure.damped]
+increment = 0.01
+[measure.soft_solid]
+deltas = [0.1, 0.15, 0.2, 0.25, 0.3]
+tangential_deltas = [0.2, 0.3]
+angles_deg = [-0.05, 0.05]
+[measure.soft_soft]
+deltas = [0.1, 0.15, 0.2, 0.225, 0.25, 0.275, 0.3, 0.325, 0.35, 0.375, 0.4]
+tangential_deltas = [0.35, 0.4]
+angles_deg = [-0.05, 0.05]
+[calibrate]
+replicates = 20
+[macro]
+bodies = 20
+steps = 6
+strain = 0.15
+)";
+
 }  // namespace
 
 SceneKind pipeline_kind() {
@@ -304,9 +337,10 @@ SceneKind pipeline_kind() {
       .check = check_pipeline,
       .results = {.next = next_of},
       .keeps = {.measurements = true, .packings = true, .twins = true},
-      .explored_from = {
-          "", "[macro]\n" + explored_stages(),
-          "[macro]\n[multi_contact]\n[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"}});
+      .explored_from =
+          {"", "[macro]\n" + explored_stages(),
+           "[macro]\n[multi_contact]\n[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"},
+      .starter = kPipelineStarter});
 }
 
 }  // namespace softgrain

@@ -346,6 +346,32 @@ Outcome run_recipe(const RecipeScene& recipe, const Run& run) {
   return {json_of(summary), recipe_text(summary)};
 }
 
+/// As SceneKind::starter.
+constexpr const char* kRecipeStarter = R"(title = "A small recipe"
+seed = 1
+[grains]
+count = 150
+ratio = 2.2
+[levels]
+ratio = 1.6
+mixtures = [0.25, 0.5, 0.75]
+[law]
+cells = 40
+shear_strain = 0.04
+[packing]
+preparation = "fast"
+[test]
+steps = 4
+increments_per_step = 2
+strain = 0.05
+preload_steps = 1
+[check]
+grains = 300
+[macro]
+grains = 40
+samples = 1
+)";
+
 }  // namespace
 
 SceneKind recipe_kind() {
@@ -356,7 +382,8 @@ SceneKind recipe_kind() {
                                            .run = run_recipe,
                                            .check = check_recipe,
                                            .results = recipe_results(),
-                                           .keeps = {.measurements = true, .packings = true}});
+                                           .keeps = {.measurements = true, .packings = true},
+                                           .starter = kRecipeStarter});
 }
 
 }  // namespace softgrain

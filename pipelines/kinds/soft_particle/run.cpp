@@ -45,6 +45,26 @@ Outcome run_soft_particle(const SoftParticleScene& scene, const Run& run) {
   return {json_of(summary), console};
 }
 
+/// As SceneKind::starter.
+constexpr const char* kSoftParticleStarter = R"(title = "Force of a soft particle against a plane"
+seed = 1
+[material]
+E = "0.5 MPa"
+mu = 0.3
+[packing]
+polydispersity = 5.0
+beta = 3.0
+count = 4
+[measure]
+relaxation = "damped"
+[measure.damped]
+increment = 0.02
+[measure.soft_solid]
+deltas = [0.1, 0.15, 0.2, 0.25, 0.3]
+tangential_deltas = [0.2, 0.3]
+angles_deg = [-0.05, 0.05]
+)";
+
 }  // namespace
 
 SceneKind soft_particle_kind() {
@@ -55,7 +75,8 @@ SceneKind soft_particle_kind() {
       .inputs = inputs_of,
       .run = run_soft_particle,
       .check = [](const SoftParticleScene& scene, Findings& out) { (void)check_measurements(scene.measure, out); },
-      .results = soft_particle_results()});
+      .results = soft_particle_results(),
+      .starter = kSoftParticleStarter});
 }
 
 }  // namespace softgrain

@@ -13,10 +13,10 @@ from softgrain.errors import (BadInput, FileTrouble, InputError, Interrupted, Io
                               UnusableResult)
 from softgrain.law import CardLaw, Law, PairLaw, TableLaw, ThresholdPowerLaw
 from softgrain.results import (MacroCurve, MeasuredRun, Quantity, Run, read_macro, read_measurements, read_summary)
-from softgrain.running import Findings, check, command_of, run
+from softgrain.running import Findings, check, run
 from softgrain.snapshot import Contacts, Snapshot, read_snapshots
 
 __all__ = ["CardLaw", "Contacts", "Findings", "InputError", "Interrupted", "IoError", "Law", "MacroCurve", "MeasuredRun", "Mistake",
            "PairLaw", "Quantity", "Run", "Snapshot", "SoftgrainError", "TableLaw", "ThresholdPowerLaw", "UnusableResult", "check",
-           "command_of", "read_macro", "read_measurements", "read_snapshots", "read_summary", "run"]
+           "read_macro", "read_measurements", "read_snapshots", "read_summary", "run"]
 __version__ = "0.2.0"

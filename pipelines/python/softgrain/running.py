@@ -23,15 +23,6 @@ from softgrain.figures import Drawn
 from softgrain.results import Run
 from softgrain.toml_text import scene_text, settings
 
-# Kinds that the program runs by another command than `run` (a test holds this to the program's own table).
-_COMMANDS = {"soft-particle": "microsim", "grain-box": "microsim", "cohesive-powder": "microsim", "particles": "microsim",
-             "macro": "macrosim"}
-
-
-def command_of(kind):
-    """The command that runs scenes of a kind."""
-    return _COMMANDS.get(kind, "run")
-
 
 @contextmanager
 def _scene_file(scene):
@@ -272,7 +263,7 @@ def run(scene, *, set=None, out=None, law=None, threads=None, seed=None, resume=
     kind = _kind(scene, set)
     directory = Path(out) if out is not None else _directory(scene, kind)
     with _scene_file(scene) as (file, paths):
-        arguments = [command_of(kind), file, "--out", str(directory), *settings(set), *_option("--law", law),
+        arguments = ["run", file, "--out", str(directory), *settings(set), *_option("--law", law),
                      *_option("--threads", threads), *_option("--seed", seed), *_option("--bands", bands),
                      *(["--resume"] if resume else []), *map(str, options)]
         ended = execute(arguments, progress)
@@ -280,10 +271,6 @@ def run(scene, *, set=None, out=None, law=None, threads=None, seed=None, resume=
             return Run(directory)
         try:
             _raise_for(ended, file, paths, directory)
-        except InputError as e:
-            if e.key == "kind":
-                check(scene, set=set)  # knows all kinds, not those of one command alone
-            raise
         except UnusableResult as e:
             if (directory / "summary.json").exists():
                 e.run = Run(directory)
