@@ -8,7 +8,6 @@
 
 #include "common/core/error.h"
 #include "common/io/csv_file.h"
-#include "common/packing/sieve_table.h"
 
 namespace softgrain {
 
@@ -90,36 +89,9 @@ double must(const std::optional<double>& value, const CsvFile& csv, const CsvRow
   return *value;
 }
 
-/// What goes with the file of a sieve curve. The keys are asked for before the file is read.
-SieveOptions read_sieve_options(const SceneTable& t) {
-  SieveOptions options;
-  options.column = t.text({"column",
-                           "file of a sieve curve: which column counts and as what, `passing`, `retained` (on each "
-                           "sieve), `cumulative retained`, the title of a column, or `TITLE as MEANING`",
-                           "as the file says"},
-                          "");
-  if (t.has("unit"))
-    options.unit = t.choice({"unit",
-                             "file of a sieve curve: unit of sizes without one; `phi`: -log2 of mm, `astm`: numbers "
-                             "of ASTM E11",
-                             "as the file says"},
-                            {"mm", "um", "cm", "m", "in", "phi", "astm"});
-  const auto size = [&](const Key& key) -> std::optional<double> {
-    if (!t.has(key.name)) return std::nullopt;
-    return t.number(key, Unit::length, Range::positive());
-  };
-  options.smallest = size({"smallest",
-                           "file of a sieve curve: diameter that is below all grains, where some pass the "
-                           "finest sieve"});
-  options.largest = size({"largest",
-                          "file of a sieve curve: diameter that is above all grains, where the coarsest "
-                          "sieve retains some"});
-  return options;
-}
-
 Grading read_curve(const SceneTable& t, int dimension) {
   if (t.has("file")) {
-    const SieveOptions options = read_sieve_options(t);
+    const SieveOptions options = read_sieve_options(t);  // asked for before the file is read
     return read_sieve_file(t.resolve(t.text(kFileKey)), options, dimension).grading;
   }
   const std::vector<double> openings =
@@ -158,6 +130,32 @@ Grading read_list(const SceneTable& t, int dimension) {
 }
 
 }  // namespace
+
+SieveOptions read_sieve_options(const SceneTable& t) {
+  SieveOptions options;
+  options.column = t.text({"column",
+                           "file of a sieve curve: which column counts and as what, `passing`, `retained` (on each "
+                           "sieve), `cumulative retained`, the title of a column, or `TITLE as MEANING`",
+                           "as the file says"},
+                          "");
+  if (t.has("unit"))
+    options.unit = t.choice({"unit",
+                             "file of a sieve curve: unit of sizes without one; `phi`: -log2 of mm, `astm`: numbers "
+                             "of ASTM E11",
+                             "as the file says"},
+                            {"mm", "um", "cm", "m", "in", "phi", "astm"});
+  const auto size = [&](const Key& key) -> std::optional<double> {
+    if (!t.has(key.name)) return std::nullopt;
+    return t.number(key, Unit::length, Range::positive());
+  };
+  options.smallest = size({"smallest",
+                           "file of a sieve curve: diameter that is below all grains, where some pass the "
+                           "finest sieve"});
+  options.largest = size({"largest",
+                          "file of a sieve curve: diameter that is above all grains, where the coarsest "
+                          "sieve retains some"});
+  return options;
+}
 
 Grading read_sieve_curve(const std::string& path, int dimension) {
   return read_sieve_file(path, {}, dimension).grading;

@@ -7,6 +7,7 @@
 
 #include "common/io/scene.h"
 #include "common/packing/grading.h"
+#include "common/packing/sieve_table.h"
 
 namespace softgrain {
 
@@ -24,6 +25,9 @@ Grading stored_grading(const std::string& text, int dimension = 3);
 /// Scene::read mistakes are noted, and none comes back.
 std::optional<Grading> read_sizes(const SceneTable& table, const Key& key, std::initializer_list<const char*> instead,
                                   int dimension = 3);
+
+/// The keys that go with the file of a sieve curve: column, unit, smallest, largest.
+SieveOptions read_sieve_options(const SceneTable& table);
 
 /// A sieve analysis as CSV that needs no key beside it, see read_sieve_file(). Throws InputError, IoError.
 Grading read_sieve_curve(const std::string& path, int dimension = 3);

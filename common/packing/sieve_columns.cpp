@@ -295,6 +295,7 @@ SieveTitle sieve_title(const CsvColumn& column) {
     title.measure = SieveMeasure::length;  // or any other quantity
     title.unit = column.unit;
   }
+  if (is_size(title.column) && title.measure != SieveMeasure::length) title.unit.clear();
   return title;
 }
 

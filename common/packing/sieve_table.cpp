@@ -100,7 +100,10 @@ class SieveReader {
       before = row.line;
       SieveLine line{sieve_size(plain(row, choice_.size, sizes)), "", row.cells[choice_.value], row.line};
       if (!csv::is_missing(line.cell)) line.value = plain(row, choice_.value, values);
-      if (line.size.kind != SieveSize::Kind::none) {
+      const std::string& label = *std::ranges::find_if(row.cells, [](const std::string& c) { return !c.empty(); });
+      if (line.value.empty() && label != row.cells[choice_.size] && is_footer(label)) {
+        below = true;
+      } else if (line.size.kind != SieveSize::Kind::none) {
         lines_.push_back(std::move(line));
       } else if (is_total(row.cells[choice_.size]) || (row.cells[choice_.size].empty() && !passes())) {
         if (!line.value.empty()) total_ = std::move(line);

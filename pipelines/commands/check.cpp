@@ -36,7 +36,8 @@ void check_file(const std::string& path, const CommonOptions& options, Findings&
   const auto form = file_form(path);
   const bool directory = std::filesystem::is_directory(path, ignored);
   const bool scene = !directory && (!form || form == FileForm::toml) && !holds_laws(path);
-  if (!scene && !options.overrides.empty()) throw InputError("--set: " + path + " is no scene");
+  const bool table = !directory && form && form != FileForm::toml && form != FileForm::hdf5 && form != FileForm::json;
+  if (!scene && !table && !options.overrides.empty()) throw InputError("--set: " + path + " is no scene");
   if (!scene && options.seed_given) throw InputError("--seed: " + path + " is no scene");
   if (directory)
     check_directory(path, out);
@@ -44,8 +45,8 @@ void check_file(const std::string& path, const CommonOptions& options, Findings&
     check_data(path, out);
   else if (form == FileForm::json)
     check_summary(path, out);
-  else if (form && form != FileForm::toml)
-    check_table(path, out);
+  else if (table)
+    check_table(path, options.overrides, out);
   else if (scene)
     check_scene(path, options, out);
   else
