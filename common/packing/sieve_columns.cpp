@@ -103,12 +103,12 @@ bool is_of_no_part(const std::string& words) {
                          "sieve weight", "weight of sieve", "siebmasse", "brutto",     " gross ",
                          "with sample",  "mit probe",       "+",         " limit",     " grenz",
                          " soll",        " spec",           " loss",     "verlust",    " error",
-                         " deviation",   "einwaage"});
+                         " deviation",   "einwaage",        " module "});
 }
 
 SieveColumn value_column(const std::string& words, SieveMeasure measure) {
   if (has_any(words, {"passing", "passed", "passant", "finer", "undersize", "durchgang", "durchgaeng", "tamisat",
-                      " tamise ", " tamises "}))
+                      " tamise ", " tamises ", "<", "smaller", "kleiner", "inferieur", " q3 "}))
     return SieveColumn::passing;
   const bool retained = has_any(words, {"retain", "retenu", "oversize", "coarser", "rueckst", "ruckst", "refus"});
   const bool mass = has_any(words, {"mass", "weight", " wt ", "gewicht", "poids", "auswaage"});
@@ -117,7 +117,7 @@ SieveColumn value_column(const std::string& words, SieveMeasure measure) {
   const bool each =
       has_any(words, {"each", "indiv", "partial", "partiel", "einzel", "je sieb", "auf dem sieb", "differential",
                       "fraktion", " fraction ", "klasse", "elementaire", "anteil", "on sieve"});
-  if (retained && all) return SieveColumn::cumulative;
+  if (all && (retained || has_any(words, {">"}))) return SieveColumn::cumulative;
   if (all && (mass || measure != SieveMeasure::length)) return SieveColumn::running;
   if (each && (retained || mass || measure == SieveMeasure::percent)) return SieveColumn::retained;
   return retained || mass ? SieveColumn::unclear : SieveColumn::other;

@@ -185,6 +185,8 @@ SieveSize sieve_size(const std::string& cell) {
                             "rest",   "<",       "unter",      "kleiner",      "below",         "under",
                             "minus",  "passing", "inferieur a"};
   if (take_word(text, kPan)) return pan_of(text);
+  if (const std::size_t plus = text.find('+'); text.starts_with('-') && plus != std::string::npos)
+    text = text.substr(plus) + "-" + text.substr(1, plus - 1);  // "-500 +250" passes 500 and not 250
   (void)take_word(text, std::array{">", "+", "ueber", "above", "over", "retained on"});
   SieveSize size{SieveSize::Kind::sieve};
   if (take_word(text, std::array{"no.", "no", "nr.", "nr", "num.", "n.", "#"})) size.unit = "astm";
@@ -231,6 +233,8 @@ std::optional<std::string> unit_of_numbers(const std::vector<std::string>& numbe
     values.push_back(decimal_of(number));
   }
   if (values.empty() || !std::ranges::all_of(values, is_iso_opening)) return std::nullopt;
+  for (const auto* series : {&astm_numbers(), &tyler_mesh()})
+    if (std::ranges::all_of(numbers, [&](const std::string& n) { return series->contains(n); })) return std::nullopt;
   const auto [low, high] = std::ranges::minmax(values);
   if (low >= 1e-3 * kFinest && low < kFinerThanInches && high <= kCoarsest) return "mm";
   if (low >= kFinest && high > kCoarsest) return "um";

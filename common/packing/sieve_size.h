@@ -29,7 +29,7 @@ double sieve_diameter(const std::string& number, const std::string& unit, bool n
 
 /// The unit that numbers without one must have; none where they could be of several. In mm where all are openings of
 /// ISO 565 in mm and one is below 0.1 mm, which no sieve has in inches; in um where all are openings of ISO 565 in um
-/// and one is above 125, which no sieve has in mm.
+/// and one is above 125, which no sieve has in mm; never where all may be numbers of ASTM E11 or mesh.
 std::optional<std::string> unit_of_numbers(const std::vector<std::string>& numbers);
 
 /// Whether these mesh numbers are those of ASTM E11 in every series that has them, or one is in no other series

@@ -20,23 +20,10 @@ namespace {
 
 constexpr const char* kInScene = "in the table of sizes of the scene";
 
-std::string percent_of_curve(double share) { return percent_text(share, {6}); }
-
 double snapped(double share) {
   for (const double end : {0.0, 1.0})
     if (std::abs(share - end) < kSieveRounding) return end;
   return share;
-}
-
-/// What passing that falls may be instead, from the smallest sieve to the largest.
-std::string guess(const std::vector<SieveRow>& rows) {
-  if (std::is_sorted(rows.begin(), rows.end(), [](auto& a, auto& b) { return a.passing > b.passing; }))
-    return ": this looks like what is retained in all; passing is 100 % less that";
-  double sum = 0.0;
-  for (const SieveRow& row : rows) sum += row.passing;
-  if (std::abs(sum - 1.0) > 0.02) return "";
-  return ": all add up to 100 %, which looks like what each sieve retains; passing is the sum of what finer sieves "
-         "retain";
 }
 
 /// A line of the table before its sizes and values have units.
@@ -98,17 +85,19 @@ class SieveReader {
     for (const CsvRow& row : csv_.rows()) {
       below = below || (!lines_.empty() && row.line > before + 1);
       before = row.line;
+      const std::string& cell = row.cells[choice_.size];
+      const std::string& label = *std::ranges::find_if(row.cells, [](const std::string& c) { return !c.empty(); });
       SieveLine line{sieve_size(plain(row, choice_.size, sizes)), "", row.cells[choice_.value], row.line};
       if (!csv::is_missing(line.cell)) line.value = plain(row, choice_.value, values);
-      const std::string& label = *std::ranges::find_if(row.cells, [](const std::string& c) { return !c.empty(); });
-      if (line.value.empty() && label != row.cells[choice_.size] && is_footer(label)) {
+      if (cell.empty() && sieve_size(label).kind == SieveSize::Kind::pan) line.size.kind = SieveSize::Kind::pan;
+      if (line.value.empty() && &label != &cell && is_footer(label)) {
         below = true;
       } else if (line.size.kind != SieveSize::Kind::none) {
         lines_.push_back(std::move(line));
-      } else if (is_total(row.cells[choice_.size]) || (row.cells[choice_.size].empty() && !passes())) {
+      } else if (is_total(label) || (cell.empty() && !passes())) {
         if (!line.value.empty()) total_ = std::move(line);
         below = true;
-      } else if (!below && !is_footer(row.cells[choice_.size]) && has_number(line.value)) {
+      } else if (!below && !is_footer(label) && has_number(line.value)) {
         refuse_size(row);
       }
     }
@@ -195,11 +184,14 @@ class SieveReader {
     }
   }
 
+  /// The pan by its name, as an opening of 0, or as "-63" below classes such as "-125 +63".
   [[nodiscard]] bool is_pan(const SieveLine& l) const {
     const std::string& unit = l.size.unit.empty() ? unit_ : l.size.unit;
     const bool zero = l.size.number.find_first_not_of("+-0.") == std::string::npos;
+    const bool classes = std::ranges::any_of(lines_, [](const SieveLine& other) { return !other.size.upper.empty(); });
+    const bool below = classes && l.size.number.starts_with('-');
     return l.size.kind == SieveSize::Kind::pan ||
-           (zero && unit != sieve_unit("phi") && unit != sieve_unit("astm") && unit != sieve_unit("mesh"));
+           ((zero || below) && unit != sieve_unit("phi") && unit != sieve_unit("astm") && unit != sieve_unit("mesh"));
   }
 
   /// Brings values into one form, sieves from the coarsest to the finest; true when there is a pan.
@@ -216,7 +208,7 @@ class SieveReader {
       if (is_pan(l)) {
         if (data_.pan) throw InputError(where + ": the pan is there twice");
         data_.pan = RetainedRow{0.0, 0.0, value(l, true), where, l.cell};
-        if (!l.size.number.empty() && l.size.kind == SieveSize::Kind::pan) pan_below_ = diameter(l, l.size.number);
+        if (!l.size.number.empty()) pan_below_ = std::abs(diameter(l, l.size.number));
         continue;
       }
       RetainedRow row{diameter(l, l.size.number), 0.0, value(l, false), where, l.cell};
@@ -227,7 +219,18 @@ class SieveReader {
     if (!total_.value.empty()) data_.total = value(total_, false);
     std::ranges::stable_sort(data_.rows, std::ranges::greater{}, &RetainedRow::opening);
     check_pan_size();
+    check_classes();
     return data_.pan.has_value();
+  }
+
+  void check_classes() const {
+    for (std::size_t k = 1; k < data_.rows.size(); ++k) {
+      const RetainedRow& row = data_.rows[k];
+      const double next = data_.rows[k - 1].opening;
+      if (row.upper > 0.0 && std::abs(row.upper - next) > 1e-6 * next)
+        throw InputError(fmt::format("{}: the class ends at {:g} mm, the next begins at {:g} mm", row.where,
+                                     1e3 * row.upper, 1e3 * next));
+    }
   }
 
   void check_pan_size() const {
@@ -335,7 +338,8 @@ class SieveReader {
                      : data_.measure == SieveMeasure::share   ? ", shares"
                                                               : "";
     return fmt::format("sizes \"{}\"{}; \"{}\": {}{}{}", title_of(choice_.size),
-                       unit_.empty() ? "" : fmt::format(" in {}", unit_), title_of(choice_.value),
+                       unit_.empty() || unit_ == size_title().unit ? "" : fmt::format(" [{}]", unit_),
+                       title_of(choice_.value),
                        choice_.meaning == SieveColumn::retained ? "retained on each sieve" : to_string(choice_.meaning),
                        in, data_.pan ? "; with a pan" : "");
   }
@@ -356,35 +360,6 @@ std::optional<CsvFile> laboratory_table(const std::string& bytes, const std::str
 }
 
 }  // namespace
-
-Grading sieve_grading(std::vector<SieveRow> rows, int dimension, const std::string& what_to_do) {
-  std::stable_sort(rows.begin(), rows.end(), [](auto& a, auto& b) { return a.opening < b.opening; });
-  std::vector<double> radius;
-  std::vector<double> passing;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const SieveRow& before = rows[k == 0 ? 0 : k - 1];
-    const SieveRow& row = rows[k];
-    if (k > 0 && row.opening == before.opening)
-      throw InputError(
-          fmt::format("{}: the sieve of {:g} mm is there twice ({})", row.where, 1e3 * row.opening, before.where));
-    if (row.passing < before.passing - kSieveRounding)
-      throw InputError(fmt::format("{}: passing falls to {} on a wider sieve ({}: {}){}", row.where,
-                                   percent_of_curve(row.passing), before.where, percent_of_curve(before.passing),
-                                   guess(rows)));
-    radius.push_back(0.5 * row.opening);
-    passing.push_back(std::max(row.passing, before.passing));
-  }
-  if (rows.empty() || (rows.size() < 2 && what_to_do.empty()))
-    throw InputError("a sieve curve needs at least two sieves");
-  for (const auto& [row, wanted] : {std::pair{rows.front(), 0.0}, std::pair{rows.back(), 1.0}})
-    if (row.passing != wanted)
-      throw InputError(fmt::format("{}: the curve goes from {} to {}; it must go from 0 to 100 %: add the {} grains{}",
-                                   row.where, percent_of_curve(rows.front().passing),
-                                   percent_of_curve(rows.back().passing),
-                                   wanted == 0.0 ? "size that is below all" : "size that is above all", what_to_do));
-  if (rows.size() < 2) throw InputError("a sieve curve needs at least two sieves");
-  return Grading::sieve_curve(radius, passing, dimension);
-}
 
 SieveCurve read_sieve_file(const std::string& path, const SieveOptions& options, int dimension) {
   try {

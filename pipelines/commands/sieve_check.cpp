@@ -22,12 +22,28 @@ double grains_needed(const Grading& sizes) {
   return sizes.volume(sizes.largest()) / (kLargestGrain * sizes.mean_volume());
 }
 
+/// "1600", "2.4e+05": two digits are more than such an estimate is worth.
+std::string grains_text(double grains) {
+  if (grains >= 1e5) return rounded_text(grains, {2});
+  const double unit = std::pow(10.0, std::max(std::floor(std::log10(grains)) - 1.0, 0.0));
+  return fmt::format("{:.0f}", unit * std::ceil(grains / unit));
+}
+
 std::string scenes_for(const Grading& sizes) {
   const double grains = grains_needed(sizes);
-  const std::string many = rounded_text(grains, {2});
   if (grains <= kManyGrains)
-    return fmt::format("serves grain-box, particles, macro, material: {} grains follow it within 2 %", many);
-  return fmt::format("serves recipe (pipelines/graded_sand.toml): {} grains would follow it within 2 %", many);
+    return fmt::format("serves grain-box, particles, macro, material: {} grains follow it within 2 %",
+                       grains_text(grains));
+  return fmt::format("serves recipe (pipelines/graded_sand.toml): {} grains would follow it within 2 %",
+                     grains_text(grains));
+}
+
+std::string fuller_text(const GradingIndices& i) {
+  constexpr double kFits = 0.1;
+  const std::string difference = percent_text(i.fuller_difference);
+  if (i.fuller_difference > kFits)
+    return fmt::format("no Fuller curve fits: the nearest, q = {:.2f}, differs by up to {}", i.fuller, difference);
+  return fmt::format("the Fuller curve with q = {:.2f} fits best, within {}", i.fuller, difference);
 }
 
 /// The curve as bars of one character for 2 %, at most sixteen of its sieves.
@@ -38,9 +54,8 @@ std::string picture_of(const std::vector<SieveRow>& rows) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (k % every != 0 && k + 1 != rows.size()) continue;
     const auto bar = static_cast<std::size_t>(std::lround(50.0 * rows[k].passing));
-    text += fmt::format("  {:>9} mm {:>8} {}", rounded_text(1e3 * rows[k].opening), percent_text(rows[k].passing),
-                        std::string(bar, '#'));
-    text += "\n";
+    text += fmt::format("  {:>9} mm {:>8}{}\n", rounded_text(1e3 * rows[k].opening), percent_text(rows[k].passing),
+                        bar == 0 ? "" : " " + std::string(bar, '#'));
   }
   return text;
 }
@@ -67,9 +82,7 @@ void check_sieves(const std::string& path, const std::vector<std::string>& overr
                       1e3 * i.d60));
   out.add("shape", {{"Cu", i.cu}, {"Cc", i.cc}},
           fmt::format("Cu = D60/D10 = {:.3g}, Cc = D30^2/(D60 D10) = {:.3g}", i.cu, i.cc));
-  out.add("fuller", {{"exponent", i.fuller}, {"largest_difference", i.fuller_difference}},
-          fmt::format("the Fuller curve nearest to it has q = {:.2f}: passing differs by up to {}", i.fuller,
-                      percent_text(i.fuller_difference)));
+  out.add("fuller", {{"exponent", i.fuller}, {"largest_difference", i.fuller_difference}}, fuller_text(i));
   out.add("grains", grains_needed(sizes), scenes_for(sizes));
   out.lines += picture_of(curve.rows);
   for (const std::string& remark : curve.remarks) out.warn(remark);

@@ -71,6 +71,10 @@ const std::vector<SieveSample> kSieveSamples{
     {"coarsest_retains.csv", "largest = \"8 mm\"", {1.13696291, 1.89990321, 3.73213197}, ""},
     {"wrong_number.csv", "", {}, "wrong_number.csv:3: column \"Sieve No.\": No. 15 is no sieve of ASTM E11"},
     {"row_of_another_size.csv", "", {}, "\"coarse\" is no size of a sieve"},
+    {"astm_report.csv", "", {0.156982427, 0.676742119, 2.19343908}, ""},
+    {"fractions.csv", "", {0.118757029, 0.215555729, 0.419223669}, ""},
+    {"numbers_without_a_unit.csv", "", {}, "no unit: give unit = \"mm\" (or um, cm, in, phi, astm)"},
+    {"numbers_without_a_unit.csv", "unit = \"astm\"", {0.133634808, 0.339330362, 0.701131505}, ""},
 };
 
 Grading grading_of(const SieveSample& s) {
