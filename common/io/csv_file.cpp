@@ -87,9 +87,23 @@ bool is_spreadsheet_error(const std::string& cell) {
   return std::ranges::find(kErrors, csv::lower(cell)) != kErrors.end();
 }
 
-bool is_missing(const std::string& cell) {
-  constexpr std::array kMissing{"", "-", "nan", "na", "n/a"};
-  return std::ranges::find(kMissing, csv::lower(cell)) != kMissing.end() || is_spreadsheet_error(cell);
+/// The same where a quote within a cell is a character of it: a sieve of 3/8".
+std::vector<std::string> split_with_inches(const std::string& line, char separator) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    const char c = line[k];
+    if (c == separator && !quoted)
+      cells.emplace_back();
+    else if (c == '"' && quoted && k + 1 < line.size() && line[k + 1] == '"')
+      cells.back() += line[k++];
+    else if (c == '"' && (quoted || trimmed(cells.back()).empty()))
+      quoted = !quoted;
+    else
+      cells.back() += c;
+  }
+  for (std::string& cell : cells) cell = trimmed(cell);
+  return cells;
 }
 
 /// What looks like a blank or a minus sign in a spreadsheet and is another character.
@@ -108,6 +122,11 @@ char said_separator(const std::string& line) {
 
 }  // namespace
 
+bool csv::is_missing(const std::string& cell) {
+  constexpr std::array kMissing{"", "-", "nan", "na", "n/a"};
+  return std::ranges::find(kMissing, csv::lower(cell)) != kMissing.end() || is_spreadsheet_error(cell);
+}
+
 bool is_percent(const std::string& unit) { return unit == "%" || csv::lower(unit) == "percent"; }
 
 CsvFile CsvFile::read(const std::string& path) { return parse(read_text(path), path); }
@@ -115,24 +134,38 @@ CsvFile CsvFile::read(const std::string& path) { return parse(read_text(path), p
 CsvFile CsvFile::parse(const std::string& bytes, const std::string& path) {
   CsvFile file;
   file.path_ = path;
-  const std::string text = plain_signs(utf8_of(bytes));
-  int number = 1;
-  for (std::size_t at = 0; at < text.size(); ++number) {
-    const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
-    file.read_line(text.substr(at, end - at), number);
-    const bool pair = end + 1 < text.size() && text[end] == '\r' && text[end + 1] == '\n';
-    at = end + (pair ? 2 : 1);
-  }
+  file.read_lines(bytes);
   if (file.columns_.empty())
     throw InputError(path +
                      ":1: no header: the first line that is no comment names columns and units, e.g. hn [mm], Fn [N]");
   return file;
 }
 
+std::optional<CsvFile> CsvFile::find(const std::string& bytes, const std::string& path, const CsvIsHeader& is_header) {
+  CsvFile file;
+  file.path_ = path;
+  file.is_header_ = is_header;
+  file.read_lines(bytes);
+  if (file.columns_.empty()) return std::nullopt;
+  return file;
+}
+
+void CsvFile::read_lines(const std::string& bytes) {
+  const std::string text = plain_signs(utf8_of(bytes));
+  int number = 1;
+  for (std::size_t at = 0; at < text.size(); ++number) {
+    const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
+    read_line(text.substr(at, end - at), number);
+    const bool pair = end + 1 < text.size() && text[end] == '\r' && text[end + 1] == '\n';
+    at = end + (pair ? 2 : 1);
+  }
+}
+
 void CsvFile::read_line(const std::string& line, int number) {
   const std::string words = trimmed(line);
   if (words.find_first_not_of(";, \t\"\x1a") == std::string::npos) return;
-  if (words.front() == '#' && (columns_.empty() || !is_spreadsheet_error(split(words, separator_).front())))
+  if (words.front() == '#' && !names_a_sieve(words) &&
+      (columns_.empty() || !is_spreadsheet_error(split(words, separator_).front())))
     return read_comment(words, number);
   if (words.starts_with("\"#")) {  // a spreadsheet quotes cells that hold the separator
     const std::size_t end = words.find('"', 1);
@@ -140,7 +173,7 @@ void CsvFile::read_line(const std::string& line, int number) {
   }
   if (!columns_.empty()) return read_row(line, number);
   const char said = said_separator(line);
-  if (said == 0) return read_header(words, number);
+  if (said == 0) return is_header_ ? find_header(words, number) : read_header(words, number);
   separator_ = said;
   separator_said_ = true;
 }
@@ -166,8 +199,48 @@ void CsvFile::read_header(const std::string& line, int number) {
   }
 }
 
+/// "#200; 12.5" is no comment below the header of a laboratory.
+bool CsvFile::names_a_sieve(const std::string& line) const {
+  if (!is_header_ || columns_.empty() || line.find(separator_) == std::string::npos) return false;
+  const std::string number = trimmed(line.substr(1, line.find(separator_) - 1));
+  return !number.empty() && number.find_first_not_of("0123456789") == std::string::npos;
+}
+
+void CsvFile::find_header(const std::string& line, int number) {
+  for (const char c : {';', '\t', ','}) {
+    if (separator_said_ ? c != separator_ : line.find(c) == std::string::npos) continue;
+    std::vector<std::string> titles = split_with_inches(line, c);
+    while (titles.size() > 1 && titles.back().empty()) titles.pop_back();
+    std::vector<CsvColumn> columns;
+    for (const std::string& title : titles) columns.push_back(csv::column_of(title));
+    if (!is_header_(columns)) continue;
+    separator_ = c;
+    header_line_ = number;
+    columns_ = std::move(columns);
+    return;
+  }
+}
+
+bool CsvFile::read_more_titles(const std::string& line, int number) {
+  const std::vector<std::string> cells = split_with_inches(line, separator_);
+  if (!rows_.empty() || number != header_line_ + 1 || cells.size() < columns_.size() ||
+      line.find_first_of("0123456789") != std::string::npos)
+    return false;
+  for (std::size_t k = 0; k < columns_.size(); ++k) {
+    if (cells[k].empty()) continue;
+    const bool bracket = cells[k].find_first_of("[( ") != std::string::npos;
+    columns_[k] = csv::column_of(columns_[k].title + (bracket ? " " + cells[k] : " [" + cells[k] + "]"));
+  }
+  return true;
+}
+
 void CsvFile::read_row(const std::string& line, int number) {
-  CsvRow row{split(line, separator_), number};
+  if (is_header_ && read_more_titles(line, number)) return;
+  CsvRow row{is_header_ ? split_with_inches(line, separator_) : split(line, separator_), number};
+  if (is_header_) {
+    const bool text = row.cells.front().find_first_of("0123456789") == std::string::npos;  // below the table
+    row.cells.resize(text ? columns_.size() : std::max(row.cells.size(), columns_.size()));
+  }
   while (row.cells.size() > columns_.size() && row.cells.back().empty()) row.cells.pop_back();
   if (row.cells.size() != columns_.size())
     throw InputError(where(number) + ": " + std::to_string(row.cells.size()) + " cells, the header (line " +
@@ -190,7 +263,7 @@ void CsvFile::require_known_columns(const CsvNames& known, const std::string& wh
 
 std::optional<double> CsvFile::number(const CsvRow& row, std::size_t column, Unit unit) const {
   std::string cell = row.cells[column];
-  if (is_missing(cell)) return std::nullopt;
+  if (csv::is_missing(cell)) return std::nullopt;
   if (separator_ != ',') std::replace(cell.begin(), cell.end(), ',', '.');
   const CsvColumn& c = columns_[column];
   const bool percent_sign = unit == Unit::none && cell.back() == '%';

@@ -2,6 +2,7 @@
 // comma, semicolon or tab. Everything that is wrong is said with file and line.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,6 +37,9 @@ struct CsvRow {
 /// Names of one quantity, as CsvSetting::key has them.
 using CsvNames = std::vector<std::string>;
 
+/// Tells the line of the header from lines of text above it.
+using CsvIsHeader = std::function<bool(const std::vector<CsvColumn>&)>;
+
 class CsvFile {
  public:
   /// Reads a file in any encoding that utf8_of() knows, with any line ends. The separator is what a first line "sep=;"
@@ -45,11 +49,17 @@ class CsvFile {
   static CsvFile read(const std::string& path);
   /// Reads a table from a text in the same way; `path` stands for the file in messages.
   static CsvFile parse(const std::string& bytes, const std::string& path);
+  /// Reads a table as laboratories write it; none when no line is a header. Lines above the header are titles; a line
+  /// of words right below it goes on with the titles of the columns ("mm; g; %"); columns may have no title, or one
+  /// that is there twice; rows may be short. A double quote within a cell is a character (3/8"). Throws InputError for
+  /// a row that is too long.
+  static std::optional<CsvFile> find(const std::string& bytes, const std::string& path, const CsvIsHeader& is_header);
 
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] const std::vector<CsvColumn>& columns() const { return columns_; }
   [[nodiscard]] const std::vector<CsvRow>& rows() const { return rows_; }
   [[nodiscard]] int header_line() const { return header_line_; }
+  [[nodiscard]] char separator() const { return separator_; }
   /// "file:line".
   [[nodiscard]] std::string where(int line) const { return path_ + ":" + std::to_string(line); }
 
@@ -80,7 +90,11 @@ class CsvFile {
   void require_unit(std::size_t column, Unit unit, const char* example) const;
 
  private:
+  void read_lines(const std::string& bytes);
   void read_line(const std::string& line, int number);
+  void find_header(const std::string& line, int number);
+  [[nodiscard]] bool names_a_sieve(const std::string& line) const;
+  bool read_more_titles(const std::string& line, int number);
   void read_header(const std::string& line, int number);
   void read_row(const std::string& line, int number);
   void read_comment(const std::string& line, int number);
@@ -91,6 +105,7 @@ class CsvFile {
   std::string path_;
   char separator_ = ',';
   bool separator_said_ = false;
+  CsvIsHeader is_header_{};  ///< of a laboratory's table
   int header_line_ = 0;
   std::vector<CsvColumn> columns_;
   std::vector<CsvRow> rows_;
@@ -112,6 +127,25 @@ std::string unquoted(const std::string& text);
 
 /// "hn [mm]", "hn(mm)" into its parts.
 CsvColumn column_of(const std::string& title);
+
+/// Whether a cell says that there is no value: empty, "-", "nan", "NA", what a spreadsheet could not compute.
+bool is_missing(const std::string& cell);
+
+/// Lower case without accents: "Rückstand" to "rueckstand", "cumulé" to "cumule", "µm" to "um", "½" to " 1/2", "φ" to
+/// "phi".
+std::string folded(std::string text);
+
+/// Which decimal marks the numbers of a column show. A mark with three digits behind it may separate thousands.
+struct DecimalMarks {
+  bool comma = false;
+  bool point = false;
+  bool comma_separates_cells = false;
+};
+DecimalMarks decimal_marks(const std::vector<std::string>& cells, char separator);
+
+/// The text with its numbers written with a decimal point alone: "1.250,5", "1 250,5" and "1'250.5" to "1250.5". Throws
+/// InputError for a number that may mean two things.
+std::string plain_numbers(const std::string& cell, const DecimalMarks& marks);
 
 /// "Young's_modulus" to "youngs modulus", Greek letters to their names.
 std::string plain_name(const std::string& name);

@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
 #include "common/core/error.h"
-#include "common/core/text.h"
 #include "common/io/csv_file.h"
 
 namespace softgrain {
@@ -22,9 +20,6 @@ const Key kFileKey{
 const Key kExponentKey{"exponent",
                        "`\"power-law\"`: b of the number density P(r) ~ r^-b; `\"fuller\"`: q of the passing volume "
                        "(D^q - Dmin^q)/(Dmax^q - Dmin^q), above 0 to 3"};
-
-/// Shares that differ by less are the same: sums of percents that a spreadsheet rounded.
-constexpr double kRounding = 1e-9;
 
 struct Ends {
   double low = 0.0;
@@ -81,18 +76,10 @@ int column_of(const CsvFile& csv, std::initializer_list<const char*> names) {
 
 std::string head_of(const CsvFile& csv) { return csv.where(csv.header_line()) + ": "; }
 
-bool in_inches(std::string unit) {
-  for (char& c : unit) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return unit == "in" || unit == "in." || unit == "inch" || unit == "inches" || unit == "\"";
-}
-
 std::size_t length_column(const CsvFile& csv, std::initializer_list<const char*> names, const char* example) {
   const int k = column_of(csv, names);
   if (k < 0) throw InputError(fmt::format("{}needs a column \"{}\"", head_of(csv), example));
   const auto column = static_cast<std::size_t>(k);
-  if (in_inches(csv.columns()[column].unit))
-    throw InputError(
-        fmt::format("{}sizes in inches are not read; give them in mm (1 in = 25.4 mm): \"{}\"", head_of(csv), example));
   csv.require_unit(column, Unit::length, example);
   return column;
 }
@@ -102,141 +89,27 @@ double must(const std::optional<double>& value, const CsvFile& csv, const CsvRow
   return *value;
 }
 
-struct SieveRow {
-  double opening = 0.0;  ///< [m]
-  double passing = 0.0;  ///< 0 to 1
-  std::string where{};   ///< "file:line"
-};
-
-const CsvNames kPassing{"passing",         "finer",         "cumulative passing", "percent passing",
-                        "passing percent", "percent finer", "% passing",          "passing %",
-                        "% finer",         "finer %",       "cumulative finer",   "passing by mass",
-                        "mass passing"};
-const CsvNames kOpening{"opening", "sieve", "size", "diameter", "sieve opening", "sieve size"};
-
-bool is_retained(const CsvColumn& c) { return c.name.find("retained") != std::string::npos; }
-
-/// Whether what passes is in percent, by the unit or the name of the column; else it is a share.
-bool passes_in_percent(const CsvFile& csv, std::size_t column) {
-  const CsvColumn& c = csv.columns()[column];
-  if (is_percent(c.unit)) return true;
-  if (!c.unit.empty() && c.unit != "1" && c.unit != "-")
-    throw InputError(
-        fmt::format("{}passing is in percent of mass or a share: \"passing [%]\", not [{}]", head_of(csv), c.unit));
-  return c.name.find('%') != std::string::npos || c.name.find("percent") != std::string::npos;
-}
-
-std::size_t passing_column(const CsvFile& csv) {
-  for (const std::string& name : kPassing)
-    if (const int k = column_of(csv, {name.c_str()}); k >= 0) return static_cast<std::size_t>(k);
-  const bool retained = std::any_of(csv.columns().begin(), csv.columns().end(), is_retained);
-  throw InputError(fmt::format("{}needs a column \"passing [%]\", cumulative, of mass{}", head_of(csv),
-                               retained ? "; passing is 100 % less what is retained in all" : ""));
-}
-
-/// What a column says that is none of those that count; masses and what is retained only say the same another way.
-void require_sieve_columns(const CsvFile& csv) {
-  CsvNames known{"opening", "passing"};
-  for (const CsvNames* names : {&kPassing, &kOpening}) {
-    const CsvColumn* first = nullptr;
-    for (const CsvColumn& c : csv.columns()) {
-      if (std::ranges::find(*names, c.name) == names->end()) continue;
-      if (first != nullptr)
-        throw InputError(fmt::format("{}columns \"{}\" and \"{}\" both say {}: remove one", head_of(csv), first->title,
-                                     c.title, names == &kPassing ? "what passes" : "the opening"));
-      first = &c;
-      known.push_back(c.name);
-    }
-  }
-  for (const CsvColumn& c : csv.columns())
-    if (is_retained(c) || c.name.starts_with("mass") || c.name.starts_with("mesh")) known.push_back(c.name);
-  csv.require_known_columns(known, "a sieve curve");
-}
-
-std::vector<SieveRow> sieve_rows(const CsvFile& csv) {
-  csv.require_known_comments({}, "a sieve curve");
-  const std::size_t opening =
-      length_column(csv, {"opening", "sieve", "size", "diameter", "sieve opening", "sieve size"}, "opening [mm]");
-  const std::size_t column = passing_column(csv);
-  require_sieve_columns(csv);
-  const bool percent = passes_in_percent(csv, column);
-  const bool by_name = percent && !is_percent(csv.columns()[column].unit);
-  std::vector<SieveRow> rows;
-  for (const CsvRow& row : csv.rows()) {
-    SieveRow s;
-    s.where = csv.where(row.line);
-    s.opening = must(csv.number(row, opening, Unit::length), csv, row, "the opening");
-    s.passing = must(csv.number(row, column, Unit::none), csv, row, "what passes");
-    if (by_name && row.cells[column].back() != '%') s.passing /= 100.0;
-    if (!(s.opening > 0.0))
-      throw InputError(s.where + ": an opening must be positive; for a pan give the size of the smallest grains");
-    for (const double end : {0.0, 1.0})
-      if (std::abs(s.passing - end) < kRounding) s.passing = end;
-    if (s.passing < 0.0 || s.passing > 1.0)
-      throw InputError(fmt::format("{}: {} passes; allowed: 0 to {}", s.where, row.cells[column],
-                                   percent ? "100 %" : "1 (a share; write \"passing [%]\" for percent)"));
-    rows.push_back(s);
-  }
-  return rows;
-}
-
-std::string percent(double share) { return percent_text(share, {6}); }
-
-/// What passing that falls may be instead, from the smallest sieve to the largest.
-std::string guess(const std::vector<SieveRow>& rows) {
-  if (std::is_sorted(rows.begin(), rows.end(), [](auto& a, auto& b) { return a.passing > b.passing; }))
-    return ": this looks like what is retained in all; passing is 100 % less that";
-  double sum = 0.0;
-  for (const SieveRow& row : rows) sum += row.passing;
-  if (std::abs(sum - 1.0) > 0.02) return "";
-  return ": all add up to 100 %, which looks like what each sieve retains; passing is the sum of what finer sieves "
-         "retain";
-}
-
-/// Grading of a sieve curve, from the smallest sieve to the largest.
-Grading curve_of(std::vector<SieveRow> rows, int dimension) {
-  if (rows.size() < 2) throw InputError("a sieve curve needs at least two sieves");
-  std::stable_sort(rows.begin(), rows.end(), [](auto& a, auto& b) { return a.opening < b.opening; });
-  std::vector<double> radius{0.5 * rows[0].opening};
-  std::vector<double> passing{rows[0].passing};
-  for (std::size_t k = 1; k < rows.size(); ++k) {
-    const SieveRow& before = rows[k - 1];
-    const SieveRow& row = rows[k];
-    if (row.opening == before.opening)
-      throw InputError(
-          fmt::format("{}: the sieve of {:g} mm is there twice ({})", row.where, 1e3 * row.opening, before.where));
-    if (row.passing < before.passing - kRounding)
-      throw InputError(fmt::format("{}: passing falls to {} on a wider sieve ({}: {}){}", row.where,
-                                   percent(row.passing), before.where, percent(before.passing), guess(rows)));
-    radius.push_back(0.5 * row.opening);
-    passing.push_back(std::max(row.passing, before.passing));
-  }
-  for (const auto& [row, wanted] : {std::pair{rows.front(), 0.0}, std::pair{rows.back(), 1.0}})
-    if (row.passing != wanted)
-      throw InputError(fmt::format("{}: the curve goes from {} to {}; it must go from 0 to 100 %: add the {} grains",
-                                   row.where, percent(rows.front().passing), percent(rows.back().passing),
-                                   wanted == 0.0 ? "size that is below all" : "size that is above all"));
-  return Grading::sieve_curve(radius, passing, dimension);
-}
-
 Grading read_curve(const SceneTable& t, int dimension) {
-  if (t.has("file")) return read_sieve_curve(t.resolve(t.text(kFileKey)), dimension);
+  if (t.has("file")) {
+    const SieveOptions options = read_sieve_options(t);  // asked for before the file is read
+    return read_sieve_file(t.resolve(t.text(kFileKey)), options, dimension).grading;
+  }
   const std::vector<double> openings =
       t.numbers({"openings", "`\"sieve-curve\"` without a file: openings of the sieves (diameters)"}, Unit::length,
                 Range::positive());
   std::vector<double> passing = t.numbers({"passing",
                                            "`\"sieve-curve\"` without a file: shares of the volume that pass the "
                                            "`openings`; the smallest must be 0, the largest 1"},
-                                          Unit::none, Range::closed(-kRounding, 1.0 + kRounding));
+                                          Unit::none, Range::closed(-kSieveRounding, 1.0 + kSieveRounding));
   for (double& share : passing)
     for (const double end : {0.0, 1.0})
-      if (std::abs(share - end) < kRounding) share = end;
+      if (std::abs(share - end) < kSieveRounding) share = end;
   if (openings.size() != passing.size())
     t.throw_error("passing",
                   fmt::format("has {} values; openings has {}: one for each", passing.size(), openings.size()));
   std::vector<SieveRow> rows;
   for (std::size_t k = 0; k < openings.size(); ++k) rows.push_back({openings[k], passing[k], t.where("passing")});
-  return curve_of(std::move(rows), dimension);
+  return sieve_grading(std::move(rows), dimension);
 }
 
 Grading read_list(const SceneTable& t, int dimension) {
@@ -258,13 +131,34 @@ Grading read_list(const SceneTable& t, int dimension) {
 
 }  // namespace
 
+SieveOptions read_sieve_options(const SceneTable& t) {
+  SieveOptions options;
+  options.column = t.text({"column",
+                           "file of a sieve curve: which column counts and as what, `passing`, `retained` (on each "
+                           "sieve), `cumulative retained`, the title of a column, or `TITLE as MEANING`",
+                           "as the file says"},
+                          "");
+  if (t.has("unit"))
+    options.unit = t.choice({"unit",
+                             "file of a sieve curve: unit of sizes without one; `phi`: -log2 of mm, `astm`: numbers "
+                             "of ASTM E11",
+                             "as the file says"},
+                            {"mm", "um", "cm", "m", "in", "phi", "astm"});
+  const auto size = [&](const Key& key) -> std::optional<double> {
+    if (!t.has(key.name)) return std::nullopt;
+    return t.number(key, Unit::length, Range::positive());
+  };
+  options.smallest = size({"smallest",
+                           "file of a sieve curve: diameter that is below all grains, where some pass the "
+                           "finest sieve"});
+  options.largest = size({"largest",
+                          "file of a sieve curve: diameter that is above all grains, where the coarsest "
+                          "sieve retains some"});
+  return options;
+}
+
 Grading read_sieve_curve(const std::string& path, int dimension) {
-  try {
-    return curve_of(sieve_rows(CsvFile::read(path)), dimension);
-  } catch (const InputError& e) {
-    const std::string what = e.what();
-    throw InputError(what.starts_with(path) ? what : path + ": " + what);
-  }
+  return read_sieve_file(path, {}, dimension).grading;
 }
 
 Grading read_radii(const std::string& path, int dimension) {

@@ -29,10 +29,10 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
   kind.check(scene, options, out);
 }
 
-/// What is said of a scene.
-void refuse_scene_options(const std::string& path, const CommonOptions& options) {
+/// What is said of a scene; --set says how a table is read, too.
+void refuse_scene_options(const std::string& path, const CommonOptions& options, bool table) {
   const std::string what = ": " + path + " is no scene";
-  if (!options.overrides.empty()) throw InputError("--set" + what);
+  if (!table && !options.overrides.empty()) throw InputError("--set" + what);
   if (options.seed_given) throw InputError("--seed" + what);
   if (!options.law.empty()) throw InputError("--law" + what);
   if (options.bands > 0) throw InputError("--bands" + what);
@@ -46,15 +46,16 @@ void check_file(const std::string& path, const CommonOptions& options, Findings&
   const auto form = file_form(path);
   const bool directory = std::filesystem::is_directory(path, ignored);
   const bool scene = !directory && (!form || form == FileForm::toml) && !holds_laws(path);
-  if (!scene) refuse_scene_options(path, options);
+  const bool table = !directory && form && form != FileForm::toml && form != FileForm::hdf5 && form != FileForm::json;
+  if (!scene) refuse_scene_options(path, options, table);
   if (directory)
     check_directory(path, out);
   else if (form == FileForm::hdf5)
     check_data(path, out);
   else if (form == FileForm::json)
     check_summary(path, out);
-  else if (form && form != FileForm::toml)
-    check_table(path, out);
+  else if (table)
+    check_table(path, options.overrides, out);
   else if (scene)
     check_scene(path, options, out);
   else

@@ -48,9 +48,12 @@ ExitStatus calibrate_multi_contact(const CommonOptions& options);
 
 // softgrain check of tables that people bring: measurements of an experiment, sieve curves, radii.
 
-/// Says which data a text of columns holds, how many, and what takes them. Throws InputError where it holds none of
-/// these or they are not sound, IoError.
-void check_table(const std::string& path, Findings& out);
+/// Says which data a text of columns holds, how many, and what takes them; `overrides` are keys that go with the file
+/// of a sieve curve. Throws InputError where it holds none of these or they are not sound, IoError.
+void check_table(const std::string& path, const std::vector<std::string>& overrides, Findings& out);
+
+/// What was read of a sieve analysis: columns, diameters, Fuller's exponent, the curve, and which scenes serve it.
+void check_sieves(const std::string& path, const std::vector<std::string>& overrides, Findings& out);
 
 // softgrain check of results: files of ours, summaries, run directories.
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "calibrate/experiment_fit.h"
 #include "common/core/error.h"
@@ -78,8 +79,9 @@ void check_force_curves(const CsvFile& table, Findings& out) {
   for (const std::string& remark : curves.remarks) out.warn(remark);
 }
 
-void check_grading(const Grading& sizes, const char* what, Findings& out) {
-  out.add("kind", what, fmt::format("{}{}; the key `file` of a table `sizes` of a scene takes it", kNoScene, what));
+void check_radii(const Grading& sizes, Findings& out) {
+  out.add("kind", "radii of grains",
+          fmt::format("{}radii of grains; the key `file` of a table `sizes` of a scene takes it", kNoScene));
   out.add("radius", {sizes.smallest(), sizes.largest()},
           fmt::format("radii {:.4g} to {:.4g} m", sizes.smallest(), sizes.largest()));
 }
@@ -113,7 +115,11 @@ void check_packing(const CsvFile& table, Findings& out) {
 
 }  // namespace
 
-void check_table(const std::string& path, Findings& out) {
+void check_table(const std::string& path, const std::vector<std::string>& overrides, Findings& out) {
+  std::error_code ignored;
+  const bool sieves = std::filesystem::is_regular_file(path, ignored) && is_sieve_file(path);
+  if (!overrides.empty() && !sieves) throw InputError("--set: " + path + " is no scene");
+  if (sieves) return check_sieves(path, overrides, out);
   const CsvFile table = CsvFile::read(path);
   const auto has = [&](const char* name) {
     return std::any_of(table.columns().begin(), table.columns().end(),
@@ -130,9 +136,9 @@ void check_table(const std::string& path, Findings& out) {
   else if (has("x") && has("y") && has("z"))
     check_packing(table, out);
   else if (names({"passing", "finer", "retained"}))
-    check_grading(read_sieve_curve(path), "a sieve curve", out);
+    check_sieves(path, overrides, out);
   else if (has_column(table, {"radius", "diameter"}) || has("r") || has("d"))
-    check_grading(read_radii(path), "radii of grains", out);
+    check_radii(read_radii(path), out);
   else
     throw InputError(
         path +

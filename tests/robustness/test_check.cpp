@@ -379,7 +379,8 @@ TEST_F(Check, TablesOfDataSayWhatTheyAre) {
     EXPECT_EQ(told.status, 2) << told.output;
     EXPECT_NE(told.output.find(words), std::string::npos) << told.output;
   };
-  refused("opening [mm], retained [%]\n1, 0\n4, 100\n", "passing is 100 % less what is retained in all");
+  EXPECT_EQ(written("opening [mm], retained [%]\n1, 100\n2, 60\n4, 0\n")["kind"], "a sieve curve");
+  refused("opening [mm], retained [%]\n1, 0\n4, 100\n", "or give largest = \"... mm\"");
   refused("# box = 0 0 0 80 20 40\n" + bodies, "write \"box [mm] = ...\"");
   refused("# boxx [mm] = 0 0 0 80 20 40\n" + bodies, "nearest is \"box\"");
   refused("# box [mm] = 0 0 0 80 20 40\n# box [mm] = 0 0 0 80 20 41\n" + bodies, "contradicts line 1");

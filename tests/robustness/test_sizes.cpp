@@ -73,7 +73,7 @@ TEST_F(Sizes, SieveCurvesThatAreNone) {
   expect_sieves_refused(head + "1,0\n4,95\n", "sieves.csv:3: the curve goes from 0 % to 95 %");
   expect_sieves_refused(head + "1,0\n2,40\n2,50\n4,100\n", "the sieve of 2 mm is there twice");
   expect_sieves_refused(head + "1,100\n2,40\n4,0\n", "looks like what is retained in all");
-  expect_sieves_refused("opening [in],passing [%]\n1,0\n4,100\n", "1 in = 25.4 mm");
+  expect_sieves_refused("opening [mm],passing [%]\n1,5\n4,100\n", "or give smallest = \"... mm\"");
   expect_sieves_refused("opening,passing [%]\n1,0\n4,100\n", "opening [mm]");
 }
 

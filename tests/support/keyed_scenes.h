@@ -10,7 +10,7 @@
 
 namespace softgrain::test {
 
-/// In the folder of every scene: a law card, a packing, a list of sizes, measured forces.
+/// In the folder of every scene: a law card, a packing, a list of sizes, a sieve analysis, measured forces.
 inline void write_keyed_files(const TemporaryDirectory& directory) {
   save_card(synthetic::card(), directory.file("law.toml"));
   std::string packing = "x [mm],y [mm],z [mm],r [mm],kind\n";
@@ -18,6 +18,7 @@ inline void write_keyed_files(const TemporaryDirectory& directory) {
     packing += std::to_string(20 + 31 * (k % 3)) + "," + std::to_string(20 + 31 * (k / 3 % 3)) + "," +
                std::to_string(20 + 31 * (k / 9)) + "," + (k % 4 == 0 ? "16,soft\n" : "15.5,solid\n");
   write_text_atomic(directory.file("bodies.csv"), packing);
+  write_text_atomic(directory.file("sieves.csv"), "sieve,retained [g]\n14,0\n8,30\n6,40\npan,45\n");
   write_text_atomic(directory.file("other-bodies.csv"), packing.substr(0, packing.rfind('\n', packing.size() - 2) + 1));
   LawCard other = synthetic::card();
   for (PairLaw& law : other.pairs) law.delta_max *= 0.9;
@@ -292,6 +293,15 @@ deltas = [0.1, 0.2]
 )";
 }
 
+/// The same with a file that leaves the unit, the meaning and the smallest size to keys.
+inline std::string soft_particle_sieves() {
+  std::string text = soft_particle_sizes();
+  const std::string lists = "openings = [0.004, 0.008, 0.014]\npassing = [0.0, 0.4, 1.0]\n";
+  text.replace(text.find(lists), lists.size(),
+               "file = \"sieves.csv\"\ncolumn = \"retained\"\nunit = \"mm\"\nsmallest = \"4 mm\"\n");
+  return text;
+}
+
 inline std::string pipeline_multi_contact() {
   const std::string text = kTinyPipeline;
   return text + "resolved = false\n" + R"([multi_contact]
@@ -345,6 +355,7 @@ inline std::vector<KindScene> keyed_scenes() {
   add("grain-box-triaxial", grain_box_triaxial());
   add("grain-box-polyaxial", grain_box_polyaxial());
   add("soft-particle-sizes", soft_particle_sizes());
+  add("soft-particle-sieves", soft_particle_sieves());
   add("pipeline-crowd", pipeline_multi_contact());
   add("law-table-variants", law_table_variants());
   return scenes;

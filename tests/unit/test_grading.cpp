@@ -205,6 +205,8 @@ TEST_F(GradingFile, ASieveCurveIsRead) {
   EXPECT_EQ(g.smallest(), 0.00025);
   const Grading shares = sieves("sieve [um];passing\n250;0\n4000;1\n");
   EXPECT_NEAR(shares.passing(0.0005), 0.5, 1e-12);
+  EXPECT_EQ(sieves("opening [Inch],passing\n1,0\n4,100\n").largest(), 0.0508);
+  EXPECT_EQ(sieves("opening [mm],passing [kg]\n1,0\n2,3\n4,12\n").passing(0.001), 0.25);
 }
 
 TEST_F(GradingFile, WhatIsNoSieveCurveIsSaid) {
@@ -216,22 +218,22 @@ TEST_F(GradingFile, WhatIsNoSieveCurveIsSaid) {
       {head + "1,0\n2,40\n2,50\n4,100\n", "the sieve of 2 mm is there twice ("},
       {head + "1,100\n2,40\n4,0\n", "looks like what is retained in all"},
       {head + "0.5,5\n1,15\n2,50\n4,20\n8,10\n", "looks like what each sieve retains"},
-      {"opening [Inch],passing [%]\n1,0\n4,100\n", "1 in = 25.4 mm"},
-      {head + "0,0\n4,100\n", "for a pan give the size of the smallest grains"},
-      {"opening [mm],retained [%]\n1,0\n4,100\n", "passing is 100 % less what is retained in all"},
-      {"opening [in],passing [%]\n1,0\n4,100\n", "1 in = 25.4 mm"},
-      {"opening,passing [%]\n1,0\n4,100\n", "opening [mm]"},
-      {"opening [mm],passing [kg]\n1,0\n4,100\n", "not [kg]"},
+      {head + "0,0\n4,100\n", "or give smallest = \"... mm\""},
+      {"opening [mm],retained [%]\n1,0\n4,100\n", "or give largest = \"... mm\""},
+      {"opening,passing [%]\n1,0\n4,100\n", "no unit: give unit = \"mm\""},
+      {"opening [kg],passing [%]\n1,0\n4,100\n", "e.g. opening [mm]"},
+      {"opening [mm],passing [N]\n1,0\n4,100\n", "not [N]"},
+      {"opening [mm],passing [m]\n1,0\n4,100\n", "not [m]"},
       {"opening [mm],passing [%],finer [%]\n1,0,5\n4,100,100\n",
        "\"passing [%]\" and \"finer [%]\" both say what passes"},
       {"opening [mm],size [mm],passing [%]\n1,2,0\n4,5,100\n", "both say the opening"},
       {head + "1,0\n4,101\n", "101 passes; allowed: 0 to 100 %"},
-      {"opening [mm],passing\n1,0\n4,100\n", "a share; write \"passing [%]\" for percent"},
+      {"opening [mm],passing\n1,0\n4,101\n", "a share; write \"passing [%]\" for percent"},
       {head + "-1,0\n4,100\n", "curve.csv:2: an opening must be positive"},
       {head + "1,0\n4,\n", "curve.csv:3: what passes is missing"},
       {head + "4,100\n", "at least two sieves"},
       {"# moisture [%] = 3\n" + head + "1,0\n4,100\n", "curve.csv:1: comment \"moisture [%] = 3\" is not understood"},
-      {"opening [mm],passing [%],weight\n1,0,1\n4,100,1\n", "column \"weight\" is not understood"},
+      {"opening [mm],passing [%],moisture\n1,0,1\n4,100,1\n", "column \"moisture\" is not understood"},
       {"opening [mm],percent passing\n1,0\n4,101\n", "101 passes; allowed: 0 to 100 %"}};
   for (const auto& [text, words] : cases)
     EXPECT_NE(complaint(text).find(words), std::string::npos) << text << "\n" << complaint(text);
