@@ -130,6 +130,12 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->allow_extra_args(false);
+  if (sweeps)
+    app.add_option(
+           "--sample", o.sample,
+           "Runs N points of the ranges of keys, --over macro.wall_mu=0.1..0.8 or =1e6..1e8:log: lhs:N, sobol:N, "
+           "or saltelli:N, N (keys + 2) runs for Sobol indices")
+        ->option_text("FORM:N");
   if (runs_scenes)
     app.add_option("--seeds", o.seeds,
                    "Runs the scene once with each of these seeds, in directories below DIR, and says mean, spread and "

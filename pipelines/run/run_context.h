@@ -46,6 +46,7 @@ struct CommonOptions {
   std::string twin_cache;                          ///< --twin-cache DIR; empty: nothing is kept between runs
   bool different = false;                          ///< --different (compare)
   std::vector<std::string> over;                   ///< swept keys, --over key=a,b,c (sweep)
+  std::string sample;                              ///< --sample lhs:20, sobol:64 or saltelli:32 (sweep)
   std::string seeds;                               ///< --seeds 1..8 (run, microsim, macrosim, sweep); empty: one run
   /// One of several runs: its summary goes to its file alone, and where it has ended --resume says AlreadyFinished.
   bool member = false;

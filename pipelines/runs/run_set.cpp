@@ -11,11 +11,13 @@
 
 #include "common/core/text.h"
 #include "common/io/interrupt.h"
+#include "common/io/key_record.h"
 #include "common/io/text_file.h"
 #include "pipelines/kinds/kinds.h"
 #include "pipelines/report/report.h"
 #include "pipelines/run/run.h"
 #include "pipelines/run/run_context.h"
+#include "pipelines/runs/set_sensitivity.h"
 #include "pipelines/runs/set_text.h"
 
 namespace softgrain {
@@ -56,6 +58,7 @@ CommonOptions options_of(const CommonOptions& all, const RunPlan& plan, const Pl
     options.seed_given = true;
   }
   options.over.clear();
+  options.sample.clear();
   options.seeds.clear();
   options.json = false;
   options.member = true;
@@ -235,6 +238,8 @@ SetSummary summarise(const Scene& scene, const RunPlan& plan, std::vector<RunEnt
   summary.seeds.assign(plan.seeds.begin(), plan.seeds.end());
   summary.runs = std::move(entries);
   summary.points = points_of(summary.over, summary.runs);
+  if (plan.design) summary.design = {plan.design->text(), static_cast<std::int64_t>(plan.design->seed)};
+  summary.sensitivity = sensitivity_of(summary);
   summary.head.title = (title.empty() ? fs::path(scene.path()).stem().string() : title) + ": " + varied_text(summary);
   note_swept_keys(plan, summary);
   for (const RunEntry& run : summary.runs)
@@ -245,12 +250,33 @@ SetSummary summarise(const Scene& scene, const RunPlan& plan, std::vector<RunEnt
 }
 
 std::uint64_t first_seed(const Scene& scene, const RunPlan& plan, const RunContext& context) {
-  if (!plan.seeds.empty()) return plan.seeds.front();
-  constexpr std::int64_t kMost = 1'000'000'000'000;
-  return context.seed(static_cast<std::uint64_t>(scene.root().count("seed", 0, kMost, 1)));
+  return plan.seeds.empty() ? context.seed(scene_seed(scene)) : plan.seeds.front();
 }
 
 }  // namespace
+
+std::uint64_t scene_seed(const Scene& scene) {
+  constexpr std::int64_t kMost = 1'000'000'000'000;
+  return static_cast<std::uint64_t>(scene.root().count("seed", 0, kMost, 1));
+}
+
+TakesWholeNumbers takes_whole_numbers(const CommonOptions& options) {
+  return [&options](const std::string& key, const std::string& value) {
+    std::vector<std::string> overrides = options.overrides;
+    overrides.push_back(key + "=" + value);
+    KeyRecord record;
+    std::string name;
+    try {
+      const Scene scene = Scene::load(options.inputs.front(), overrides);
+      name = scene.path();
+      kind_of(scene).read(scene);
+    } catch (const Error&) {  // what is wrong with the scene is said where the runs are read
+    }
+    const auto& keys = record.keys(name);
+    const auto at = keys.find(key);
+    return at != keys.end() && at->second.form == KeyForm::count;
+  };
+}
 
 ExitStatus run_set(const CommonOptions& options, const RunPlan& plan, const std::string& command,
                    const std::string& suffix) {

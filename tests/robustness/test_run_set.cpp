@@ -96,6 +96,41 @@ TEST_F(RunSet, ASweepHasADirectoryTableAndReportForEveryChoice) {
   EXPECT_NE(report.find("data-x-label=\"macro.bodies\""), std::string::npos) << "no plot over the key";
 }
 
+/// Ranges of keys: names are numbers, values stand in the table, and a larger design takes what is there.
+TEST_F(RunSet, ADesignRunsPointsOfRangesAndSaysWhatMatters) {
+  const std::string over = "--over macro.wall_mu=0.0..0.4 --over macro.bodies=6..9 --out " + quoted("out");
+  expect(program("sweep", over + "--sample sobol:4"), 0,
+         {"varied: macro.wall_mu = 0.0 to 0.4", "sensitivity: not determined: 4 points, at least 8 are needed"});
+  const auto first = fs::last_write_time(file("out") + "/sample_003/macro.h5");
+  expect(program("sweep", over + "--sample sobol:12 --resume"), 0, {"sensitivity, with 95 % intervals", "sample_012"});
+  EXPECT_EQ(fs::last_write_time(file("out") + "/sample_003/macro.h5"), first);
+  const json summary = summary_of(file("out"));
+  ASSERT_EQ(summary["runs"].size(), 12U);
+  EXPECT_EQ(summary["design"]["sample"], "sobol:12");
+  EXPECT_EQ(summary["design"]["seed"], 1);
+  for (const json& run : summary["runs"]) {
+    const json member = summary_of(file("out") + "/" + run["name"].get<std::string>());
+    EXPECT_EQ(std::to_string(member["macro"]["bodies"].get<int>()), run["values"]["macro.bodies"]);
+    EXPECT_EQ(member["provenance"]["seed"], 1);
+  }
+  EXPECT_EQ(summary["sensitivity"][0]["key"], "macro.wall_mu");
+  EXPECT_TRUE(summary["sensitivity"][0]["rank_correlation"]["value"].is_number());
+  EXPECT_EQ(read_text(file("out") + "/table.csv").find("run,macro.wall_mu,macro.bodies,seed,status,"), 0U);
+  EXPECT_NE(read_text(file("out") + "/report.html").find("<h3>Sensitivity</h3>"), std::string::npos);
+  // The seed of the program is that of the design and of the scenes.
+  expect(program("sweep", over + "--sample sobol:4 --seed 5 --resume"), 2, {"sample_001", "another"});
+}
+
+TEST_F(RunSet, RangesAreRefusedWithoutADesign) {
+  const std::string out = "--out " + quoted("out");
+  expect(program("sweep", "--over macro.wall_mu=0.0..0.4 " + out), 2, {"a range goes with --sample"});
+  expect(program("sweep", "--over macro.bodies=6.5..9 --sample lhs:4 " + out), 2, {"the key takes whole numbers"});
+  expect(program("sweep", "--over macro.wall_mu=0.0..0.4 --sample grid:4 " + out), 2, {"must be lhs:N, sobol:N"});
+  expect(program("sweep", "--over macro.wall_nu=0.0..0.4 --sample lhs:4 " + out), 2,
+         {"unknown key 'wall_nu' in [macro]; nearest known key is 'wall_mu'"});
+  EXPECT_FALSE(fs::exists(file("out")));
+}
+
 TEST_F(RunSet, EverythingThatIsWrongIsSaidBeforeAnyRun) {
   const std::string out = "--out " + quoted("out");
   const ProgramOutcome outcome =
