@@ -1,5 +1,5 @@
 // Which runs a sweep is made of (every choice of values of some keys of the scene, or a sample of their ranges, with
-// every seed), and how they are run: one after another, in directories below that of the set.
+// every seed), and how they are run: one after another or several at once, in directories below that of the set.
 #pragma once
 
 #include <cstdint>
@@ -54,7 +54,9 @@ TakesWholeNumbers takes_whole_numbers(const CommonOptions& options);
 /// Runs the scene `options.inputs.front()` as the plan says, each run in OUT/NAME as its own kind runs it (the log, its
 /// report and all); OUT is --out, else results/SCENE_`suffix`. With --resume runs that have ended are not repeated, and
 /// one that was interrupted goes on where its kind can; runs that the plan has in addition are made. At the end writes
-/// summary.json, table.csv and the report of the set. Status not_usable when a run failed or is not usable.
+/// summary.json, table.csv and the report of the set. Status not_usable when a run failed or is not usable. With --jobs
+/// several runs are made at once, with the same results; with --only one run of the plan alone is made, and with
+/// --slurm none: a job array is written.
 ///
 /// Throws InputError with all that is wrong with any of the scenes before anything is run; IoError and Interrupted
 /// where a run ends so: those before it are kept.
