@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
 #include "common/io/file_safety.h"
@@ -225,6 +226,88 @@ TEST_F(RunSet, AnInterruptedSweepGoesOnWhereItWas) {
   const json parts = summary_of(file("parts"));
   ASSERT_EQ(parts["runs"].size(), 2U);
   for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(parts["runs"][k]["numbers"], whole["runs"][k]["numbers"]);
+}
+
+/// Numbers of the runs of a set.
+std::vector<json> numbers_of_runs(const std::string& directory) {
+  std::vector<json> out;
+  for (const json& run : summary_of(directory)["runs"])
+    out.push_back({run["name"], run["status"], run.value("reason", ""), run["numbers"]});
+  return out;
+}
+
+/// One of the four does not converge: the same numbers, status and reason as one after another.
+TEST_F(RunSet, SeveralAtOnceGiveTheSameAsOneAfterAnother) {
+  const std::string over = "--over macro.max_passes=10,20000 --seeds 1..2 ";
+  expect(program("sweep", over + "--out " + quoted("one")), 3);
+  const ProgramOutcome outcome =
+      run_the_program("sweep " + quoted("macro.toml") + over + "--threads 3 --jobs 3 --out " + quoted("several"));
+  expect(outcome, 3,
+         {"4 runs, 3 at once with 1 thread each", "4 of 4 runs have ended", "s left",
+          "run max_passes=10_seed=1 is not usable"});
+  EXPECT_EQ(numbers_of_runs(file("several")), numbers_of_runs(file("one")));
+  EXPECT_EQ(summary_of(file("several"))["points"], summary_of(file("one"))["points"]);
+  EXPECT_EQ(read_text(file("several") + "/table.csv"), read_text(file("one") + "/table.csv"));
+  EXPECT_FALSE(fs::exists(file("several") + "/.members"));
+  // Runs that have ended are not repeated.
+  const auto first = fs::last_write_time(file("several") + "/max_passes=20000_seed=2/macro.h5");
+  expect(program("sweep", over + "--jobs 2 --resume --out " + quoted("several")), 3);
+  EXPECT_EQ(fs::last_write_time(file("several") + "/max_passes=20000_seed=2/macro.h5"), first);
+  EXPECT_EQ(numbers_of_runs(file("several")), numbers_of_runs(file("one")));
+  expect(program("sweep", over + "--jobs 2 --resume --set macro.steps=3 --out " + quoted("several")), 2,
+         {"belongs to another scene"});
+  expect(program("sweep", over + "--jobs 2 --slurm --out " + quoted("several")), 2, {"--jobs: ", "--slurm"});
+  expect(program("sweep", over + "--jobs 0"), 2, {"--jobs 0: must be a whole number, from 1"});
+}
+
+/// A signal stops all that run at once, and the set goes on where they were.
+TEST_F(RunSet, AnInterruptedSweepOfSeveralAtOnceGoesOn) {
+  const auto arguments = [&](const std::string& out, bool resume) {
+    std::vector<std::string> all{"sweep",   file("macro.toml"),
+                                 "--over",  "macro.bodies=40,50",
+                                 "--set",   "macro.steps=20",
+                                 "--quiet", "--threads",
+                                 "2",       "--out",
+                                 file(out)};
+    if (out != "whole") all.insert(all.end(), {"--jobs", "2"});
+    if (resume) all.emplace_back("--resume");
+    return all;
+  };
+  ASSERT_TRUE(ended_with(wait_for(start_program(arguments("whole", false))), 0));
+  const auto both_began = [&] {
+    return fs::exists(file("parts") + "/bodies=40/.run") && fs::exists(file("parts") + "/bodies=50/.run");
+  };
+  const int ended = signal_when(start_program(arguments("parts", false)), both_began, SIGTERM);
+  EXPECT_TRUE(ended_with(ended, 130)) << ended;
+  EXPECT_FALSE(fs::exists(file("parts") + "/summary.json"));
+  for (const char* run : {"bodies=40", "bodies=50"})
+    EXPECT_NO_THROW(DirectoryLock(file("parts") + "/" + run)) << "its process is still at work";
+  ASSERT_TRUE(ended_with(wait_for(start_program(arguments("parts", true))), 0));
+  EXPECT_EQ(numbers_of_runs(file("parts")), numbers_of_runs(file("whole")));
+}
+
+/// What a job array starts, without a cluster: every command of the file, then the set collects.
+TEST_F(RunSet, AJobArrayIsWrittenRunAndCollected) {
+  const std::string sweep = "--over macro.bodies=6..9 --sample lhs:2 --seed 3 --set macro.steps=1 ";
+  expect(program("sweep", sweep + "--out " + quoted("one")), 0);
+  expect(program("sweep", sweep + "--slurm --out " + quoted("array")), 0,
+         {"2 commands, one per run", "nothing was submitted", "submit: sbatch", "collect", "--resume"});
+  const std::string script = read_text(file("array") + "/slurm/job.sh");
+  for (const char* words : {"#SBATCH --array=1-2", "#SBATCH --cpus-per-task=1", "SLURM_ARRAY_TASK_ID"})
+    EXPECT_NE(script.find(words), std::string::npos) << words;
+  EXPECT_FALSE(fs::exists(file("array") + "/sample_001"));
+  for (const char* task : {"1", "2"}) {
+    const std::string line =
+        "SLURM_ARRAY_TASK_ID=" + std::string(task) + " bash " + quoted("array/slurm/job.sh") + " >/dev/null 2>&1";
+    EXPECT_EQ(std::system(line.c_str()), 0) << line;
+  }
+  EXPECT_TRUE(fs::exists(file("array") + "/sample_002/macro.h5"));
+  const auto first = fs::last_write_time(file("array") + "/sample_002/macro.h5");
+  expect(program("sweep", sweep + "--resume --out " + quoted("array")), 0);
+  EXPECT_EQ(fs::last_write_time(file("array") + "/sample_002/macro.h5"), first);
+  EXPECT_EQ(numbers_of_runs(file("array")), numbers_of_runs(file("one")));
+  expect(program("sweep", sweep + "--only sample_03 --out " + quoted("array")), 2,
+         {"--only sample_03: the set has no such run; nearest is 'sample_00"});
 }
 
 /// Too few passes for one of them: status 3, the others stand, and means leave it out.
