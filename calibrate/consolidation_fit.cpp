@@ -4,6 +4,7 @@
 #include <gsl/gsl_fit.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "calibrate/least_squares.h"
@@ -74,6 +75,7 @@ void fit_approach(const std::vector<double>& pressure, const std::vector<double>
   }
   LeastSquaresProblem problem;
   problem.residuals = n;
+  constexpr std::array<const char*, 3> kNames{"Phi_max", "c of Phi_max - c P*^-alpha", "alpha"};
   problem.bounds = {{0.1, 2.0}, {-20.0, 5.0}, {0.01, 20.0}};
   problem.evaluate = [&](std::span<const double> p, std::span<double> r) {
     for (std::size_t k = 0; k < n; ++k)
@@ -85,6 +87,14 @@ void fit_approach(const std::vector<double>& pressure, const std::vector<double>
     out.reason = "alpha: " + fit.message;
     return;
   }
+  for (std::size_t k = 0; k < fit.at_bound.size(); ++k)
+    if (fit.at_bound[k]) {
+      out.reason = fmt::format(
+          "alpha: the pressures from P* = {:.3g} on do not determine it: the fit ends at a limit of its search ({} = "
+          "{:.3g}); higher pressures may do",
+          pressure[first], kNames[k], k == 1 ? std::exp(fit.parameters[k]) : fit.parameters[k]);
+      return;
+    }
   out.densest = {fit.parameters[0], fit.standard_deviations[0]};
   out.exponent = {fit.parameters[2], fit.standard_deviations[2]};
 }

@@ -16,25 +16,26 @@ struct ConsolidationCurves {
 
 struct ConsolidationNumber {
   double value = 0.0;
-  double error = 0.0;  ///< standard error: over samples; of one sample that of the regression
+  double error = 0.0;  ///< standard error; each number says of what
 };
 
 /// Regime II: 1/Phi falls by lambda per unit of ln P*. Before it (I) the structure of the assembly holds, beyond it
 /// (III) Phi_max - Phi ~ P*^-alpha.
 struct ConsolidationFit {
-  bool usable = false;  ///< there is a steepest stretch
-  std::string reason;   ///< what could not be determined, and why; empty: all of it
-  ConsolidationNumber slope;
-  double low = 0.0;  ///< P* between which the slope was taken
+  bool usable = false;        ///< there is a steepest stretch
+  std::string reason;         ///< what could not be determined, and why; empty: all of it
+  ConsolidationNumber slope;  ///< lambda; its error is that over samples, of one sample that of the regression
+  double low = 0.0;           ///< P* between which the slope was taken
   double high = 0.0;
   double begin = 0.0;  ///< P* at which that line meets the solid fraction of the lowest pressure: end of regime I
-  std::optional<ConsolidationNumber> exponent{};  ///< alpha
+  std::optional<ConsolidationNumber> exponent{};  ///< alpha; errors of both are those of the fit to the mean curve
   std::optional<ConsolidationNumber> densest{};   ///< Phi_max
 };
 
 /// The slope is that of the steepest stretch of the mean curve with at least kSlopePoints points over at least a factor
 /// kSlopeSpan in pressure; of samples each on its own over the same stretch. alpha and Phi_max by least squares over
-/// the points from its end on, at least kApproachPoints. Throws InputError where curves and pressures do not fit
+/// the points of the mean curve from its end on, at least kApproachPoints; neither where one of them ends at a limit of
+/// the search. Throws InputError where curves and pressures do not fit
 /// together.
 ConsolidationFit fit_consolidation(const ConsolidationCurves& curves);
 

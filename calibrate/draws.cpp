@@ -51,6 +51,23 @@ EffectComponents effect_components(const std::vector<std::vector<double>>& param
   return out;
 }
 
+std::vector<double> correlations(const std::vector<std::vector<double>>& draws, std::size_t size) {
+  std::vector<double> mean(size, 0.0);
+  std::vector<double> product(size * size, 0.0);
+  for (const auto& u : draws)
+    for (std::size_t a = 0; a < size; ++a) mean[a] += u[a] / static_cast<double>(draws.size());
+  for (const auto& u : draws)
+    for (std::size_t a = 0; a < size; ++a)
+      for (std::size_t b = 0; b < size; ++b) product[a * size + b] += (u[a] - mean[a]) * (u[b] - mean[b]);
+  std::vector<double> out(size * size, 0.0);
+  for (std::size_t a = 0; a < size; ++a)
+    for (std::size_t b = 0; b < size; ++b) {
+      const double norm = std::sqrt(product[a * size + a] * product[b * size + b]);
+      out[a * size + b] = norm > 0.0 ? product[a * size + b] / norm : 0.0;
+    }
+  return out;
+}
+
 std::vector<std::vector<double>> normal_draws(const std::vector<double>& mean, const std::vector<double>& covariance,
                                               std::int64_t count, std::uint64_t seed) {
   const auto n = static_cast<Eigen::Index>(mean.size());

@@ -47,6 +47,9 @@ struct EffectComponents {
 EffectComponents effect_components(const std::vector<std::vector<double>>& parameters,
                                    const std::vector<std::vector<double>>& effects, std::size_t most, double share);
 
+/// Correlations of `size` numbers (size x size, row-major) from their draws, one a row; 0 for what does not scatter.
+std::vector<double> correlations(const std::vector<std::vector<double>>& draws, std::size_t size);
+
 /// Draws from the normal distribution with this mean and covariance (n x n, row-major); parameters of variance zero
 /// stay. Throws InputError where the covariance is not finite or not positive.
 std::vector<std::vector<double>> normal_draws(const std::vector<double>& mean, const std::vector<double>& covariance,

@@ -1,6 +1,7 @@
 // Pores that fines leave beside coarse grains, from the onsets of fines, coarse grains and mixtures of both.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,8 @@ struct ExcessPoresFit {
   std::vector<MixturePores> mixtures;
   std::vector<ExcessPoresBand> band;  ///< the form from 0 to beyond the largest ratio
   double deviation = 0.0;             ///< root mean square of W/V_c about the form
+  /// w_inf and ln xi of refits to StateFit::replicates, in their order; not a number where there is no refit.
+  std::vector<std::array<double, 2>> replicates;
   double widening = 1.0;  ///< factor on intervals of w_inf and xi: sqrt(chi^2 over degrees of freedom) where above 1
 };
 

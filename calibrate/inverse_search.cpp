@@ -295,23 +295,6 @@ void include_good_points(const std::vector<InverseEvaluation>& done, const Inver
   }
 }
 
-std::vector<double> correlations(const std::vector<std::vector<double>>& draws, std::size_t d) {
-  std::vector<double> mean(d, 0.0);
-  std::vector<double> product(d * d, 0.0);
-  for (const auto& u : draws)
-    for (std::size_t a = 0; a < d; ++a) mean[a] += u[a] / static_cast<double>(draws.size());
-  for (const auto& u : draws)
-    for (std::size_t a = 0; a < d; ++a)
-      for (std::size_t b = 0; b < d; ++b) product[a * d + b] += (u[a] - mean[a]) * (u[b] - mean[b]);
-  std::vector<double> out(d * d, 0.0);
-  for (std::size_t a = 0; a < d; ++a)
-    for (std::size_t b = 0; b < d; ++b) {
-      const double norm = std::sqrt(product[a * d + a] * product[b * d + b]);
-      out[a * d + b] = norm > 0.0 ? product[a * d + b] / norm : 0.0;
-    }
-  return out;
-}
-
 /// rms over the points that count of (mean - surface)/error.
 double lack_of_fit(const Prepared& p, const Place& at, const ResponseSurface& surface) {
   double sum = 0.0;

@@ -30,6 +30,13 @@ struct CellMemory {
   Estimate least_state;     ///< x_r: shear compacts no cell below this state
 };
 
+/// How the errors of numbers of a card go together, for draws of the whole law. Numbers that are not there have errors
+/// of their own alone, or none that is known.
+struct CellCorrelation {
+  std::vector<std::string> numbers;  ///< keys of numbers_of()
+  std::vector<double> matrix;        ///< row by row; of logarithms, where CellCardNumber::logarithm says so
+};
+
 /// Numbers of the cell law (macrosim/cell_matter), dimensionless, and what they were measured on.
 struct CellCard {
   StateForm form = StateForm::porosity;
@@ -45,6 +52,7 @@ struct CellCard {
   /// With it mu_f is the strength at the critical state and chi the stiffness before any slip; none: as in earlier
   /// versions, one spring a face and cells that forget.
   std::optional<CellMemory> memory;
+  CellCorrelation correlation;  ///< empty: not known (cards of earlier versions)
   // Where it holds.
   double pressure_low = 0.0;  ///< p/E of the fit
   double pressure_high = 0.0;
@@ -67,10 +75,14 @@ struct CellCardNumber {
   std::string key;
   Estimate estimate;
   std::string meaning;
+  bool logarithm = false;  ///< whether its errors are of its logarithm
 };
 
 /// All numbers of a card in the order of the file; those of the memory, if it has one, at the end.
 std::vector<CellCardNumber> numbers_of(const CellCard& card);
+
+/// Changes the number of this key, as near to `value` as the card allows. Throws InputError for another key.
+void set_number(CellCard& card, const std::string& key, double value);
 
 /// What the number of this key means; empty for another key.
 std::string meaning_of_cell_number(const std::string& key);

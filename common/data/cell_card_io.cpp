@@ -1,6 +1,7 @@
 // A card of the cell law as text: written for people, read strictly.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <iterator>
 #include <limits>
@@ -24,32 +25,33 @@ struct CardEntry {
   Estimate Table::*estimate;
   Range range;
   const char* meaning;
+  bool logarithm = true;
 };
 
 const std::array<CardEntry<CellCard>, 9>& cell_numbers() {
   using C = CellCard;
   static const std::array<CardEntry<C>, 9> numbers{
       {{"K", &C::modulus, Range::positive(), "p/E = K x^n"},
-       {"n", &C::exponent, Range{1.0, kLargestExponent, true, false}, "its exponent"},
+       {"n", &C::exponent, Range{1.0, kLargestExponent, true, false}, "its exponent", false},
        {"e_J", &C::void_ratio, Range::positive(), "void ratio of the fines alone where they jam"},
        {"e_c", &C::excess_alone, Range::positive(), "void ratio of the coarse grains alone where they jam"},
-       {"w_inf", &C::excess_many, Range::not_negative(), "excess pores beside coarse grains among many fines"},
+       {"w_inf", &C::excess_many, Range::not_negative(), "excess pores beside coarse grains among many fines", false},
        {"xi", &C::excess_decay, Range::positive(), "ratio of fines over which they fall to that"},
        {"mu_f", &C::friction, Range::not_negative(), "friction of faces"},
        {"chi", &C::stiffness, Range::positive(), "stiffness of their springs"},
-       {"K0", &C::lateral_ratio, Range{0.0, 1.0, true, false}, "lateral over axial stress of the fines alone"}}};
+       {"K0", &C::lateral_ratio, Range{0.0, 1.0, true, false}, "lateral over axial stress of the fines alone", false}}};
   return numbers;
 }
 
 const std::array<CardEntry<CellMemory>, 6>& memory_numbers() {
   using M = CellMemory;
   static const std::array<CardEntry<M>, 6> numbers{
-      {{"A", &M::dilatancy, Range::not_negative(), "compaction by slip beyond what friction uses of the work"},
-       {"r_c", &M::critical_pores, Range::positive(), "pores at the critical state over those at the onset"},
+      {{"A", &M::dilatancy, Range::not_negative(), "compaction by slip beyond what friction uses of the work", false},
+       {"r_c", &M::critical_pores, Range::positive(), "pores at the critical state over those at the onset", false},
        {"m", &M::strength_slope, Range::not_negative(), "growth of the strength of faces with density"},
-       {"c", &M::strength_range, Range{0.0, 1.0, true, true}, "strengths lie within mu_f (1 -+ c)"},
+       {"c", &M::strength_range, Range{0.0, 1.0, true, true}, "strengths lie within mu_f (1 -+ c)", false},
        {"lambda", &M::density_slope, Range{-kLargestExponent, kLargestExponent, false, false},
-        "change of the critical solid fraction with phi - phi_J"},
+        "change of the critical solid fraction with phi - phi_J", false},
        {"x_r", &M::least_state, Range{0.0, 1.0, true, true},
         "a cell below this x counts as unloaded; not of the material"}}};
   return numbers;
@@ -89,6 +91,16 @@ void write_memory(Out out, const CellMemory& memory) {
     fmt::format_to(out, "{} = {}  # {}\n", n.key, estimate_text(memory.*n.estimate), n.meaning);
 }
 
+void write_correlation(Out out, const CellCorrelation& c) {
+  const std::size_t n = c.numbers.size();
+  fmt::format_to(out,
+                 "\n# Correlations of the errors of these numbers, row by row; a number that is missing is held.\n");
+  fmt::format_to(out, "[correlation]\nnumbers = [\"{}\"]\nmatrix = [", fmt::join(c.numbers, "\", \""));
+  for (std::size_t k = 0; k < n * n; ++k)
+    fmt::format_to(out, "{}{}", k == 0 ? "" : k % n == 0 ? ",\n          " : ", ", real(c.matrix[k]));
+  fmt::format_to(out, "]\n");
+}
+
 void write_range(Out out, const CellCard& card) {
   fmt::format_to(out, "\n# Where it was measured.\n[range]\n");
   fmt::format_to(out, "pressure = [{}, {}]  # p/E\n", real(card.pressure_low), real(card.pressure_high));
@@ -126,6 +138,33 @@ CellMemory read_memory(const SceneTable& t) {
   return memory;
 }
 
+/// For numbers of the card as it has been read so far.
+CellCorrelation read_correlation(const SceneTable& t, const CellCard& card) {
+  CellCorrelation out;
+  out.numbers = t.texts("numbers");
+  const std::vector<CellCardNumber> known = numbers_of(card);
+  std::vector<std::string> keys;
+  for (const CellCardNumber& n : known) keys.push_back(n.key);
+  for (std::size_t k = 0; k < out.numbers.size(); ++k) {
+    const auto first = out.numbers.begin();
+    if (std::ranges::find(keys, out.numbers[k]) == keys.end())
+      t.throw_error("numbers",
+                    fmt::format("\"{}\" is no number of this card: {}", out.numbers[k], fmt::join(keys, ", ")));
+    if (std::find(first, first + static_cast<std::ptrdiff_t>(k), out.numbers[k]) !=
+        first + static_cast<std::ptrdiff_t>(k))
+      t.throw_error("numbers", fmt::format("\"{}\" stands there twice", out.numbers[k]));
+  }
+  const std::size_t n = out.numbers.size();
+  out.matrix = t.numbers("matrix", Unit::none, Range::closed(-1.0, 1.0));
+  if (n == 0 || out.matrix.size() != n * n)
+    t.throw_error("matrix", fmt::format("must be {} numbers, row by row", n * n));
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      if (out.matrix[i * n + j] != (i == j ? 1.0 : out.matrix[j * n + i]))
+        t.throw_error("matrix", "must be 1 on its diagonal, and the same across it");
+  return out;
+}
+
 void read_range(const SceneTable& t, CellCard& card) {
   const std::vector<double> pressure = t.numbers("pressure", Unit::none, Range::positive());
   if (pressure.size() != 2 || !(pressure[0] < pressure[1])) t.throw_error("pressure", "must be two rising values");
@@ -157,10 +196,24 @@ void read_measured(const SceneTable& t, CellCard& card) {
 
 std::vector<CellCardNumber> numbers_of(const CellCard& card) {
   std::vector<CellCardNumber> out;
-  for (const auto& n : cell_numbers()) out.push_back({n.key, card.*n.estimate, n.meaning});
+  for (const auto& n : cell_numbers()) out.push_back({n.key, card.*n.estimate, n.meaning, n.logarithm});
   if (card.memory)
-    for (const auto& n : memory_numbers()) out.push_back({n.key, *card.memory.*n.estimate, n.meaning});
+    for (const auto& n : memory_numbers()) out.push_back({n.key, *card.memory.*n.estimate, n.meaning, n.logarithm});
   return out;
+}
+
+void set_number(CellCard& card, const std::string& key, double value) {
+  constexpr double kLeast = 1e-9;  // of what lies above an end
+  const auto within = [&](const Range& range) {
+    return std::clamp(value, range.low_open ? range.low + kLeast : range.low,
+                      range.high_open ? range.high - kLeast : range.high);
+  };
+  for (const auto& n : cell_numbers())
+    if (n.key == key) return void((card.*n.estimate).value = within(n.range));
+  if (card.memory)
+    for (const auto& n : memory_numbers())
+      if (n.key == key) return void((*card.memory.*n.estimate).value = within(n.range));
+  throw InputError("cell law: no number \"" + key + "\" in the card");
 }
 
 std::string meaning_of_cell_number(const std::string& key) {
@@ -177,6 +230,7 @@ void write_cell_card(const CellCard& card, const std::string& path, const Proven
   write_head(out, provenance);
   write_numbers(out, card);
   if (card.memory) write_memory(out, *card.memory);
+  if (!card.correlation.numbers.empty()) write_correlation(out, card.correlation);
   write_range(out, card);
   write_measured(out, card);
   write_text_atomic(path, text);
@@ -197,6 +251,7 @@ CellCard read_cell_card(const Scene& file) {
     if (card.form != StateForm::porosity) cell.throw_error("form", "[memory] goes with \"porosity\"");
     if (!(card.friction.value > 0.0)) cell.throw_error("mu_f", "must be above 0 with [memory]");
   }
+  if (root.has("correlation")) card.correlation = read_correlation(root.table("correlation"), card);
   read_range(root.table("range"), card);
   read_measured(root.table("measured"), card);
   root.finish();

@@ -172,6 +172,11 @@ std::string Grading::name() const {
   return fmt::format("{}, diameters from {:.4g} to {:.4g} mm", to_string(form_), 2e3 * smallest(), 2e3 * largest());
 }
 
+std::optional<double> Grading::exponent() const {
+  const SizePiece& first = pieces_.front();
+  return pieces_.size() == 1 && first.low < first.high ? std::optional(first.exponent) : std::nullopt;
+}
+
 double Grading::smallest() const {
   return std::min_element(pieces_.begin(), pieces_.end(), [](auto& a, auto& b) { return a.low < b.low; })->low;
 }

@@ -63,6 +63,8 @@ class Grading {
   /// "sieve-curve, diameters from 0.5 to 4 mm".
   [[nodiscard]] std::string name() const;
   [[nodiscard]] const std::vector<SizePiece>& pieces() const { return pieces_; }
+  /// b of the number density ~ r^-b; empty where the sizes are no single power law, and where all are alike.
+  [[nodiscard]] std::optional<double> exponent() const;
   [[nodiscard]] double smallest() const;
   [[nodiscard]] double largest() const;
   /// Share of the volume in grains smaller than r.

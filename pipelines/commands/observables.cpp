@@ -123,10 +123,11 @@ Columns parameter_columns(const std::vector<std::string>& overrides) {
   for (const std::string& text : overrides) {
     std::string key;
     double value = 0.0;
-    if (!number_of_setting(text, key, value)) continue;
-    ++times[last(key)];
-    out.push_back({key, {value}});
+    const bool number = number_of_setting(text, key, value);
+    std::erase_if(out, [&](const auto& column) { return column.first == key; });  // the last of a key holds
+    if (number) out.push_back({key, {value}});
   }
+  for (const auto& [key, value] : out) ++times[last(key)];
   for (auto& [key, value] : out)
     if (times[last(key)] == 1) key = last(key);
   return out;

@@ -71,10 +71,11 @@ ExitStatus command_sweep(const CommonOptions& options) {
     throw InputError("--jobs: runs members of a set here: it goes without --slurm and --only");
   if (options.slurm && !options.only.empty()) throw InputError("--slurm: goes without --only");
   const auto plan = [&] {
-    if (options.sample.empty()) return make_plan(options.over, options.seeds, options.overrides);
+    if (options.sample.empty()) return make_plan(options.over, options.seeds, options.overrides, options.seed_given);
     const Scene scene = Scene::load(options.inputs.front(), options.overrides);
     const SampleDesign design = read_design(options.sample, options.seed_given ? options.seed : scene_seed(scene));
-    return make_plan(options.over, options.seeds, options.overrides, design, takes_whole_numbers(options));
+    return make_plan(options.over, options.seeds, options.overrides, options.seed_given, design,
+                     takes_whole_numbers(options));
   };
   return run_set(options, plan(), "sweep", "sweep");
 }

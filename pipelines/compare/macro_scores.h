@@ -13,10 +13,12 @@ namespace softgrain {
 
 /// Differences of one engine from one twin, over the samples that both ran usably.
 struct TwinErrors {
-  std::size_t pairs = 0;         ///< samples that both ran usably
-  bool staged = false;           ///< the test is one in stages: what these impose does not count in the differences
-  MeanError axial;               ///< relative L2 difference of the axial stress, as relative_difference, per sample
-  MeanError axial_of_mean;       ///< relative L2 difference of the mean curves over the samples; error by jackknife
+  std::size_t pairs = 0;  ///< samples that both ran usably
+  bool staged = false;    ///< the test is one in stages: what these impose does not count in the differences
+  MeanError axial;        ///< relative L2 difference of the axial stress, as relative_difference, per sample
+  /// Relative L2 difference of the mean curves over the samples. Its error is that of a curve off by the standard error
+  /// of the mean paired difference at every point.
+  MeanError axial_of_mean;
   MeanError axial_end;           ///< axial stress over that of the twin, at the end
   MeanError deviator;            ///< shear and stages: relative L2 difference of axial minus x stress after the preload
   MeanError strains;             ///< stages: relative L2 difference of the strains of axes that go by stress
@@ -45,14 +47,14 @@ struct EngineScore {
   /// digit, over sqrt(2): what paths alone make of one run. Empty: not run.
   MeanError noise;
   PlacesScore places;
-  MeanError band_width;  ///< half of the 95 % band over the axial stress at the end; empty: no bands
-  MeanError coverage;    ///< share of the points of the shelled twin, from 5 % of its last axial stress on, in the band
-  MeanError coverage_end;     ///< share of the samples whose last point is in the band
-  MeanError axial;            ///< axial stress at the end [Pa]
-  MeanError lateral_ratio;    ///< lateral over axial stress at the end
-  MeanError coordination;     ///< coordination number of bodies at the end
-  MeanError fabric;           ///< fabric anisotropy of bodies at the end
-  MeanError force_mean;       ///< mean force of contacts between bodies at the end [N]
+  MeanError band_width;     ///< half of the 95 % band over the axial stress at the end; empty: no bands
+  MeanError coverage;       ///< share of the points of the shelled twin in the band, from 5 % of its largest stress on
+  MeanError coverage_end;   ///< share of the samples whose last point is in the band
+  MeanError axial;          ///< axial stress at the end [Pa]
+  MeanError lateral_ratio;  ///< lateral over axial stress at the end
+  MeanError coordination;   ///< coordination number of bodies at the end
+  MeanError fabric;         ///< fabric anisotropy of bodies at the end
+  MeanError force_mean;     ///< mean force of contacts between bodies at the end [N]
   MeanError force_variation;  ///< standard deviation of these forces over their mean
   double contact_evaluations =
       0.0;               ///< per sample; a multi-contact law's visits to a contact count each: there are two

@@ -236,15 +236,14 @@ std::string modulus_text(const StageMeans& s) {
   return text;
 }
 
-std::vector<double> stress_ratios(const MacroCurve& c) {
-  constexpr double kBearing = 0.01;
+std::vector<double> stress_ratios(const MacroCurve& c, double bearing) {
   std::vector<double> out(c.strain.size(), kNaN);
   if (c.stress_x.size() != out.size() || c.stress_y.size() != out.size()) return out;
   const auto pressure = [&](std::size_t k) { return (c.stress_x[k] + c.stress_y[k] + c.stress_axial[k]) / 3.0; };
   double largest = 0.0;
   for (std::size_t k = 0; k < out.size(); ++k) largest = std::max(largest, pressure(k));
   for (std::size_t k = 0; k < out.size(); ++k)
-    if (pressure(k) > kBearing * largest)
+    if (pressure(k) > bearing * largest)
       out[k] = q_of({{c.stress_x[k], c.stress_y[k], c.stress_axial[k]}}) / pressure(k);
   return out;
 }

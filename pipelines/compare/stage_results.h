@@ -96,8 +96,11 @@ std::string modulus_text(const StageMeans& stage);
 
 std::vector<StageMeans> stage_means(const std::vector<MacroCurve>& curves, const std::string& engine);
 
-/// q/p of all recorded points; NaN where p is not above a hundredth of its largest value: what bears next to nothing
-/// has no strength to speak of.
-std::vector<double> stress_ratios(const MacroCurve& curve);
+/// Share of the largest p below which a point has no strength to speak of.
+inline constexpr double kBearingShare = 0.01;
+
+/// q/p of all recorded points; NaN where p is not above this share of its largest value: what bears next to nothing has
+/// no strength to speak of. With 0 wherever p is above 0.
+std::vector<double> stress_ratios(const MacroCurve& curve, double bearing = kBearingShare);
 
 }  // namespace softgrain

@@ -14,6 +14,7 @@
 #include "common/data/card_text.h"
 #include "common/data/multi_contact_replicates.h"
 #include "microsim/multi_contact_arrangements.h"
+#include "pipelines/law/cell_draws.h"
 
 namespace softgrain {
 
@@ -269,8 +270,7 @@ std::vector<FormOffset> form_offsets(const MultiContactLaw& law) {
 
 LawDraws law_draws(const LawSources& sources, const NamedLaws& law, const MacroSpec& spec, double contents_fraction,
                    std::int64_t count) {
-  if (sources.cells() != nullptr)
-    throw InputError("bands: the card of a cell law keeps no refits; runs with cells have no bands: leave the key out");
+  if (sources.cells() != nullptr) return cell_draws(*sources.cells(), law.name, count);
   if (const LawCard* card = sources.serving(law.form).card()) return card_draws(*card, sources, law, spec, count);
   return table_draws(sources, law, spec, contents_fraction, count);
 }

@@ -40,8 +40,8 @@ struct LawDraws {
   std::function<NamedLaws(const std::vector<double>&)> with;
 };
 
-/// `count` draws of a law of these sources; a law table gives the refits that it keeps, a card its covariance. Throws
-/// InputError: the law keeps none, or not so many; cells.
+/// `count` draws of a law of these sources; a law table gives the refits that it keeps, a card its covariance, that of
+/// a cell law its correlations. Throws InputError: the law keeps none, or not so many.
 LawDraws law_draws(const LawSources& sources, const NamedLaws& law, const MacroSpec& spec, double contents_fraction,
                    std::int64_t count);
 

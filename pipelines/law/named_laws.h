@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/data/cell_card.h"
 #include "common/data/macro_result.h"
 #include "common/io/scene.h"
 #include "macrosim/macro_spec.h"
@@ -19,6 +20,7 @@ struct NamedLaws {
   LawForm form = LawForm::pair;
   SoftLaws laws;
   LawIdentity identity{};
+  std::optional<CellCard> cells{};  ///< a cell law with other numbers than that of the scene, in place of `laws`
   std::string tag;  ///< changes with the numbers of the law: part of the name of checkpoints; empty: none
   /// Text about the end of a run: contacts that no measurement covers. Empty when there is nothing to say; the function
   /// may be empty.

@@ -261,6 +261,17 @@ void require_few(const RunPlan& plan, Texts& problems) {
     problems.push_back(fmt::format("{:.0f} runs are asked for, at most {} go into one sweep", runs, kMostRuns));
 }
 
+/// --seed and --seeds go before the key of the scene, which would say one thing and do nothing.
+void refuse_other_seeds(const RunPlan& plan, const std::string& seeds, const Texts& set, bool one_seed,
+                        Texts& problems) {
+  const char* const option = !seeds.empty() ? "--seeds" : one_seed ? "--seed" : nullptr;
+  if (option == nullptr) return;
+  if (std::ranges::any_of(plan.over, [](const SweptKey& one) { return one.key == "seed"; }))
+    problems.push_back(fmt::format("{}: the key seed is swept by --over as well", option));
+  if (std::ranges::any_of(set, [](const std::string& one) { return key_of(one) == "seed"; }))
+    problems.push_back(fmt::format("{}: the key seed is set by --set as well", option));
+}
+
 }  // namespace
 
 std::vector<std::string> RunPlan::overrides(const PlannedRun& run) const {
@@ -269,15 +280,14 @@ std::vector<std::string> RunPlan::overrides(const PlannedRun& run) const {
   return out;
 }
 
-RunPlan make_plan(const Texts& over, const std::string& seeds, const Texts& set,
+RunPlan make_plan(const Texts& over, const std::string& seeds, const Texts& set, bool one_seed,
                   const std::optional<SampleDesign>& design, const TakesWholeNumbers& takes_whole) {
   Texts problems;
   RunPlan plan;
   plan.design = design;
   plan.over = read_keys(over, set, design.has_value(), problems);
   plan.seeds = read_seeds(seeds, problems);
-  for (const SweptKey& one : plan.over)
-    if (one.key == "seed" && !seeds.empty()) problems.emplace_back("--seeds: the key seed is swept by --over as well");
+  refuse_other_seeds(plan, seeds, set, one_seed, problems);
   if (over.empty() && seeds.empty()) problems.emplace_back("nothing is swept: give --over key=a,b,c or --seeds 1..8");
   if (design && over.empty()) problems.emplace_back("--sample: goes with --over key=LOW..HIGH");
   require_few(plan, problems);

@@ -39,10 +39,10 @@ struct RunPlan {
 /// With a `design` keys are ranges (range_of) of which `takes_whole` says whether they take whole numbers, or lists,
 /// whose values are equally likely; runs are called sample_001, sample_002, ...
 /// Throws InputError with everything that is wrong, one a line: no key or value, a key or value twice, a range without
-/// a design, more than 10000 runs.
+/// a design, more than 10000 runs, a seed said in two ways (`one_seed`: --seed is given).
 RunPlan make_plan(
     const std::vector<std::string>& over, const std::string& seeds, const std::vector<std::string>& set,
-    const std::optional<SampleDesign>& design = {},
+    bool one_seed = false, const std::optional<SampleDesign>& design = {},
     const TakesWholeNumbers& takes_whole = [](const auto&, const auto&) { return false; });
 
 /// The seed that the scene says.

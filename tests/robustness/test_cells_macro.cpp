@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/data/cell_card.h"
+#include "common/data/macro_band.h"
 #include "common/data/macro_result.h"
 #include "common/io/text_file.h"
 #include "tests/support/disturbed_run.h"
@@ -237,12 +238,36 @@ TEST_F(CellsMacro, WithShearMemoryStartAtThePressureThatIsAsked) {
 }
 
 /// What a run refuses at once, check refuses too.
-TEST_F(CellsMacro, HaveNoBandsAndCheckSaysSo) {
+TEST_F(CellsMacro, HaveNoBandsWithoutCorrelationsAndCheckSaysSo) {
   const std::string checked = "check '" + file("scene.toml") + "' ";
   expect(run_the_program(checked), 0, {});
-  expect(run("bad", "--bands 8"), 2, {"keeps no refits"});
-  expect(run_the_program(checked + "--bands 8"), 2, {"keeps no refits"});
-  expect(run_the_program(checked + "--set macro.bands=8"), 2, {"keeps no refits"});
+  expect(run("bad", "--bands 8"), 2, {"no [correlation]"});
+  expect(run_the_program(checked + "--bands 8"), 2, {"no [correlation]"});
+  expect(run_the_program(checked + "--set macro.bands=8"), 2, {"no [correlation]"});
+}
+
+/// At a given density all stresses go with K: a band of K alone is as wide as the interval of K.
+TEST_F(CellsMacro, BandsAreAsWideAsTheErrorsOfTheCard) {
+  CellCard card = sample_card();
+  card.correlation = {{"K"}, {1.0}};
+  write_cell_card(card, file("cells.toml"));
+  scene("", "share = 0.4\nstart = \"density\"\nsolid_fraction = 0.7\n");
+  const ProgramOutcome outcome = run("bands", "--bands 60");
+  expect(outcome, 0, {"60 draws from the errors of the card", "e_J", "held: their errors are not known"});
+  const MacroCurve c = curve("bands");
+  for (const BandOf of : {BandOf::axial, BandOf::lateral}) {
+    const auto band = band_of(c, of, BandPart::law);
+    ASSERT_TRUE(band);
+    for (std::size_t k = 1; k < c.strain.size(); ++k) {
+      const double stress = banded_stress(c, of)[k];
+      EXPECT_NEAR(1.0 - band->low[k] / stress, 0.02, 0.008);
+      EXPECT_NEAR(band->high[k] / stress - 1.0, 0.02, 0.008);
+    }
+  }
+  expect(run("two", "--bands 60", 2), 0, {});
+  EXPECT_EQ(band_of(curve("two"), BandOf::axial, BandPart::law)->high, band_of(c, BandOf::axial, BandPart::law)->high);
+  scene("band_estimator = \"components\"\n");
+  expect(run("bad", "--bands 8"), 2, {"cells run every draw"});
 }
 
 TEST_F(CellsMacro, TheirCardIsShownAndChecked) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "common/data/macro_result.h"
@@ -98,6 +99,31 @@ TEST(MaterialModelsRun, RefusesACardOfGrainsWithAnotherFriction) {
     EXPECT_NE(scores[model]["remark"].get<std::string>().find(message), std::string::npos) << model;
   }
   EXPECT_EQ(scores["coarse"]["samples"], 2);
+}
+
+/// "m" on "x-y" is not "m-x" on "y", from whose checkpoint it would go on. Sieve curves have no exponent that fines
+/// could be drawn by.
+TEST(MaterialModelsRun, ModelsWithDashesInTheirNamesAreNotMixedUp) {
+  const TemporaryDirectory directory;
+  write_text_atomic(
+      directory.file("scene.toml"),
+      "kind = \"material-models\"\nsamples = 1\n[packing]\npreparation = \"fast\"\n[test]\nstrain = 0.01\nsteps = 2\n"
+      "[grains]\ncount = 200\nratio = 4\n[[variant]]\nname = \"y\"\n[[variant]]\nname = \"x-y\"\n"
+      "sizes = { form = \"sieve-curve\", openings = [0.008, 0.016, 0.032], passing = [0.0, 0.3, 1.0] }\n"
+      "[[model]]\nname = \"m\"\nkind = \"coarse\"\nsplit = 0.45\n[[model]]\nname = \"m-x\"\nkind = \"coarse\"\n"
+      "split = 0.7\n[[model]]\nname = \"drawn\"\nkind = \"substitute\"\nsplit = 0.6\nsmallest = 0.35\n");
+  const std::string out = directory.file("out");
+  const ProgramOutcome outcome =
+      run_the_program("run '" + directory.file("scene.toml") + "' --quiet --out '" + out + "'");
+  ASSERT_TRUE(outcome.status == 0 || outcome.status == 3) << outcome.output;
+  const nlohmann::json summary = summary_of(out);
+  std::map<std::string, nlohmann::json> scores;
+  for (const auto& one : summary["models"])
+    scores[one["variant"].get<std::string>() + " " + one["model"].get<std::string>()] = one;
+  EXPECT_GT(scores["x-y m"]["bodies"].get<int>(), scores["x-y m-x"]["bodies"].get<int>());
+  EXPECT_GT(scores["y m"]["bodies"].get<int>(), scores["y m-x"]["bodies"].get<int>());
+  EXPECT_NE(scores["x-y drawn"]["remark"].get<std::string>().find("drawn from r^-3.5"), std::string::npos);
+  EXPECT_EQ(scores["y drawn"]["remark"].get<std::string>().find("drawn from"), std::string::npos);
 }
 
 /// What was measured once is equal to the last bit, a time among it.

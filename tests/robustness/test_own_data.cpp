@@ -370,8 +370,8 @@ TEST_F(OwnData, ObservablesAreWrittenAsCalibrationToolsReadThem) {
   scene.replace(scene.find("inverse"), 7, "soft-particle");
   write("scene.toml", scene);
   const std::string prefix = file("iter0/softgrain_Iter0_Sample3");
-  const auto outcome = run_the_program("microsim '" + file("scene.toml") + "' --quiet --set material.mu=0.25 --set " +
-                                       "packing.beta=5 --observables '" + prefix + "'");
+  const auto outcome = run_the_program("microsim '" + file("scene.toml") + "' --quiet --set material.mu=0.5 --set " +
+                                       "material.mu=0.25 --set packing.beta=5 --observables '" + prefix + "'");
   ASSERT_TRUE(outcome.status == 0 || outcome.status == 3) << outcome.output;
   EXPECT_EQ(read_text(prefix + "_param.txt"), "# mu beta\n0.25 5\n");
   std::istringstream text(read_text(prefix + "_sim.txt"));

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/data/cell_card.h"
+#include "common/data/macro_result.h"
 #include "common/io/text_file.h"
 #include "tests/support/every_kind.h"
 #include "tests/support/program.h"
@@ -82,6 +83,11 @@ TEST(RecipeRun, HoldsForAllItsGrainsAndRunsAgainOutOfTheCaches) {
   const double law = r["curves"][0]["axial"].back();
   EXPECT_NEAR(r["curves"][1]["axial"].back().get<double>() / law, 1.0, 0.3);
   EXPECT_NEAR(r["curves"][2]["axial"].back().get<double>() / law, 1.0, 0.5);
+  // What the runs with the cell law say of themselves is said, as pressures beyond its range.
+  for (const MacroCurve& c : load_macro(first + "/recipe_macro.h5"))
+    if (c.usable && !c.note.empty() && c.sample == 0) {
+      EXPECT_NE(summary["remarks"].dump().find("'" + c.engine + "' of sample 0"), std::string::npos) << c.note;
+    }
   const std::string page = read_text(first + "/report.html");
   for (const char* part : {"recipe-onset", "recipe-load", "From the recipe to the law"})
     EXPECT_NE(page.find(part), std::string::npos) << part;

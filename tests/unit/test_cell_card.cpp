@@ -48,6 +48,7 @@ CellCard sample_card() {
 CellCard card_with_memory() {
   CellCard c = sample_card();
   c.form = StateForm::porosity;
+  c.correlation = {{"K", "n", "A"}, {1.0, 0.9 / 7.0, -0.25, 0.9 / 7.0, 1.0, 0.1, -0.25, 0.1, 1.0}};
   c.memory = CellMemory{{1.18, 0.1 / 3.0, 1.1, 1.3}, {0.9496, 0.01, 0.93, 0.97},     {35.0, 5.0, 20.0, 50.0},
                         {0.666, kInf, 0.0, 1.0},     {-0.24, 0.05 / 7.0, -0.4, 0.0}, {1.6e-3, kInf, 0.0, 1.0}};
   return c;
@@ -82,6 +83,8 @@ TEST(CellCardFile, RoundTripIsExact) {
   EXPECT_EQ(a.preparation, b.preparation);
   EXPECT_EQ(a.fines_sizes, b.fines_sizes);
   EXPECT_EQ(a.samples, b.samples);
+  EXPECT_EQ(a.correlation.numbers, b.correlation.numbers);
+  EXPECT_EQ(a.correlation.matrix, b.correlation.matrix);
   write_cell_card(b, directory.file("again.toml"));
   EXPECT_EQ(read_text(directory.file("card.toml")), read_text(directory.file("again.toml")));
 }
@@ -106,6 +109,43 @@ TEST(CellCardFile, MayHaveNoMemory) {
   EXPECT_EQ(read_text(directory.file("card.toml")).find("[memory]"), std::string::npos);
   EXPECT_FALSE(read_cell_card(directory.file("card.toml")).memory);
   EXPECT_EQ(numbers_of(sample_card()).size(), 9U);
+}
+
+TEST(CellCardFile, CorrelationsAreThoseOfNumbersOfTheCard) {
+  const TemporaryDirectory directory;
+  const auto complaint = [&](const CellCorrelation& wrong) -> std::string {
+    CellCard card = sample_card();
+    card.correlation = wrong;
+    write_cell_card(card, directory.file("card.toml"));
+    try {
+      (void)read_cell_card(directory.file("card.toml"));
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const auto expect_words = [&](const CellCorrelation& wrong, const std::string& words) {
+    EXPECT_NE(complaint(wrong).find(words), std::string::npos) << complaint(wrong);
+  };
+  EXPECT_EQ(complaint({{"K", "n"}, {1.0, 0.5, 0.5, 1.0}}), "");
+  expect_words({{"K", "A"}, {1.0, 0.5, 0.5, 1.0}}, "\"A\" is no number of this card");  // it has no [memory]
+  expect_words({{"K", "K"}, {1.0, 0.5, 0.5, 1.0}}, "twice");
+  expect_words({{"K", "n"}, {1.0, 0.5, 0.5}}, "must be 4 numbers");
+  expect_words({{"K", "n"}, {1.0, 0.5, 0.4, 1.0}}, "the same across it");
+  expect_words({{"K", "n"}, {0.9, 0.5, 0.5, 1.0}}, "1 on its diagonal");
+  expect_words({{"K", "n"}, {1.0, 1.5, 1.5, 1.0}}, "matrix");
+}
+
+TEST(CellCardFile, NumbersAreSetByTheirKeysWithinTheirRanges) {
+  CellCard card = card_with_memory();
+  set_number(card, "n", 0.5);
+  EXPECT_GT(card.exponent.value, 1.0);
+  EXPECT_LT(card.exponent.value, 1.001);
+  set_number(card, "c", 0.25);
+  EXPECT_EQ(card.memory->strength_range.value, 0.25);
+  set_number(card, "w_inf", -1.0);
+  EXPECT_EQ(card.excess_many.value, 0.0);
+  EXPECT_THROW(set_number(card, "k", 1.0), InputError);
 }
 
 TEST(CellCardFile, SlipThatGivesEnergyBackIsRefused) {

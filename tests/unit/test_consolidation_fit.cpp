@@ -64,6 +64,22 @@ TEST(ConsolidationFit, ErrorsComeFromSamples) {
   EXPECT_NEAR(two.slope.error, 0.01, 1e-3) << "slopes 0.12 and 0.14";
 }
 
+/// The line of regime II to the end says nothing of where it would go.
+TEST(ConsolidationFit, LimitsOfTheSearchAreNoResult) {
+  ConsolidationCurves c;
+  for (double p = 0.0125; p < 6.5; p *= 2.0) c.pressure.push_back(p);
+  c.fraction.emplace_back();
+  for (const double p : c.pressure) {
+    // A little steeper at the beginning, so that the stretch of the slope ends long before the last point.
+    const double steep = std::min(std::log(p / 0.0125), std::log(8.0));
+    c.fraction[0].push_back(1.0 / (1.0 / 0.3 - 0.25 * std::log(p / 0.0125) - 0.01 * steep));
+  }
+  const ConsolidationFit f = fit_consolidation(c);
+  ASSERT_TRUE(f.usable) << f.reason;
+  EXPECT_FALSE(f.exponent || f.densest) << (f.densest ? f.densest->value : 0.0);
+  EXPECT_NE(f.reason.find("limit of its search"), std::string::npos) << f.reason;
+}
+
 TEST(ConsolidationFit, SaysWhatCannotBeTold) {
   const ConsolidationFit early = fit_consolidation(curves_up_to(1.6, {0.0}));
   EXPECT_TRUE(early.usable);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string>
@@ -115,6 +116,17 @@ TEST_P(ExploredKind, HasEveryKeyThatItsScenesAreAskedFor) {
     if (key.form == KeyForm::any || key.retired) continue;
     EXPECT_TRUE(known.contains(without_numbers(path)) || known.contains(with_free_name(without_numbers(path)))) << path;
   }
+}
+
+/// Loadings of both kinds are read by the same reader.
+TEST(ExploredKeys, ModelsOfMaterialsHaveAllLoadingsOfMaterials) {
+  std::map<std::string, std::set<std::string>> loadings;
+  for (const SceneKind& kind : scene_kinds())
+    if (std::string(kind.name).starts_with("material"))
+      for (const ExploredKey& k : keys_of(kind))
+        if (k.path().starts_with("loading.")) loadings[kind.name].insert(k.path());
+  EXPECT_TRUE(loadings["material"].contains("loading.stage.lateral_stress"));
+  EXPECT_EQ(loadings["material-models"], loadings["material"]);
 }
 
 TEST(ExploredKeys, AreAllThatShippedScenesHave) {

@@ -71,6 +71,16 @@ TEST(Grading, AgreesWithTheClosedForms) {
     EXPECT_NEAR(log_normal.passing(r), gsl_cdf_ugaussian_P(std::log(r / 0.003) / std::log(1.4)), 3e-5) << r;
 }
 
+TEST(Grading, AnExponentIsOneOfASinglePowerLaw) {
+  EXPECT_EQ(Grading::power_law(2.0, 0.001, 0.006).exponent(), 2.0);
+  EXPECT_EQ(Grading::fuller(0.37, 0.001, 0.006).exponent(), 4.0 - 0.37);
+  EXPECT_EQ(Grading::classes({{0.001, 0.002, 3.2, 1.0}}).exponent(), 3.2);
+  EXPECT_EQ(Grading::sieve_curve({0.001, 0.002}, {0.0, 1.0}).exponent(), 4.0);
+  EXPECT_EQ(Grading::sieve_curve({0.001, 0.002, 0.004}, {0.0, 0.4, 1.0}).exponent(), std::nullopt);
+  EXPECT_EQ(Grading::log_normal(0.003, 1.4, 0.002, 0.004).exponent(), std::nullopt);
+  EXPECT_EQ(Grading::list({0.001}).exponent(), std::nullopt) << "all alike";
+}
+
 TEST(Grading, SamplesFollowWhatWasAsked) {
   for (const Grading& g : all_forms()) {
     double worst = 0.0;

@@ -191,6 +191,11 @@ TEST_F(KeysThatCount, FamiliesOfMaterialsDifferInTheSpanAlone) {
       two + "[[loading]]\nname = \"press\"\n[[loading]]\nname = \"shear\"\ntest = \"shear\"\nforce_floor = 1e-6\n");
   for (const MaterialVariant& v : loaded.variants)
     EXPECT_EQ(material_family(v, loaded.variants), material_family(loaded.variants.front(), loaded.variants));
+  EXPECT_EQ(families(two + "[[loading]]\nname = \"press\"\n"), 1U);
+  for (const char* key : {"tolerance = 1e-3\n", "steps = 3\n", "increments_per_step = 7\n", "force_floor = 1e-5\n"})
+    EXPECT_EQ(families(two + key + "[[loading]]\nname = \"press\"\n"), 2U) << key;
+  const std::string law = "sizes = { form = \"power-law\", exponent = 3.5, radius_min = 0.01, radius_max = 0.02 }\n";
+  EXPECT_EQ(families(two + "[[variant]]\nname = \"c\"\n" + law), 1U) << "b = 3.5, said in another way";
   const auto normal = [](double deviation, double smallest) {
     return fmt::format(
         "sizes = {{ form = \"log-normal\", radius_median = 0.012, geometric_deviation = {}, "

@@ -71,10 +71,12 @@ TEST_P(MeanFields, MapStandInsOntoTheTruth) {
   const double phi =
       GetParam() == StateForm::porosity ? onset + x * (1.0 - onset) : 1.0 / (1.0 + (1.0 / onset - 1.0) * (1.0 - x));
   MacroCurve other = exact(card, phi, onset);
+  other.stress_axial_contacts = other.stress_axial;
   EXPECT_GT(std::abs(other.stress_axial[2] / truth.stress_axial[2] - 1.0), 0.05);
   map_by_state(card, truth, start, other);
   for (std::size_t k = 0; k < truth.strain.size(); ++k)
     EXPECT_NEAR(other.stress_axial[k] / truth.stress_axial[k], 1.0, 1e-9) << k;
+  EXPECT_EQ(other.stress_axial_contacts, other.stress_axial);
 }
 INSTANTIATE_TEST_SUITE_P(Forms, MeanFields, testing::Values(StateForm::porosity, StateForm::pores));
 
@@ -85,6 +87,71 @@ TEST(MaterialModels, TheOnsetOfTheCardIsThatOfItsPores) {
   const double ratio = 0.4 / 0.6;
   const double pores = 0.6 * 0.4 + 0.6 * (0.3 + 0.32 * std::exp(-ratio / 0.35));
   EXPECT_NEAR(onset_by_card(card, 0.4), 1.0 / (1.0 + pores), 1e-12);
+}
+
+/// Nothing of what the packing answered passes for an answer of the card.
+TEST(MaterialModels, MeanFieldsHoldNothingOfTheTruth) {
+  const CellCard card = card_of(StateForm::porosity);
+  MacroCurve truth = exact(card, 0.66, 0.64);
+  truth.stage.assign(3, 0.0);
+  for (auto* column : {&truth.stress_deviator, &truth.stress_axial_contacts, &truth.coordination, &truth.fabric,
+                       &truth.residual, &truth.coordination_bodies, &truth.fabric_bodies})
+    column->assign(3, 7.0);
+  truth.body_forces = {7.0};
+  truth.preparation.seconds = 7.0;
+  truth.grains = 7;
+  const MacroCurve c = mean_field(card, truth, kNaN, 0.645);
+  EXPECT_EQ(c.strain, truth.strain);
+  EXPECT_EQ(c.stage, truth.stage);
+  for (const auto* column : {&c.fabric, &c.coordination_bodies, &c.fabric_bodies, &c.body_forces})
+    EXPECT_TRUE(column->empty());
+  for (const auto* column : {&c.coordination, &c.residual}) EXPECT_EQ(*column, std::vector<double>(3, 0.0));
+  EXPECT_EQ(c.stress_axial_contacts, c.stress_axial);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(c.stress_deviator[k], c.stress_axial[k] - c.stress_x[k]) << k;
+  EXPECT_EQ(c.preparation.seconds, 0.0);
+  EXPECT_EQ(c.grains, 0);
+}
+
+/// Where cells part the grains, not where the card was measured.
+TEST(MaterialModels, FinesAreThoseBelowTheSplitOfTheModel) {
+  MacroSpec spec;
+  spec.solid_radius_max = 0.016;
+  spec.solid_polydispersity = 6.0;
+  MaterialModel model{.name = "m", .kind = ModelKind::cells, .split = 0.6};
+  model.card = card_of(StateForm::porosity);
+  model.card->split = 1.0 / 3.0;
+  model.card->fines_ratio = 2.0;
+  model.card->preparation = to_string(spec.preparation);
+  EXPECT_NE(other_fines(model, spec).find("ratio 2, these have 3.6"), std::string::npos) << other_fines(model, spec);
+  model.split = 1.0 / 3.0;
+  EXPECT_EQ(other_fines(model, spec), "");
+  model.kind = ModelKind::mean_field;
+  model.split = 0.6;
+  EXPECT_EQ(other_fines(model, spec), "") << "a mean field has no split of its own";
+  take_sizes(spec, Grading::classes({{0.008, 0.016, 3.5, 0.6}, {0.002, 0.004, 3.5, 0.4}}));
+  model.kind = ModelKind::cells;
+  model.split = 0.45;
+  EXPECT_EQ(other_fines(model, spec), "") << "between a quarter and a half of the largest there is nothing";
+}
+
+TEST(MaterialModels, DrawnSizesHaveTheExponentOfTheMaterialOrSayWhich) {
+  MacroSpec spec;
+  take_sizes(spec, Grading::power_law(2.0, 0.004, 0.016));
+  MaterialModel model{.name = "m", .kind = ModelKind::substitute};
+  EXPECT_EQ(exponent_of(spec), 2.0);
+  EXPECT_EQ(assumed_exponent(model, spec), "");
+  take_sizes(spec, Grading::fuller(0.5, 0.004, 0.016));
+  EXPECT_EQ(exponent_of(spec), 3.5);
+  EXPECT_EQ(assumed_exponent(model, spec), "");
+  take_sizes(spec, Grading::sieve_curve({0.004, 0.008, 0.016}, {0.0, 0.3, 1.0}));
+  for (const auto& [kind, what] : {std::pair{ModelKind::substitute, "fines"}, {ModelKind::shells, "shells"}}) {
+    model.kind = kind;
+    EXPECT_NE(assumed_exponent(model, spec).find(std::string(what) + " are drawn from r^-3.5"), std::string::npos);
+  }
+  model.kind = ModelKind::cells;
+  EXPECT_EQ(assumed_exponent(model, spec), "");
+  model.soft_share = 0.1;
+  EXPECT_NE(assumed_exponent(model, spec), "");
 }
 
 TEST(MaterialModels, GrainsArePartedByTheirRadius) {

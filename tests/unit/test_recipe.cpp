@@ -149,6 +149,7 @@ sizes = { form = "power-law", exponent = 3.5, radius_min = "0.4 mm", radius_max 
 )";
   EXPECT_NE(refusal(densities, "count = 900").find("every [[constituent]] gives its own"), std::string::npos);
   EXPECT_NE(refusal("[check]\ngrains = 0\nsamples = 2\n").find("there is no check with grains = 0"), std::string::npos);
+  EXPECT_NE(refusal("[levels]\ncut_diameters = []\n").find("at least one is needed"), std::string::npos);
 }
 
 TEST(RecipeScene, RefusesSharesThatDoNotAddUp) {

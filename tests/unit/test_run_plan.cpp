@@ -49,9 +49,9 @@ TEST(RunPlan, NamesAreUnique) {
   EXPECT_EQ(names_of(make_plan({"macro.mu=0.1", "material.mu=0.2"}, "", {})), (Texts{"macro.mu=0.1_material.mu=0.2"}));
 }
 
-std::string complaint(const Texts& over, const std::string& seeds, const Texts& set = {}) {
+std::string complaint(const Texts& over, const std::string& seeds, const Texts& set = {}, bool one_seed = false) {
   try {
-    (void)make_plan(over, seeds, set);
+    (void)make_plan(over, seeds, set, one_seed);
   } catch (const InputError& e) {
     return e.what();
   }
@@ -70,12 +70,16 @@ TEST(RunPlan, SaysAllThatIsWrongAtOnce) {
             "--seeds 1..3,two,-1: -1: must be whole numbers, at least 0, such as 1..8 or 1,3,7");
   EXPECT_NE(complaint({}, "").find("nothing is swept"), std::string::npos);
   EXPECT_NE(complaint({"seed=1,2"}, "1..2").find("the key seed is swept"), std::string::npos);
+  EXPECT_EQ(complaint({"seed=1,2"}, "", {}, true), "--seed: the key seed is swept by --over as well");
+  EXPECT_EQ(complaint({"a=1,2"}, "", {"seed = 3"}, true), "--seed: the key seed is set by --set as well");
+  EXPECT_EQ(complaint({"a=1,2"}, "1..2", {"seed=3"}), "--seeds: the key seed is set by --set as well");
+  EXPECT_EQ(complaint({"a.seed=1,2"}, "", {"b.seed=3"}, true), "") << "other keys of that name";
   EXPECT_NE(complaint({"a=1..200", "b=1..200"}, "").find("40000 runs"), std::string::npos);
   EXPECT_NE(complaint({"a=1..99999999999"}, "").find("more than 10000 values"), std::string::npos);
 }
 
 RunPlan sampled(const Texts& over, const std::string& sample, const std::string& seeds = "") {
-  return make_plan(over, seeds, {}, read_design(sample, 1),
+  return make_plan(over, seeds, {}, false, read_design(sample, 1),
                    [](const std::string& key, const std::string&) { return key == "bodies"; });
 }
 

@@ -17,9 +17,9 @@ constexpr double kStart = 1e-4;
 double onset_of(double span) { return 1.0 / (1.0 + 0.75 * std::exp(-0.3 * (std::hypot(std::log(span), 1.0) - 1.0))); }
 
 /// A sample that follows K = 0.05, n = 1.8 and K0 = 0.5; sheared, it keeps its pressure.
-MacroCurve curve_of(StageKind kind, double span, RandomStream& random) {
+MacroCurve curve_of(StageKind kind, double span, double start_pressure, RandomStream& random) {
   const double onset = onset_of(span) + 5e-4 * random.normal();
-  const double start = state_phi(StateForm::porosity, 0.05, 1.8, onset, kStart);
+  const double start = state_phi(StateForm::porosity, 0.05, 1.8, onset, start_pressure);
   MacroCurve c;
   c.usable = true;
   c.start.youngs_modulus = kYoung;
@@ -43,19 +43,21 @@ MacroCurve curve_of(StageKind kind, double span, RandomStream& random) {
   return c;
 }
 
-std::vector<PredictionInput> inputs_of(const std::vector<double>& spans) {
+std::vector<PredictionInput> inputs_of(const std::vector<double>& spans, double start = kStart) {
   RandomStream random(1, RandomPurpose::bootstrap, 5);
   std::vector<PredictionInput> out;
   for (const double span : spans)
     for (const auto& [loading, kind] : {std::pair{"shear", StageKind::shear}, {"pressed", StageKind::oedometric}}) {
-      PredictionInput in{"m" + std::to_string(span), span, "family", loading, 0.0, kStart, {}};
-      for (int s = 0; s < 3; ++s) in.curves.push_back(curve_of(kind, span, random));
+      PredictionInput in{"m" + std::to_string(span), span, "family", loading, "", 0.0, start, {}};
+      for (int s = 0; s < 3; ++s) in.curves.push_back(curve_of(kind, span, start, random));
       out.push_back(std::move(in));
     }
   return out;
 }
 
 EquationSettings settings() { return {.largest_span = 6.0, .spans = {12.0, 50.0}, .replicates = 60}; }
+
+EquationSettings quick_settings() { return {.largest_span = 6.0, .spans = {12.0}, .replicates = 40}; }
 
 const PredictionSummary* find(const std::vector<PredictionSummary>& all, const std::string& loading, double span) {
   for (const PredictionSummary& s : all)
@@ -105,6 +107,79 @@ TEST(SpanPredictions, VariantsAboveTheLargestSpanChangeNothing) {
   EXPECT_EQ(a.predicted.low, b.predicted.low);
   EXPECT_NEAR(b.measured->mean / a.measured->mean, 3.0, 1e-9);
   EXPECT_FALSE(b.inside());
+}
+
+/// The variant that comes first is in no fit, and has more points than those that are.
+TEST(SpanPredictions, PointsAreThoseOfTheVariantsThatWereFitted) {
+  auto inputs = inputs_of({12.0, 1.5, 2.4, 6.0});
+  for (PredictionInput& in : inputs)
+    if (in.span > 6.0)
+      for (MacroCurve& c : in.curves)
+        for (auto* column : {&c.strain, &c.strain_x, &c.strain_y, &c.strain_z, &c.stage, &c.stress_axial, &c.stress_x,
+                             &c.stress_y, &c.more[kSolidFraction]})
+          column->insert(column->end(), 300, column->back());
+  const auto found = predict_spans(inputs, quick_settings(), 1);
+  for (const char* loading : {"pressed", "shear"}) {
+    const PredictionSummary* s = find(found, loading, 12.0);
+    ASSERT_TRUE(s != nullptr && s->usable) << loading;
+    ASSERT_EQ(s->points.size(), 9U) << loading;
+    EXPECT_NEAR(s->points.back().strain, 0.08, 1e-12) << loading;
+    EXPECT_EQ(s->samples_measured, 0) << "other points cannot stand beside: " << loading;
+  }
+}
+
+TEST(SpanPredictions, AnEquationOfStateThatCannotBeFittedIsSaid) {
+  auto inputs = inputs_of({1.5, 2.4, 6.0});
+  for (PredictionInput& in : inputs)
+    for (MacroCurve& c : in.curves)
+      for (double& phi : c.more[kSolidFraction]) phi *= 1.5;  // overlaps count twice: more than 1 is found
+  std::vector<PredictionSummary> found;
+  ASSERT_NO_THROW(found = predict_spans(inputs, quick_settings(), 1));
+  ASSERT_FALSE(found.empty());
+  for (const PredictionSummary& s : found) {
+    EXPECT_FALSE(s.usable);
+    EXPECT_NE(s.message.find("equation of state: curve"), std::string::npos) << s.message;
+  }
+}
+
+/// From a start pressure far below a hundredth of the last one.
+TEST(SpanPredictions, PressureMayGrowMoreThanAHundredfold) {
+  auto inputs = inputs_of({1.5, 2.4, 6.0}, 1e-5);
+  EXPECT_LT(inputs[1].curves[0].stress_axial.front(), 0.01 * inputs[1].curves[0].stress_axial.back());
+  const auto found = predict_spans(inputs, quick_settings(), 1);
+  const PredictionSummary* s = find(found, "pressed", 12.0);
+  ASSERT_TRUE(s != nullptr && s->usable);
+  EXPECT_TRUE(prediction_remarks(inputs, found, quick_settings()).empty());
+  inputs[1].curves[0].stress_axial.front() = inputs[1].curves[0].stress_x.front() = 0.0;
+  inputs[1].curves[0].stress_y.front() = 0.0;
+  const auto remarks = prediction_remarks(inputs, found, quick_settings());
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_NE(remarks[0].find("pressed: 1 of 3 samples has no part"), std::string::npos) << remarks[0];
+}
+
+/// q/p needs no pressure, and those of shear are within what was fitted to the same packings.
+TEST(SpanPredictions, ShearIsNotBeyondWhatItsCompressionWasFittedTo) {
+  const auto found = predict_spans(inputs_of({1.5, 2.4, 6.0}), quick_settings(), 1);
+  const PredictionSummary* s = find(found, "shear", 12.0);
+  ASSERT_TRUE(s != nullptr && s->usable);
+  for (const PredictedPoint& p : s->points) EXPECT_FALSE(p.beyond) << p.strain;
+}
+
+/// Variants that test alike are predicted from each other alone.
+TEST(SpanPredictions, TestsThatDifferAreNotJoined) {
+  auto inputs = inputs_of({1.5, 2.4, 6.0});
+  for (PredictionInput& in : inputs)
+    if (in.span == 6.0 && in.loading == "pressed") in.test = ", test = another";
+  const auto found = predict_spans(inputs, quick_settings(), 1);
+  const PredictionSummary* pressed = find(found, "pressed", 12.0);
+  ASSERT_NE(pressed, nullptr);
+  EXPECT_LE(pressed->largest_fitted, 2.4);
+  for (PredictionInput& in : inputs) in.test = ", test = " + in.material;
+  const auto none = predict_spans(inputs, quick_settings(), 1);
+  EXPECT_TRUE(none.empty());
+  const auto remarks = prediction_remarks(inputs, none, quick_settings());
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_NE(remarks[0].find("differ in nothing else"), std::string::npos) << remarks[0];
 }
 
 TEST(SpanPredictions, OneSpanOrSeveralStagesPredictNothing) {

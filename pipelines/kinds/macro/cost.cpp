@@ -188,7 +188,11 @@ void spend_on_macro(const MacroSetup& setup, const MacroContent& content, const 
     // A test takes about as long as its preparation where that was too long for a trial.
     if (!trial.packing) out.spend(tests, runs * std::pow(larger, 1.33) * trial.seconds);
     if (!trial.packing) return spend_on_twins(setup, content, out);
-    if (spec.cells) out.spend(tests, samples * larger * try_cells(spec, *trial.packing));
+    if (spec.cells) {
+      const double run = larger * try_cells(spec, *trial.packing);
+      out.spend(tests, samples * run);
+      if (setup.bands > 0) out.spend("bands", samples * band_runs(setup) * run);
+    }
     for (const NamedLaws& law : laws_of(laws, spec, content.solid_fraction)) {
       const double run = std::pow(larger, kTestExponent) * static_cast<double>(setup.law_increments) *
                          try_law(spec, *trial.packing, law, content.solid_fraction);

@@ -143,6 +143,13 @@ std::vector<MacroCurve> curves_of_run(const MacroScene& scene, const std::option
   return curves;
 }
 
+/// Cells, which have no laws of contacts: their engine's name alone.
+NamedLaws engine_of_cells() {
+  NamedLaws out;
+  out.name = "law";
+  return out;
+}
+
 /// Draws of the law for its bands.
 std::vector<LawDraws> draws_of(const MacroScene& scene, const NamedLaws& law,
                                const std::vector<ShellPacking>& contents) {
@@ -152,9 +159,8 @@ std::vector<LawDraws> draws_of(const MacroScene& scene, const NamedLaws& law,
 /// Checks before any work that the law has draws for bands. Throws InputError.
 void require_draws(const MacroScene& scene, bool lammps) {
   if (lammps) throw InputError("bands: runs in LAMMPS have none; leave --engine lammps out, or bands");
-  if (scene.law.cells() != nullptr)
-    throw InputError("bands: the card of a cell law keeps no refits; leave the key out");
-  (void)draws_of(scene, scene_law(scene.law, scene.setup.spec, 0.0, "law"), {});
+  const bool cells = scene.law.cells() != nullptr;
+  (void)draws_of(scene, cells ? engine_of_cells() : scene_law(scene.law, scene.setup.spec, 0.0, "law"), {});
 }
 
 /// The scene with its law, and what runs it; all that can be refused is, before anything is made.
@@ -202,7 +208,7 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
   std::vector<BandRecord> bands;
   run.guard([&] {
     curves = law ? curves_of_run(macro, lammps, *law, contents, run, draws_of(macro, *law, contents), bands)
-                 : run_macro_stage(macro.setup, {}, {}, run, {}, bands);
+                 : run_macro_stage(macro.setup, {}, {}, run, draws_of(macro, engine_of_cells(), {}), bands);
   });
   const LawIdentity identity = law ? law->identity : curves.front().law;
 

@@ -90,6 +90,8 @@ void read_cells(const SceneTable& root, const SceneTable& macro, const CellCard&
   macro.refuse({"kt"}, "the tangential stiffness of cells is that of the card");
   macro.refuse({"law_increments", "noise_samples"},
                "goes with laws of soft particles; increments_per_step serves cells");
+  macro.refuse({"band_estimator"}, "cells run every draw");
+  setup.band_estimator = BandEstimator::draws;
   macro.refuse({"force_floor"}, "cells have no contact forces: their residual is over the mean load of a face");
   if (!setup.given && !(spec.soft_share > 0.0))
     macro.refuse({"soft_radius_max", "soft_polydispersity", "soft_sizes"}, "goes with soft_share above 0");

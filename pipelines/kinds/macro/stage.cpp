@@ -82,7 +82,7 @@ struct Stage {
 
 struct Engine {
   std::string name;
-  const NamedLaws* laws = nullptr;  ///< null: a twin, or cells
+  const NamedLaws* laws = nullptr;  ///< null: a twin, or cells with the card of the scene
   Twin twin = Twin::shelled;
   bool cells = false;
 };
@@ -186,6 +186,10 @@ PointRecord places_record(const MacroPacking& packing, const Engine& engine) {
 MacroSpec spec_for(const Stage& stage, const Engine& engine) {
   MacroSpec spec = stage.runs.setup.spec;
   if (engine.laws == nullptr) return spec;
+  if (engine.cells) {
+    spec.cells->card = *engine.laws->cells;
+    return spec;
+  }
   const std::int64_t times = stage.runs.setup.law_increments;
   spec.increments_per_step *= times;
   for (MacroStage& s : spec.stages) s.increments_per_step *= times;
@@ -226,12 +230,27 @@ RunOutcome run_contacts(const Stage& stage, std::int64_t sample, const Engine& e
   return out;
 }
 
+RunOutcome cannot_begin(const Engine& engine, std::int64_t sample, const InputError& why) {
+  RunOutcome out;
+  out.curve.engine = engine.name;
+  out.curve.sample = sample;
+  out.curve.usable = false;
+  out.curve.note = why.what();
+  return out;
+}
+
 RunOutcome run_one(const Stage& stage, std::int64_t sample, const Engine& engine, Progress& progress) {
   const MacroSpec spec = spec_for(stage, engine);
   const MacroPacking& packing = stage.runs.packings[static_cast<std::size_t>(sample)];
   if (engine.cells) {
-    CellTestState state = begin_cell_test(spec, packing, engine.name, sample);
-    return run_task(stage, CellRun{spec}, state, task_name(stage, sample, engine), progress);
+    std::optional<CellTestState> state;
+    try {
+      state.emplace(begin_cell_test(spec, packing, engine.name, sample));
+    } catch (const InputError& e) {
+      if (engine.laws == nullptr) throw;
+      return cannot_begin(engine, sample, e);  // numbers that were drawn
+    }
+    return run_task(stage, CellRun{spec}, *state, task_name(stage, sample, engine), progress);
   }
   CompressionState state;
   state.macro = make_system(stage, sample, engine);
@@ -365,7 +384,7 @@ std::vector<MacroCurve> run_laws(const MacroRuns& runs, const std::vector<NamedL
   const MacroRuns once{setup, runs.packings, runs.contents, runs.seed, runs.name};
   const Stage stage{once, run, mean_solid_fraction(runs.contents)};
   std::vector<Engine> engines;
-  for (const NamedLaws& l : laws) engines.push_back({l.name, &l});
+  for (const NamedLaws& l : laws) engines.push_back({l.name, &l, {}, l.cells.has_value()});
   std::vector<RunOutcome> outcomes;
   run_kind(stage, engines, title, run.context, outcomes);
   std::vector<MacroCurve> curves;

@@ -17,8 +17,11 @@ namespace softgrain {
 
 namespace {
 
+/// Where the volume is held q/p is what is predicted; elsewhere the pressure is, which may grow a thousandfold.
+double bearing_share(const MacroCurve& c) { return c.stages.front().kind == StageKind::shear ? kBearingShare : 0.0; }
+
 ResponseCurve response_of(const MacroCurve& c, const std::string& group) {
-  ResponseCurve out{group, {}, mean_stresses(c), {}, stress_ratios(c)};
+  ResponseCurve out{group, {}, mean_stresses(c), {}, stress_ratios(c, bearing_share(c))};
   const std::vector<double>& phi = c.more.at(kSolidFraction);
   for (std::size_t k = 0; k < phi.size(); ++k) {
     out.volume.push_back(phi.front() / phi[k]);
@@ -28,9 +31,12 @@ ResponseCurve response_of(const MacroCurve& c, const std::string& group) {
   return out;
 }
 
+/// A whole test in one stage.
+bool of_one_stage(const MacroCurve& c) { return c.usable && c.stages.size() == 1 && c.more.contains(kSolidFraction); }
+
 /// A whole test in one stage, with a number at every point.
 bool predictable(const MacroCurve& c) {
-  if (!c.usable || c.stages.size() != 1 || !c.more.contains(kSolidFraction)) return false;
+  if (!of_one_stage(c)) return false;
   const ResponseCurve r = response_of(c, "");
   const auto numbers = [](const std::vector<double>& v) {
     return std::ranges::all_of(v, [](double x) { return std::isfinite(x); });
@@ -39,11 +45,13 @@ bool predictable(const MacroCurve& c) {
          numbers(r.deviator);
 }
 
-/// All of one family under one loading.
+/// All of one family in one test.
 struct Group {
   std::vector<const PredictionInput*> inputs;
 
-  [[nodiscard]] StageKind kind() const { return inputs.front()->curves.front().stages.front().kind; }
+  [[nodiscard]] StageKind kind() const {
+    return std::ranges::find_if(inputs.front()->curves, predictable)->stages.front().kind;
+  }
   [[nodiscard]] std::vector<StateCurve> states(double largest_span) const {
     std::vector<StateCurve> out;
     for (const PredictionInput* in : inputs)
@@ -51,6 +59,9 @@ struct Group {
         if (takes_part(c) && (largest_span <= 0.0 || in->span <= largest_span))
           out.push_back(state_curve(c, in->material, in->span));
     return out;
+  }
+  [[nodiscard]] bool has_part_in(const StateFit& fit) const {
+    return std::ranges::any_of(inputs, [&](const auto* in) { return fit.find(in->material) != nullptr; });
   }
   [[nodiscard]] std::vector<ResponseCurve> responses(const StateFit& fit) const {
     std::vector<ResponseCurve> out;
@@ -60,15 +71,47 @@ struct Group {
           if (predictable(c)) out.push_back(response_of(c, in->material));
     return out;
   }
+  /// Axial strains of the points of responses(), which have all the same: those of a variant that has no part may be
+  /// others.
+  [[nodiscard]] std::vector<double> strains(const StateFit& fit) const {
+    for (const PredictionInput* in : inputs)
+      if (fit.find(in->material) != nullptr)
+        for (const MacroCurve& c : in->curves)
+          if (predictable(c)) return c.strain_z;
+    return {};
+  }
 };
 
-/// Curves of a span that was measured.
-std::vector<const MacroCurve*> measured_at(const Group& group, double span) {
+/// The equation of state of one test that compresses, or why there is none.
+struct FittedTest {
+  StateFit fit{};
+  std::string problem{};
+  double highest = 0.0;  ///< largest pressure over E that it was fitted to
+
+  FittedTest(const Group& group, const EquationSettings& settings, std::uint64_t seed) {
+    const std::vector<StateCurve> states = group.states(settings.largest_span);
+    for (const StateCurve& c : states)
+      highest = std::max(highest, *std::max_element(c.pressure.begin(), c.pressure.end()));
+    try {
+      fit = fit_equation_of_state(
+          states, {.form = settings.form, .replicates = static_cast<int>(settings.replicates), .seed = seed});
+    } catch (const InputError& e) {
+      problem = e.what();
+    }
+  }
+};
+
+bool same_points(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::ranges::equal(a, b, [](double x, double y) { return std::abs(x - y) < 1e-6; });
+}
+
+/// Curves of a span that was measured, at these strains.
+std::vector<const MacroCurve*> measured_at(const Group& group, double span, const std::vector<double>& strain) {
   std::vector<const MacroCurve*> out;
   for (const PredictionInput* in : group.inputs)
     if (std::abs(in->span / span - 1.0) < 1e-6)
       for (const MacroCurve& c : in->curves)
-        if (predictable(c)) out.push_back(&c);
+        if (predictable(c) && same_points(c.strain_z, strain)) out.push_back(&c);
   return out;
 }
 
@@ -79,8 +122,7 @@ std::optional<MeanError> mean_of(const std::vector<double>& values) {
 std::vector<PredictedPoint> points_of(const ResponsePrediction& p, const std::vector<double>& strain,
                                       const std::vector<const MacroCurve*>& measured, double highest) {
   std::vector<ResponseCurve> curves;
-  for (const MacroCurve* c : measured)
-    if (c->strain.size() == strain.size()) curves.push_back(response_of(*c, ""));
+  for (const MacroCurve* c : measured) curves.push_back(response_of(*c, ""));
   std::vector<PredictedPoint> out;
   for (std::size_t k = 0; k < strain.size(); ++k) {
     const auto over = [&](auto&& value) {
@@ -99,11 +141,16 @@ std::vector<PredictedPoint> points_of(const ResponsePrediction& p, const std::ve
   return out;
 }
 
-PredictionSummary predict(const Group& group, const StateFit& fit, double span, const EquationSettings& settings,
+PredictionSummary predict(const Group& group, const FittedTest& fitted, double span, const EquationSettings& settings,
                           std::uint64_t seed) {
   const PredictionInput& first = *group.inputs.front();
-  PredictionSummary s{.family = first.family, .loading = first.loading, .kind = group.kind(), .span = span};
+  PredictionSummary s{
+      .family = first.family + first.test, .loading = first.loading, .kind = group.kind(), .span = span};
+  const StateFit& fit = fitted.fit;
   try {
+    if (!fitted.problem.empty()) throw InputError(fitted.problem);
+    if (!group.has_part_in(fit))
+      throw InputError("no equation of state: these packings are in no test that compresses");
     const OnsetOptions onset{.largest_span = settings.largest_span, .groups = {}, .exponent = first.exponent};
     const ResponseOptions options{settings.form, first.start_pressure, seed, onset};
     const ResponsePrediction p = predict_response(fit, group.responses(fit), span, options);
@@ -112,21 +159,23 @@ PredictionSummary predict(const Group& group, const StateFit& fit, double span, 
     s.largest_fitted = p.onset.largest_span;
     if (!p.usable) return s;
     s.solid_fraction = p.solid_fraction;
-    const auto measured = measured_at(group, span);
+    const std::vector<double> strain = group.strains(fit);
+    if (strain.size() != p.pressure.size()) throw InputError("responses: their points have no strains");
+    const auto measured = measured_at(group, span, strain);
     s.samples_measured = static_cast<int>(measured.size());
-    std::vector<double> strain;
-    for (const PredictionInput* in : group.inputs)
-      for (const MacroCurve& c : in->curves)
-        if (strain.empty() && predictable(c)) strain = c.strain_z;
-    double highest = 0.0;
-    for (const StateCurve& c : group.states(settings.largest_span))
-      highest = std::max(highest, *std::max_element(c.pressure.begin(), c.pressure.end()));
-    s.points = points_of(p, strain, measured, highest);
+    s.points = points_of(p, strain, measured, fitted.highest);
   } catch (const InputError& e) {
     s.usable = false;
     s.message = e.what();
   }
   return s;
+}
+
+/// The first fit that knows packings of a test that does not compress them, else the first; null: there is none.
+const FittedTest* fit_behind(const Group& group, const std::vector<FittedTest>& fitted) {
+  const auto at = std::ranges::find_if(fitted, [&](const FittedTest& f) { return group.has_part_in(f.fit); });
+  if (at != fitted.end()) return &*at;
+  return fitted.empty() ? nullptr : fitted.data();
 }
 
 std::size_t spans_up_to(const Group& group, double largest_span) {
@@ -143,30 +192,52 @@ std::vector<PredictionSummary> predict_spans(const std::vector<PredictionInput>&
                                              const EquationSettings& settings, std::uint64_t seed) {
   std::vector<PredictionSummary> out;
   if (settings.spans.empty()) return out;
-  std::map<std::string, std::vector<std::pair<std::string, Group>>> families;  // loadings in the order of the scene
+  std::map<std::string, std::vector<Group>> families;  // tests in the order of the scene
   for (const PredictionInput& in : inputs) {
     if (std::ranges::none_of(in.curves, predictable)) continue;
-    auto& loadings = families[in.family];
-    auto at = std::ranges::find_if(loadings, [&](const auto& l) { return l.first == in.loading; });
-    if (at == loadings.end()) at = loadings.insert(at, {in.loading, {}});
-    at->second.inputs.push_back(&in);
+    std::vector<Group>& tests = families[in.family];
+    const auto at = std::ranges::find_if(tests, [&](const Group& g) {
+      return g.inputs.front()->loading == in.loading && g.inputs.front()->test == in.test;
+    });
+    (at == tests.end() ? tests.emplace_back() : *at).inputs.push_back(&in);
   }
-  for (const auto& [family, loadings] : families) {
-    std::optional<StateFit> first;  // behind loadings that do not compress
+  for (const auto& [family, tests] : families) {
+    std::vector<FittedTest> fitted;
     for (const bool compressing : {true, false})
-      for (const auto& [name, group] : loadings) {
-        const std::vector<StateCurve> states = group.states(settings.largest_span);
-        if (states.empty() == compressing || spans_up_to(group, settings.largest_span) < 2) continue;
-        StateFit own;
-        if (compressing)
-          own = fit_equation_of_state(
-              states, {.form = settings.form, .replicates = static_cast<int>(settings.replicates), .seed = seed});
-        if (compressing && !first) first = own;
-        if (!compressing && !first) continue;
-        for (const double span : settings.spans)
-          out.push_back(predict(group, compressing ? own : *first, span, settings, seed));
+      for (const Group& group : tests) {
+        const bool compresses = !group.states(settings.largest_span).empty();
+        if (compresses != compressing || spans_up_to(group, settings.largest_span) < 2) continue;
+        if (compressing) fitted.emplace_back(group, settings, seed);
+        const FittedTest* const by = compressing ? &fitted.back() : fit_behind(group, fitted);
+        if (by == nullptr) continue;
+        for (const double span : settings.spans) out.push_back(predict(group, *by, span, settings, seed));
       }
   }
+  return out;
+}
+
+std::vector<std::string> prediction_remarks(const std::vector<PredictionInput>& inputs,
+                                            const std::vector<PredictionSummary>& predictions,
+                                            const EquationSettings& settings) {
+  std::vector<std::string> out;
+  if (settings.spans.empty()) return out;
+  bool any = false;
+  for (const PredictionInput& in : inputs) {
+    const auto tested = std::ranges::count_if(in.curves, of_one_stage);
+    const auto left_out = tested - std::ranges::count_if(in.curves, predictable);
+    any = any || left_out < tested;
+    if (left_out > 0)
+      out.push_back(fmt::format(
+          "{}{}: {} of {} samples {} no part in predictions of spans (equation.spans): their stress "
+          "vanishes or changes sign at a point",
+          in.material, in.loading.empty() ? "" : ", " + in.loading, left_out, tested, left_out == 1 ? "has" : "have"));
+  }
+  if (predictions.empty())
+    out.push_back(
+        any ? "no span was predicted (equation.spans): variants of two spans (up to largest_span) that differ "
+              "in nothing else and are compressed are needed"
+            : "no span was predicted (equation.spans): no sample has a test of one stage with a stress at "
+              "every point");
   return out;
 }
 

@@ -16,6 +16,7 @@ struct PredictionInput {
   double span = 1.0;
   std::string family;           ///< materials that differ in the span alone
   std::string loading;          ///< empty: the scene has one test
+  std::string test;             ///< what differs in the tests of this loading, as test_family() says it
   double exponent = 0.0;        ///< exponent of the power law of sizes; 0: another form
   double start_pressure = 0.0;  ///< start pressure over E
   std::vector<MacroCurve> curves;
@@ -79,11 +80,18 @@ void fields(auto&& visit, Of<PredictionSummary> auto& s) {
   visit("points", s.points, kLeftOut);
 }
 
-/// Predictions for all families with two spans or more up to `largest_span`, under loadings of one stage, at
-/// `settings.spans`. The equation of state of a prediction is fitted to its loading (for shear: to the first loading
-/// that compresses) and its family alone, without larger spans.
+/// Predictions for all families with two spans or more up to `largest_span`, in equal tests of one stage, at
+/// `settings.spans`. The equation of state of a prediction is fitted to its test (for shear: to the first that
+/// compresses the same packings) and its family alone, without larger spans. One that cannot be fitted is not usable,
+/// with the reason.
 std::vector<PredictionSummary> predict_spans(const std::vector<PredictionInput>& inputs,
                                              const EquationSettings& settings, std::uint64_t seed);
+
+/// What a reader would miss: samples that have no part in predictions because their stress vanishes or changes sign at
+/// a point, and why no span was predicted at all. Empty where none was asked for.
+std::vector<std::string> prediction_remarks(const std::vector<PredictionInput>& inputs,
+                                            const std::vector<PredictionSummary>& predictions,
+                                            const EquationSettings& settings);
 
 /// Lines for people: at strains of 2, 5 and 8 %, or the last.
 std::string prediction_text(const std::vector<PredictionSummary>& predictions);

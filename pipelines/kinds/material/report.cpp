@@ -272,12 +272,13 @@ std::string prediction_part(const RunData& run) {
     groups[{s.family, s.loading}].push_back(&s);
     const PredictedPoint& p = point_near(s, 0.05);
     const PredictedValue v = value_of(p, s.kind);
-    table.row({s.family, s.loading, format_number(s.span, 5), format_number(100.0 * p.strain, 3), quantity(s.kind),
-               interval_cell(v) + (p.beyond ? ", beyond the pressures that were fitted" : ""),
-               v.measured ? format_with_error(v.measured->mean, v.measured->error_or_zero()) : "–",
-               !v.measured  ? "–"
-               : v.inside() ? "yes"
-                            : "no"});
+    table.row(
+        {s.family, s.loading, format_number(s.span, 5), format_number(100.0 * p.strain, 3), quantity(s.kind),
+         interval_cell(v) + (p.beyond && s.kind != StageKind::shear ? ", beyond the pressures that were fitted" : ""),
+         v.measured ? format_with_error(v.measured->mean, v.measured->error_or_zero()) : "–",
+         !v.measured  ? "–"
+         : v.inside() ? "yes"
+                      : "no"});
   }
   std::vector<std::string> figures;
   for (const auto& [key, spans] : groups) figures.push_back(prediction_figure(spans, figures.size()));

@@ -257,20 +257,20 @@ std::optional<EquationResult> equation(const MaterialScene& scene, const std::ve
   for (const VariantResult* r : first_compressed(results)) {
     const MacroSpec& spec = r->variant->setup.spec;
     inputs.push_back({r->variant->name, spec.solid_polydispersity, family_of(*r->variant, scene.variants), r->curves,
-                      spec.solid_sizes ? 0.0 : spec.exponent});
+                      exponent_of(spec).value_or(0.0)});
   }
   return equation_of(inputs, scene.equation, seed);
 }
 
-std::vector<PredictionSummary> predictions(const MaterialScene& scene, const std::vector<VariantResult>& results,
-                                           std::uint64_t seed) {
+std::vector<PredictionInput> prediction_inputs(const MaterialScene& scene, const std::vector<VariantResult>& results) {
   std::vector<PredictionInput> inputs;
   for (const VariantResult& r : results) {
     const MacroSpec& spec = r.variant->setup.spec;
     inputs.push_back({packings_name(*r.variant), spec.solid_polydispersity, material_family(*r.variant, scene.variants),
-                      r.variant->loading, spec.solid_sizes ? 0.0 : spec.exponent, spec.start_pressure, r.curves});
+                      r.variant->loading, test_family(*r.variant, scene.variants), exponent_of(spec).value_or(0.0),
+                      spec.start_pressure, r.curves});
   }
-  return predict_spans(inputs, scene.equation, seed);
+  return inputs;
 }
 
 std::string equation_text(const EquationSummary& s) {
@@ -335,12 +335,13 @@ MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantR
     s.equation = std::move(found->summary);
     out.states = std::move(found->fit);
   }
-  s.predictions = predictions(scene, results, run.seed);
+  const std::vector<PredictionInput> inputs = prediction_inputs(scene, results);
+  s.predictions = predict_spans(inputs, scene.equation, run.seed);
   if (!s.equation && scene.equation.asked)
     s.head.remarks.push_back("no equation of state ([equation]): no sample was compressed over four recorded points");
-  if (!scene.equation.spans.empty() && s.equation && s.predictions.empty())
-    s.head.remarks.push_back(
-        "no span was predicted (equation.spans): variants of two spans that differ in nothing else are needed");
+  if (s.equation)
+    for (const std::string& remark : prediction_remarks(inputs, s.predictions, scene.equation))
+      s.head.remarks.push_back(remark);
   if (s.equation && !s.equation->usable)
     s.head.remarks.push_back("the equation of state is not usable: " + s.equation->message);
   else if (s.equation && s.equation->message != "fitted")

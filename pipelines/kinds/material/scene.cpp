@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <set>
 #include <sstream>
@@ -117,6 +118,8 @@ void take_sizes(MacroSpec& spec, const Grading& sizes) {
   spec.solid_radius_max = sizes.largest();
   spec.solid_polydispersity = sizes.largest() / sizes.smallest();
 }
+
+std::optional<double> exponent_of(const MacroSpec& spec) { return sizes_of(spec).exponent(); }
 
 void require_material_memory(const SceneTable& grains, const MacroSetup& setup) {
   const std::string problem = macro_memory_problem(setup, 0.0, available_memory());
@@ -379,7 +382,7 @@ struct Property {
 
 /// The law of the sizes without its ends; those of sieve curves, classes and lists are the law.
 std::string law_of_sizes(const MacroSpec& spec) {
-  if (!spec.solid_sizes) return fmt::format("b = {:g}", spec.exponent);
+  if (const auto b = exponent_of(spec)) return fmt::format("b = {:g}", *b);  // however the scene says it
   const GradingForm form = spec.solid_sizes->form();
   std::string text = to_string(form);
   if (form == GradingForm::classes || form == GradingForm::sieve_curve || form == GradingForm::list) return text;
@@ -392,7 +395,7 @@ std::string law_of_sizes(const MacroSpec& spec) {
 
 /// Sizes that no law with two ends describes.
 std::string whole_sizes(const MacroSpec& spec) {
-  if (!spec.solid_sizes) return "";
+  if (exponent_of(spec)) return "";
   const GradingForm form = spec.solid_sizes->form();
   const bool whole = form == GradingForm::classes || form == GradingForm::sieve_curve || form == GradingForm::list;
   return whole ? spec.solid_sizes->text() : "";
@@ -409,8 +412,13 @@ std::string test_text(const MacroSpec& spec) { return join_text(stages_of(spec),
 
 std::string number(double value) { return fmt::format("{:g}", value); }
 
-/// All that may differ beside what always stands in the name of a family.
-std::vector<Property> properties_of(const MaterialVariant& v) {
+/// What may differ in the tests of packings.
+std::vector<Property> properties_of_test(const MaterialVariant& v) {
+  return {{"force_floor", number(v.setup.spec.force_floor)}, {"test", test_text(v.setup.spec)}};
+}
+
+/// All that may differ in the packings, beside what always stands in the name of a family.
+std::vector<Property> properties_of_packings(const MaterialVariant& v) {
   const MacroSpec& s = v.setup.spec;
   const PreparationProtocol& p = s.protocol;
   return {{"E [Pa]", number(s.youngs_modulus)},
@@ -425,19 +433,17 @@ std::vector<Property> properties_of(const MaterialVariant& v) {
           {"first_pressure", number(p.first_pressure)},
           {"preparation_tolerance", number(p.tolerance)},
           {"preparation_passes", std::to_string(p.max_passes)},
-          {"force_floor", v.loading.empty() ? number(s.force_floor) : ""},
-          {"test", v.loading.empty() ? test_text(s) : ""},
           {"sizes of", whole_sizes(s)}};
 }
 
-}  // namespace
-
-std::string material_family(const MaterialVariant& variant, const std::vector<MaterialVariant>& all) {
-  const MacroSpec& spec = variant.setup.spec;
-  std::string text = fmt::format("{}, mu = {:g}, {}", to_string(spec.preparation), spec.friction, law_of_sizes(spec));
-  const std::vector<Property> own = properties_of(variant);
+/// ", NAME = VALUE" of the properties that differ between variants, those of `all` that `counts`.
+std::string differing(const MaterialVariant& variant, const std::vector<MaterialVariant>& all,
+                      std::vector<Property> (*properties)(const MaterialVariant&),
+                      const std::function<bool(const MaterialVariant&)>& counts) {
+  std::string text;
+  const std::vector<Property> own = properties(variant);
   for (std::size_t k = 0; k < own.size(); ++k) {
-    const auto differs = [&](const MaterialVariant& v) { return properties_of(v)[k].value != own[k].value; };
+    const auto differs = [&](const MaterialVariant& v) { return counts(v) && properties(v)[k].value != own[k].value; };
     if (std::ranges::none_of(all, differs)) continue;
     if (own[k].name == "sizes of")  // their text is long
       text += own[k].value.empty() ? "" : ", sizes of " + (variant.packings.empty() ? variant.name : variant.packings);
@@ -447,8 +453,28 @@ std::string material_family(const MaterialVariant& variant, const std::vector<Ma
   return text;
 }
 
+/// What differs between tests of the same loading.
+std::string differing_tests(const MaterialVariant& variant, const std::vector<MaterialVariant>& all) {
+  return differing(variant, all, properties_of_test,
+                   [&](const MaterialVariant& v) { return v.loading == variant.loading; });
+}
+
+}  // namespace
+
+std::string material_family(const MaterialVariant& variant, const std::vector<MaterialVariant>& all) {
+  const MacroSpec& spec = variant.setup.spec;
+  return fmt::format("{}, mu = {:g}, {}", to_string(spec.preparation), spec.friction, law_of_sizes(spec)) +
+         differing(variant, all, properties_of_packings, [](const MaterialVariant&) { return true; }) +
+         (variant.loading.empty() ? differing_tests(variant, all) : "");
+}
+
+std::string test_family(const MaterialVariant& variant, const std::vector<MaterialVariant>& all) {
+  return variant.loading.empty() ? "" : differing_tests(variant, all);
+}
+
 std::string family_of(const MaterialVariant& variant, const std::vector<MaterialVariant>& all) {
-  return material_family(variant, all) + (variant.loading.empty() ? "" : ", " + variant.loading);
+  return material_family(variant, all) + (variant.loading.empty() ? "" : ", " + variant.loading) +
+         test_family(variant, all);
 }
 
 }  // namespace softgrain

@@ -1,6 +1,7 @@
 // Scenes of kind "material": packings of grains in a periodic cell, and tests of them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,9 @@ void read_material_tables(const SceneTable& root, MacroSetup& setup);
 Grading sizes_of(const MacroSpec& spec);
 void take_sizes(MacroSpec& spec, const Grading& sizes);
 
+/// b of the sizes of the solid grains, P(r) ~ r^-b; empty where they are no single power law.
+std::optional<double> exponent_of(const MacroSpec& spec);
+
 /// Refuses samples that do not fit into memory, at `count` of this table. Throws InputError.
 void require_material_memory(const SceneTable& grains, const MacroSetup& setup);
 
@@ -60,10 +64,14 @@ SceneKind material_kind();
 
 /// Equal for variants that differ in nothing but the span of their sizes, the unit of length, and how many grains and
 /// samples there are. Preparation, mu and the law of the sizes always stand in it, anything else where variants of the
-/// scene differ in it. What a [[loading]] says is left out.
+/// scene differ in it. What variants are tested by is left out where they have loadings: test_family() says it.
 std::string material_family(const MaterialVariant& variant, const std::vector<MaterialVariant>& all);
 
-/// Equal for variants of one material_family() under the same loading.
+/// Equal for variants whose tests under one loading do not differ, as keys of the variants ("steps") may make them:
+/// what variants of the scene differ in there, ", test = ..."; empty without loadings.
+std::string test_family(const MaterialVariant& variant, const std::vector<MaterialVariant>& all);
+
+/// Equal for variants of one material_family() in the same test, under the same loading.
 std::string family_of(const MaterialVariant& variant, const std::vector<MaterialVariant>& all);
 
 // What runs of kind "material" leave behind.

@@ -8,6 +8,7 @@
 #include <functional>
 #include <tuple>
 
+#include "calibrate/draws.h"
 #include "calibrate/excess_pores_fit.h"
 #include "calibrate/face_friction_fit.h"
 #include "calibrate/state_curves.h"
@@ -152,6 +153,35 @@ double friction_seconds(std::int64_t cells) {
 
 namespace {
 
+/// Correlations of both, which know nothing of each other.
+CellCorrelation side_by_side(const CellCorrelation& a, const CellCorrelation& b) {
+  CellCorrelation out = a;
+  out.numbers.insert(out.numbers.end(), b.numbers.begin(), b.numbers.end());
+  const std::size_t first = a.numbers.size();
+  const std::size_t n = out.numbers.size();
+  out.matrix.assign(n * n, 0.0);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      if ((i < first) == (j < first))
+        out.matrix[i * n + j] = i < first ? a.matrix[i * first + j] : b.matrix[(i - first) * (n - first) + j - first];
+  return out;
+}
+
+/// Those numbers alone whose errors are known.
+CellCorrelation of_known(const CellCorrelation& all, const std::vector<CellCardNumber>& numbers) {
+  std::vector<std::size_t> kept;
+  for (std::size_t k = 0; k < all.numbers.size(); ++k) {
+    const double error = std::ranges::find(numbers, all.numbers[k], &CellCardNumber::key)->estimate.standard_error;
+    if (error > 0.0 && std::isfinite(error)) kept.push_back(k);
+  }
+  CellCorrelation out;
+  for (const std::size_t i : kept) {
+    out.numbers.push_back(all.numbers[i]);
+    for (const std::size_t j : kept) out.matrix.push_back(all.matrix[i * all.numbers.size() + j]);
+  }
+  return out;
+}
+
 class MaterialLawFit {
  public:
   MaterialLawFit(const MaterialLawScene& scene, const std::vector<VariantResult>& results, const StateFit& states,
@@ -172,6 +202,7 @@ class MaterialLawFit {
       fit_memory();
     else
       fit_friction();
+    if (out_.problems.empty()) correlate();
     out_.summary.usable = out_.problems.empty();
     return std::move(out_);
   }
@@ -227,6 +258,7 @@ class MaterialLawFit {
       const MixturePores& m = fit.mixtures[k];
       out_.summary.mixtures.push_back({m.name, m.ratio, shares[k].coarse, shares[k].fines, m.pores, m.fitted});
     }
+    excess_replicates_ = fit.replicates;
     out_.card.void_ratio = fit.void_ratio;
     out_.card.excess_alone = fit.alone;
     add("e_J", fit.void_ratio);
@@ -249,6 +281,38 @@ class MaterialLawFit {
     out_.summary.band = std::move(band);
     out_.summary.excess_deviation = fit.deviation;
     out_.summary.excess_widening = fit.widening;
+  }
+
+  /// Correlations of the numbers whose errors are known. Those of the equation of state and of the pores are of refits
+  /// to the same drawn samples, made smaller where an error holds more than the scatter of its refits; those of faces
+  /// are of their own fit, with the others as they are.
+  void correlate() {
+    const StateGroup* fines = states_.find(result(scene_.at.fines).variant->name);
+    const StateGroup* coarse = states_.find(result(scene_.at.coarse).variant->name);
+    const auto onset = [&](const StateGroup* g) { return 2 + static_cast<std::size_t>(g - states_.groups.data()); };
+    const auto log_pores = [](double phi) { return std::log((1.0 - phi) / phi); };
+    CellCorrelation state{{"K", "n", "e_J", "e_c", "w_inf", "xi"}, {}};
+    const std::size_t size = state.numbers.size();
+    std::vector<std::vector<double>> refits;
+    for (std::size_t r = 0; r < states_.replicates.size(); ++r) {
+      const std::vector<double>& p = states_.replicates[r];
+      const auto& [many, log_decay] = excess_replicates_[r];
+      if (is_known(many))
+        refits.push_back({p[0], p[1], log_pores(p[onset(fines)]), log_pores(p[onset(coarse)]), many, log_decay});
+    }
+    state.matrix = correlations(refits, size);
+    const std::vector<CellCardNumber> numbers = numbers_of(out_.card);
+    std::vector<double> share;
+    for (std::size_t k = 0; k < size; ++k) {
+      const CellCardNumber& n = *std::ranges::find(numbers, state.numbers[k], &CellCardNumber::key);
+      const double error = n.estimate.standard_error / (n.logarithm ? n.estimate.value : 1.0);
+      std::vector<double> values;
+      for (const std::vector<double>& one : refits) values.push_back(one[k]);
+      share.push_back(error > 0.0 ? std::min(1.0, mean_error(values).deviation_or_zero() / error) : 0.0);
+    }
+    for (std::size_t k = 0; k < size * size; ++k)
+      state.matrix[k] = k / size == k % size ? 1.0 : state.matrix[k] * share[k / size] * share[k % size];
+    out_.card.correlation = of_known(side_by_side(state, faces_), numbers);
   }
 
   /// Adds K0, the lateral over the axial stress of the fines, mean over the recorded points of the compression.
@@ -286,6 +350,7 @@ class MaterialLawFit {
     out_.card.friction = fit.friction;
     out_.card.stiffness = fit.stiffness;
     out_.card.memory = fit.memory;
+    faces_ = fit.correlation;
     out_.summary.friction_deviation = fit.deviation;
     out_.summary.undetermined = fit.undetermined;
     const std::vector<CellCardNumber> all = numbers_of(out_.card);
@@ -357,6 +422,7 @@ class MaterialLawFit {
     }
     out_.card.friction = fit.friction;
     out_.card.stiffness = fit.stiffness;
+    faces_ = {{"mu_f", "chi"}, {1.0, 0.0, 0.0, 1.0}};
     out_.summary.friction_deviation = fit.deviation;
     add("mu_f", fit.friction);
     add("chi", fit.stiffness);
@@ -389,6 +455,8 @@ class MaterialLawFit {
   const StateFit& states_;
   std::uint64_t seed_;
   MaterialLaw out_;
+  std::vector<std::array<double, 2>> excess_replicates_;  ///< as ExcessPoresFit::replicates
+  CellCorrelation faces_;                                 ///< of mu_f, chi and what shear leaves behind
 };
 
 /// Whether the fit knows every variant that tells an onset.

@@ -143,18 +143,28 @@ Estimate estimate_of(const FittedNumber& number, double all, const std::vector<d
   return {value, slope * mean.error, outward(number, e.low), outward(number, e.high)};
 }
 
-std::vector<std::string> leaning(const LeastSquaresFit& fit) {
-  std::vector<std::string> out;
+CellCorrelation correlation_of(const LeastSquaresFit& fit) {
+  CellCorrelation out;
   const std::size_t n = fit.parameters.size();
-  const auto covariance = [&](std::size_t a, std::size_t b) { return fit.covariance[a * n + b]; };
-  for (std::size_t a = 0; a < n; ++a)
-    for (std::size_t b = a + 1; b < n; ++b) {
-      const double scale = std::sqrt(covariance(a, a) * covariance(b, b));
-      if (!(scale > 0.0) || !std::isfinite(scale)) continue;
-      const double r = covariance(a, b) / scale;
-      if (std::abs(r) > kLeaning)
-        out.push_back(fmt::format("{} and {} (correlation {:.2f})", kFitted[a].name, kFitted[b].name, r));
+  for (std::size_t a = 0; a < n; ++a) {
+    out.numbers.emplace_back(kFitted[a].name);
+    for (std::size_t b = 0; b < n; ++b) {
+      const double scale = std::sqrt(fit.covariance[a * n + a] * fit.covariance[b * n + b]);
+      const bool known = scale > 0.0 && std::isfinite(scale);
+      const double r = known ? std::clamp(fit.covariance[a * n + b] / scale, -1.0, 1.0) : 0.0;
+      out.matrix.push_back(a == b ? 1.0 : b < a ? out.matrix[b * n + a] : r);
     }
+  }
+  return out;
+}
+
+std::vector<std::string> leaning(const CellCorrelation& c) {
+  std::vector<std::string> out;
+  const std::size_t n = c.numbers.size();
+  for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t b = a + 1; b < n; ++b)
+      if (const double r = c.matrix[a * n + b]; std::abs(r) > kLeaning)
+        out.push_back(fmt::format("{} and {} (correlation {:.2f})", c.numbers[a], c.numbers[b], r));
   return out;
 }
 
@@ -254,7 +264,8 @@ ShearMemoryFit fit_shear_memory(const FinesBase& fines, const std::vector<ShearP
   out.memory.dilatancy = dense ? estimate(4) : not_fitted(kFitted[4].start);
   out.memory.strength_range = dense ? estimate(5) : not_fitted(kFitted[5].start);
   out.memory.density_slope = not_fitted(0.0);
-  for (std::string& one : leaning(fit)) out.undetermined.push_back(std::move(one));
+  out.correlation = correlation_of(fit);
+  for (std::string& one : leaning(out.correlation)) out.undetermined.push_back(std::move(one));
   double sum = 0.0;
   std::size_t count = 0;
   const ShearNumbers numbers = numbers_at(fit.parameters, least_state);

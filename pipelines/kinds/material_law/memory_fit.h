@@ -53,7 +53,8 @@ struct ShearMemoryFit {
   Estimate friction;
   Estimate stiffness;
   CellMemory memory;
-  double deviation = 0.0;  ///< root mean square of (sigma_z - sigma_x)/p of the law less that of the samples
+  CellCorrelation correlation;  ///< of the fitted numbers
+  double deviation = 0.0;       ///< root mean square of (sigma_z - sigma_x)/p of the law less that of the samples
   std::vector<std::string> undetermined;  ///< pairs of numbers that lean on each other, in words
 };
 

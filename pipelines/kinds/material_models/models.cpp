@@ -47,7 +47,8 @@ struct OneSample {
     setup.samples = 1;
     setup.kept_states = 0;
     setup.twins.clear();
-    const std::string name = fmt::format("{}-{}-{}", model.name, truth.variant->name, sample);
+    // Names have no '+': of "m" on "x-y" and "m-x" on "y" neither goes on from the checkpoints of the other.
+    const std::string name = fmt::format("{}+{}+{}", model.name, truth.variant->name, sample);
     const std::vector<MacroPacking> packings{packing};
     std::vector<NamedLaws> laws;
     if (law != nullptr) laws.push_back(*law);
@@ -67,6 +68,10 @@ MacroPacking in_box_of(const MacroPacking& packing, std::vector<MacroBody> bodie
 }
 
 constexpr RandomPurpose kShellRadii{71};
+
+/// b of the sizes that a model draws by itself: that of the material; where there is none, what scenes mean that say
+/// nothing.
+double drawn_exponent(const MacroSpec& spec) { return exponent_of(spec).value_or(MacroSpec{}.exponent); }
 
 CoarseAndFine parted_or_refused(const MacroPacking& packing, double cut) {
   CoarseAndFine parts = parted(packing, cut);
@@ -106,6 +111,7 @@ MacroCurve cells_of(const OneSample& one, std::size_t sample) {
              Grading::classes(pieces_between(sizes_of(spec_of(one.truth)), cut_of(m, one.truth), kInfinity)));
   if (m.soft_share > 0.0) {
     setup.spec.soft_share = m.soft_share;
+    setup.spec.exponent = drawn_exponent(spec_of(one.truth));
     setup.spec.soft_radius_max = m.radii[1] * spec_of(one.truth).solid_radius_max;
     setup.spec.soft_polydispersity = m.radii[1] / m.radii[0];
     setup.spec.bodies = bodies_for(setup.spec, cut_of(m, one.truth), parts.coarse.size(), one.run.seed);
@@ -129,7 +135,7 @@ MacroCurve raw_substitute_of(const OneSample& one, std::size_t sample) {
   const double smallest = m.smallest * truth.solid_radius_max;
   const CoarseAndFine parts = parted_or_refused(one.truth.packings->at(sample), cut);
   MacroSetup setup = one.truth.variant->setup;
-  const auto fines = pieces_between(Grading::power_law(truth.exponent, smallest, cut), 0.0, kInfinity);
+  const auto fines = pieces_between(Grading::power_law(drawn_exponent(truth), smallest, cut), 0.0, kInfinity);
   take_sizes(setup.spec, mixture_of(pieces_between(sizes_of(truth), cut, kInfinity), fines, parts.share()));
   setup.spec.bodies = bodies_for(setup.spec, cut, parts.coarse.size(), one.run.seed);
   const NamedLaws laws = no_soft_laws();
@@ -156,10 +162,11 @@ MacroCurve shells_of(const OneSample& one, std::size_t sample) {
   const double inside = law_fraction(*m.law, 0.0) > 0.0 ? law_fraction(*m.law, 0.0) : 1.0;
   MacroSetup setup = one.truth.variant->setup;
   const double largest = setup.spec.solid_radius_max;
-  const Grading shells = Grading::power_law(setup.spec.exponent, m.radii[0] * largest, m.radii[1] * largest);
+  const double exponent = drawn_exponent(setup.spec);
+  const Grading shells = Grading::power_law(exponent, m.radii[0] * largest, m.radii[1] * largest);
   const std::string key =
-      fmt::format("{}shells for fines below {:.17g}, radii {:.17g} to {:.17g}, solid inside {:.17g}\n",
-                  packing_key(setup.spec, one.run.seed, sample), m.split, m.radii[0], m.radii[1], inside);
+      fmt::format("{}shells for fines below {:.17g}, radii {:.17g} to {:.17g}, b = {:.17g}, solid inside {:.17g}\n",
+                  packing_key(setup.spec, one.run.seed, sample), m.split, m.radii[0], m.radii[1], exponent, inside);
   MacroPacking packing = one.own_packing(key, [&] {
     return pack_bodies(setup.spec, with_shells(parts.coarse, shells, parts.fines_volume / inside, one.run.seed, sample),
                        one.run.seed, sample);
@@ -237,14 +244,41 @@ CoarseAndFine parted(const MacroPacking& packing, double cut) {
   return out;
 }
 
+namespace {
+
+/// Largest over smallest radius of the grains below this share of the largest; 0: there are none.
+double span_of_fines(const MacroSpec& spec, double split) {
+  const Grading sizes = sizes_of(spec);
+  double largest = 0.0;
+  for (const SizePiece& p : pieces_between(sizes, 0.0, split * spec.solid_radius_max))
+    largest = std::max(largest, p.high);
+  return largest / sizes.smallest();
+}
+
+/// What a model draws by a power law of its own; null: nothing.
+const char* drawn_by(const MaterialModel& model) {
+  if (model.kind == ModelKind::substitute) return "fines";
+  if (model.kind == ModelKind::shells) return "shells";
+  return model.kind == ModelKind::cells && model.soft_share > 0.0 ? "soft particles" : nullptr;
+}
+
+}  // namespace
+
+std::string assumed_exponent(const MaterialModel& model, const MacroSpec& spec) {
+  const char* const drawn = drawn_by(model);
+  if (drawn == nullptr || exponent_of(spec)) return "";
+  return fmt::format("the sizes of the material are no single power law: those of its {} are drawn from r^-{:g}", drawn,
+                     drawn_exponent(spec));
+}
+
 std::string other_fines(const MaterialModel& model, const MacroSpec& spec) {
   if (!model.card) return "";
   const CellCard& card = *model.card;
   std::string text;
   const auto add = [&text](const std::string& one) { append_part(text, one); };
-  const double span = card.split * spec.solid_polydispersity;
+  const double span = span_of_fines(spec, model.kind == ModelKind::cells ? model.split : card.split);
   constexpr double kAlike = 0.1;
-  if (std::abs(span / card.fines_ratio - 1.0) > kAlike)
+  if (span > 0.0 && std::abs(span / card.fines_ratio - 1.0) > kAlike)
     add(fmt::format("the card is of fines of ratio {:.3g}, these have {:.3g}", card.fines_ratio, span));
   if (card.preparation != to_string(spec.preparation))
     add(fmt::format("the card is of fines prepared '{}', these are '{}'", card.preparation,
@@ -255,6 +289,8 @@ std::string other_fines(const MaterialModel& model, const MacroSpec& spec) {
 ModelRun run_model(const MaterialModel& model, const VariantResult& truth, const Run& run,
                    SubstituteRuns& substitutes) {
   ModelRun out{&model, &truth, {}, "", other_fines(model, spec_of(truth))};
+  if (const std::string assumed = assumed_exponent(model, spec_of(truth)); !assumed.empty())
+    append_part(out.remark, assumed);
   const OneSample one{model, truth, run, substitutes};
   try {
     for (std::size_t k = 0; k < truth.packings->size(); ++k) out.curves.push_back(curve_of(one, k));
@@ -287,6 +323,26 @@ double onset_of(const CellCard& card, double solid_fraction, double pressure) {
   return 1.0 / (1.0 + (1.0 / solid_fraction - 1.0) / (1.0 - state));
 }
 
+/// The test of a curve and its strains, without what the packing answered.
+MacroCurve without_results(const MacroCurve& c) {
+  MacroCurve out;
+  out.test = c.test;
+  out.boundary = c.boundary;
+  out.sample = c.sample;
+  out.start = c.start;
+  out.preload = c.preload;
+  out.stages = c.stages;
+  out.strain = c.strain;
+  out.stage = c.stage;
+  out.strain_x = c.strain_x;
+  out.strain_y = c.strain_y;
+  out.strain_z = c.strain_z;
+  out.solid_fraction = c.solid_fraction;
+  out.coordination.assign(c.strain.size(), 0.0);  // of no bodies, all at rest
+  out.residual.assign(c.strain.size(), 0.0);
+  return out;
+}
+
 double solid_fraction_at(const MacroCurve& c, std::size_t point) {
   const double at_start = c.more.at(kSolidFraction).front();
   return at_start / ((1.0 - c.strain_x[point]) * (1.0 - c.strain_y[point]) * (1.0 - c.strain_z[point]));
@@ -302,20 +358,18 @@ double onset_by_card(const CellCard& card, double share) {
 }
 
 MacroCurve mean_field(const CellCard& card, const MacroCurve& truth, double pressure, double onset) {
-  MacroCurve out = truth;
-  out.more.clear();
-  out.cost = {};
-  out.note.clear();
-  out.usable = true;
-  out.bodies = 0;
+  MacroCurve out = without_results(truth);
   const double e = truth.start.youngs_modulus;
   if (std::isnan(onset)) onset = onset_of(card, truth.more.at(kSolidFraction).front(), pressure);
   for (std::size_t k = 0; k < truth.strain.size(); ++k) {
     const double p = e * pressure_at(card, state_of(card, solid_fraction_at(truth, k), onset));
     const bool alike = truth.strain_x[k] == truth.strain_z[k];
     const double ratio = alike ? 1.0 : card.lateral_ratio.value;
-    out.stress_axial[k] = 3.0 * p / (1.0 + 2.0 * ratio);
-    out.stress_lateral[k] = out.stress_x[k] = out.stress_y[k] = ratio * out.stress_axial[k];
+    const double axial = 3.0 * p / (1.0 + 2.0 * ratio);
+    out.stress_axial.push_back(axial);
+    out.stress_axial_contacts.push_back(axial);
+    for (auto* column : {&out.stress_lateral, &out.stress_x, &out.stress_y}) column->push_back(ratio * axial);
+    out.stress_deviator.push_back(axial - ratio * axial);
     out.more[kSolidFraction].push_back(solid_fraction_at(truth, k));
   }
   return out;
@@ -331,8 +385,9 @@ void map_by_state(const CellCard& card, const MacroCurve& truth, double pressure
     const double phi = truth.more.at(kSolidFraction).front() * solid_fraction_at(substitute, k) /
                        substitute.more.at(kSolidFraction).front();
     const double factor = own > 0.0 ? pressure_at(card, state_of(card, phi, onset_t)) / own : 1.0;
-    for (std::vector<double>* column : {&substitute.stress_axial, &substitute.stress_lateral, &substitute.stress_x,
-                                        &substitute.stress_y, &substitute.stress_deviator})
+    for (std::vector<double>* column :
+         {&substitute.stress_axial, &substitute.stress_axial_contacts, &substitute.stress_lateral, &substitute.stress_x,
+          &substitute.stress_y, &substitute.stress_deviator})
       if (k < column->size()) (*column)[k] *= factor;
   }
 }

@@ -46,8 +46,12 @@ std::vector<MacroBody> with_shells(std::vector<MacroBody> coarse, const Grading&
 /// Places in a box of this volume, the radii of soft bodies times `scale`; springs are gone.
 void bring_into_volume(MacroPacking& packing, double volume, double scale);
 
-/// Whether the fines are not those of the card: their span, form and preparation; empty when they are.
+/// Whether the fines are not those of the card: their span, form and preparation; empty when they are. Fines are the
+/// grains below the split of cells; where bodies are not parted, that of the card.
 std::string other_fines(const MaterialModel& model, const MacroSpec& spec);
+
+/// That the model draws sizes by an exponent that is not the material's, which has none; empty otherwise.
+std::string assumed_exponent(const MaterialModel& model, const MacroSpec& spec);
 
 /// The equation of state alone, along the strains of `truth`, from its start pressure p0 and solid fraction phi0:
 /// x0 = (p0/EK)^(1/n), phi_J = (phi0 - x0)/(1 - x0) of the porosity form, lateral/axial = K0 as long as the volume

@@ -58,16 +58,16 @@ void check_models(const MaterialModelsScene& scene, Findings& out) {
 }  // namespace
 
 SceneKind material_models_kind() {
-  return scene_kind(
-      TypedKind<MaterialModelsScene>{.name = "material-models",
-                                     .command = "run",
-                                     .read = read_material_models_scene,
-                                     .inputs = inputs_of,
-                                     .run = run_material_models,
-                                     .check = check_models,
-                                     .results = material_models_results(),
-                                     .keeps = {.measurements = true, .packings = true},
-                                     .explored_from = {"", explored_stages(), explored_stages("variant")}});
+  return scene_kind(TypedKind<MaterialModelsScene>{
+      .name = "material-models",
+      .command = "run",
+      .read = read_material_models_scene,
+      .inputs = inputs_of,
+      .run = run_material_models,
+      .check = check_models,
+      .results = material_models_results(),
+      .keeps = {.measurements = true, .packings = true},
+      .explored_from = {"", explored_stages(), explored_stages("loading"), explored_stages("variant")}});
 }
 
 }  // namespace softgrain

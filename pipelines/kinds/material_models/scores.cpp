@@ -50,6 +50,7 @@ Pairs pairs_of(const ModelRun& run, std::string& remark) {
     if (t.usable && whole) {
       out.truth.push_back(t);
       out.model.push_back(m);
+      if (!m.note.empty()) append_part(remark, fmt::format("sample {}: {}", k, m.note));
     } else if (t.usable) {
       append_part(remark, fmt::format("sample {} left out: {}", k, m.note.empty() ? "it ends early" : m.note));
     }

@@ -23,7 +23,7 @@ struct ModelScore {
   double axial_at_end = 0.0;  ///< model/truth - 1 at the end of the first stage
   double ratio_at_2 = 0.0;    ///< q/p, model/truth - 1
   double ratio_at_6 = 0.0;
-  double unloading = 0.0;    ///< modulus at the begin of unloading, model/truth - 1
+  double unloading = 0.0;    ///< secant modulus of the first unloading, model/truth - 1
   double truth_error = 0.0;  ///< standard error of the mean axial stress of the truth at the end, relative
   double evaluations = 0.0;  ///< truth over model: of contacts, or faces of cells
   double seconds = 0.0;      ///< truth over model, tests alone

@@ -205,6 +205,7 @@ class RecipeRun {
       out().curves.push_back(press_in_cells(scene_, card, end, run_, kept));
       if (!shells.table.entries.empty())
         out().curves.push_back(press_with_shells(scene_, card, shells.table, end, run_, kept));
+      say_of(kept);
       if (!kept.empty()) {
         save_macro(kept, run_.path("recipe_macro.h5"), run_.provenance);
         head().files["macro"] = run_.path("recipe_macro.h5");
@@ -214,6 +215,14 @@ class RecipeRun {
     judge(end);
     write_text_atomic(run_.path("recipe.csv"), as_csv(table()));
     head().files["curves"] = run_.path("recipe.csv");
+  }
+
+  /// What runs that can be used say of themselves, as pressures beyond those that their law was fitted to; what is
+  /// wrong with others their curves say.
+  void say_of(std::vector<MacroCurve> kept) {
+    std::erase_if(kept, [](const MacroCurve& c) { return !c.usable; });
+    for (std::string& note : run_notes(kept, "")) head().remarks.push_back(std::move(note));
+    for (std::string& warning : run_warnings(kept, "")) head().warnings.push_back(std::move(warning));
   }
 
   void add_moduli() {

@@ -102,6 +102,7 @@ WantedCuts read_cuts(const SceneTable& t) {
   t.refuse({"ratio"}, "goes without cut_diameters, which say where the curve is cut");
   out.given = t.numbers({"cut_diameters", "diameters at which the curve is cut, instead of `ratio`"}, Unit::length,
                         Range::positive());
+  if (out.given.empty()) t.add_error("cut_diameters", "at least one is needed; without the key cuts go by ratio");
   for (double& cut : out.given) cut *= 0.5;
   std::sort(out.given.begin(), out.given.end(), std::greater<>());
   if (std::adjacent_find(out.given.begin(), out.given.end()) != out.given.end())
@@ -438,7 +439,10 @@ void check_recipe(const RecipeScene& recipe, Findings& out) {
         fmt::format("{} of {} pairs of levels: a mixture has fewer than {:g} coarse grains (the least about {:.0f}): "
                     "its onset will scatter",
                     few, recipe.levels.size() - 1, kFewGrains, fewest));
-  if (recipe.material.variants.front().setup.samples < 2) out.warn("one sample: the law will have no errors");
+  if (recipe.material.variants.front().setup.samples < 2)
+    out.warn(recipe.checked && recipe.check.samples > 1
+                 ? "one sample of each packing: all errors of the law come from the scatter of the check alone"
+                 : "one sample: the law will have no errors");
   if (recipe.checked_levels < 2) out.warn("nothing is checked with all its grains: more of them ([check] grains)");
   if (recipe.checked && !tells_ways(recipe)) out.warn(kTwoLevelsTellNothing);
   out.spend("packings", packing_seconds(recipe));
