@@ -37,6 +37,13 @@ std::string commands_text(const CommonOptions& options, const RunPlan& plan, con
   return text;
 }
 
+/// The command line that collects: the same one with --resume in the place of --slurm.
+std::string collecting(std::string command_line) {
+  const std::string option = " --slurm";
+  if (const std::size_t at = command_line.find(option); at != std::string::npos) command_line.erase(at, option.size());
+  return command_line.find(" --resume") == std::string::npos ? command_line + " --resume" : command_line;
+}
+
 std::string script_text(const CommonOptions& options, const RunPlan& plan, const std::string& folder) {
   return fmt::format(
       "#!/bin/bash\n"
@@ -47,17 +54,11 @@ std::string script_text(const CommonOptions& options, const RunPlan& plan, const
       "#SBATCH --cpus-per-task={}\n"
       "#SBATCH --output=\"{}/%a.txt\"\n"
       "#SBATCH --signal=B:TERM@60\n"
+      "# Collect, when all tasks have ended: {}\n"
       "cd {} || exit 4\n"
       "exec bash -c \"$(sed -n \"${{SLURM_ARRAY_TASK_ID}}p\" {})\"\n",
-      plan.runs.size(), options.threads, folder, shell_word(std::filesystem::current_path().string()),
-      shell_word(folder + "/commands.txt"));
-}
-
-/// The command line that collects: the same one with --resume in the place of --slurm.
-std::string collecting(std::string command_line) {
-  const std::string option = " --slurm";
-  if (const std::size_t at = command_line.find(option); at != std::string::npos) command_line.erase(at, option.size());
-  return command_line.find(" --resume") == std::string::npos ? command_line + " --resume" : command_line;
+      plan.runs.size(), options.threads, folder, collecting(options.command_line),
+      shell_word(std::filesystem::current_path().string()), shell_word(folder + "/commands.txt"));
 }
 
 }  // namespace

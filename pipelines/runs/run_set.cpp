@@ -257,8 +257,9 @@ ExitStatus run_alone(const CommonOptions& options, const RunPlan& plan, const st
   RunEntry entry = entry_of(plan, one.runs.front());
   (void)make_run(ready.front(), directory, entry);
   write_member_entry(directory, entry);
-  write_standard_output(
-      fmt::format("{}: {}{}\n", entry.name, to_string(entry.status), entry.reason.empty() ? "" : ": " + entry.reason));
+  const std::string line =
+      fmt::format("{}: {}{}\n", entry.name, to_string(entry.status), entry.reason.empty() ? "" : ": " + entry.reason);
+  write_standard_output(options.json ? json_of(entry).dump(2) + "\n" : line);
   return entry.status == RunStatus::good ? ExitStatus::good : ExitStatus::not_usable;
 }
 
