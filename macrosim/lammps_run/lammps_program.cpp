@@ -22,7 +22,6 @@ namespace softgrain {
 namespace {
 
 constexpr useconds_t kLookEvery = 200'000;  ///< [us]
-constexpr double kPatience = 5.0;           ///< time from SIGTERM to SIGKILL [s]
 
 /// Runs the program in the forked process. Only calls that are safe between fork and exec are made. On failure it
 /// reports the errno and exits.
@@ -54,7 +53,7 @@ int error_before_start(int report) {
 }
 
 /// Watches the child; ends it when we are asked to stop.
-ChildEnd wait_for(pid_t child, const std::function<void()>& watch) {
+ChildEnd wait_for(pid_t child, const std::function<void()>& watch, double patience) {
   using Clock = std::chrono::steady_clock;
   ChildEnd end;
   Clock::time_point asked;
@@ -64,7 +63,7 @@ ChildEnd wait_for(pid_t child, const std::function<void()>& watch) {
       end.interrupted = true;
       asked = Clock::now();
       ::kill(-child, SIGTERM);
-    } else if (end.interrupted && std::chrono::duration<double>(Clock::now() - asked).count() > kPatience) {
+    } else if (end.interrupted && std::chrono::duration<double>(Clock::now() - asked).count() > patience) {
       ::kill(-child, SIGKILL);
     }
     watch();
@@ -84,7 +83,7 @@ bool is_program(const std::string& path) {
 }  // namespace
 
 ChildEnd run_child(const std::vector<std::string>& words, const std::string& directory, const std::string& log,
-                   const std::function<void()>& watch) {
+                   const std::function<void()>& watch, double patience) {
   const int log_file = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (log_file < 0) throw IoError(log + ": cannot be written: " + system_message());
   std::vector<char*> arguments;
@@ -108,7 +107,7 @@ ChildEnd run_child(const std::vector<std::string>& words, const std::string& dir
     ::waitpid(child, nullptr, 0);
     throw IoError(words[0] + ": cannot be started: " + std::generic_category().message(error));
   }
-  return wait_for(child, watch);
+  return wait_for(child, watch, patience);
 }
 
 std::string find_in_path(const std::string& name) {
@@ -124,11 +123,13 @@ std::string find_in_path(const std::string& name) {
   return "";
 }
 
-std::string own_directory() {
+std::string own_program() {
   std::error_code error;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
-  return error ? "" : self.parent_path().string();
+  return error ? "" : self.string();
 }
+
+std::string own_directory() { return std::filesystem::path(own_program()).parent_path().string(); }
 
 namespace lammps {
 

@@ -142,6 +142,22 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->allow_extra_args(false);
+  if (sweeps)
+    app.add_option(
+           "--sample", o.sample,
+           "Runs N points of the ranges of keys, --over macro.wall_mu=0.1..0.8 or =1e6..1e8:log: lhs:N, sobol:N, "
+           "or saltelli:N, N (keys + 2) runs for Sobol indices")
+        ->option_text("FORM:N");
+  if (sweeps) {
+    app.add_option("--jobs", o.jobs, "Runs so many members of the set at once, each with its share of the threads")
+        ->option_text("N")
+        ->transform(whole_number("--jobs", 1, kMostThreads));
+    app.add_option("--only", o.only,
+                   "Runs only this member of the set, by the name of its directory; --resume without "
+                   "it collects")
+        ->option_text("NAME");
+    app.add_flag("--slurm", o.slurm, "Writes a job array for sbatch, one task for each run, and stops");
+  }
   if (runs_scenes)
     app.add_option("--seeds", o.seeds,
                    "Runs the scene once with each of these seeds, in directories below DIR, and says mean, spread and "
@@ -321,7 +337,7 @@ int end_of_parsing(const CLI::App& app, const CLI::ParseError& e, bool as_json) 
   std::string message = e.what();
   if (const std::string unknown = unknown_word_text(app); !unknown.empty()) message = unknown;
   // CLI11 puts "--threads: " before the message of a validator, which names the option itself.
-  for (const std::string option : {"--threads", "--seed", "--ranks"})
+  for (const std::string option : {"--threads", "--seed", "--ranks", "--jobs"})
     if (message.starts_with(option + ": " + option)) message.erase(0, option.size() + 2);
   return complain(ExitStatus::bad_input, message + " (see softgrain " + command + "--help)", as_json);
 }

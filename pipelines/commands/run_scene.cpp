@@ -54,8 +54,17 @@ ExitStatus command_macrosim(const CommonOptions& options) { return run_scene(opt
 
 ExitStatus command_sweep(const CommonOptions& options) {
   if (options.seed_given && !options.seeds.empty()) throw InputError("--seeds: goes without --seed");
-  return run_set(options, make_plan(options.over, options.seeds, options.overrides, options.seed_given), "sweep",
-                 "sweep");
+  if (options.jobs > 1 && (options.slurm || !options.only.empty()))
+    throw InputError("--jobs: runs members of a set here: it goes without --slurm and --only");
+  if (options.slurm && !options.only.empty()) throw InputError("--slurm: goes without --only");
+  const auto plan = [&] {
+    if (options.sample.empty()) return make_plan(options.over, options.seeds, options.overrides, options.seed_given);
+    const Scene scene = Scene::load(options.inputs.front(), options.overrides);
+    const SampleDesign design = read_design(options.sample, options.seed_given ? options.seed : scene_seed(scene));
+    return make_plan(options.over, options.seeds, options.overrides, options.seed_given, design,
+                     takes_whole_numbers(options));
+  };
+  return run_set(options, plan(), "sweep", "sweep");
 }
 
 }  // namespace softgrain

@@ -83,11 +83,12 @@ std::string dependence_figure(const SetSummary& set, const SweptKey& key, const 
     for (const PointEntry& point : set.points) {
       const NumberOverRuns* n = find(point, number.name);
       if (n == nullptr || !std::isfinite(n->mean) || point.values.at(key.key) != key.values[v]) continue;
-      const std::string others = others_of(set, point, key.key);
+      const std::string others = set.design ? "" : others_of(set, point, key.key);
       auto at = std::find_if(lines.begin(), lines.end(), [&](const Series& s) { return s.label == others; });
       if (at == lines.end()) {
         Series s{.label = others, .hover = "", .x = {}, .y = {}};
         s.style = run_style(lines.size(), false);
+        if (set.design) s.style.width = 0.0;  // other keys differ from point to point
         at = lines.insert(lines.end(), std::move(s));
       }
       at->x.push_back(values[v].value);

@@ -157,7 +157,7 @@ std::string runs_section(const RunData& run) {
   return section(
       "runs", "Runs side by side", "Curves of several runs in one plot, and the keys and numbers that differ.",
       differences_table(set) + runs_table(set, numbers) + other_numbers_table(set, numbers) + norms_table(set) +
-          links(run, set) + figure_row(figures) + figure_row(dependent) + seeds_table(set));
+          links(run, set) + figure_row(figures) + figure_row(dependent) + sensitivity_part(set) + seeds_table(set));
 }
 
 std::vector<HeadLine> set_lines(const RunData& run) {
@@ -167,11 +167,7 @@ std::vector<HeadLine> set_lines(const RunData& run) {
   const auto good = std::ranges::count_if(set.runs, [](const RunEntry& r) { return r.status == RunStatus::good; });
   const std::string kind = run.kind().empty() ? "" : " of a scene of kind " + run.kind();
   lines.emplace_back("Runs", fmt::format("{} runs{}, {} of them good.", set.runs.size(), kind, good));
-  for (const SweptKey& one : set.over) {
-    std::string values;
-    for (const std::string& value : one.values) append_part(values, value, ", ");
-    lines.emplace_back("Varied", one.key + " = " + values + ".");
-  }
+  for (const SweptKey& one : set.over) lines.emplace_back("Varied", one.key + " = " + values_text(one) + ".");
   for (const PointEntry& point : set.points) {
     if (set.seeds.size() < 2 || point.numbers.empty() || set.points.size() > kColumns) continue;
     const NumberOverRuns& n = point.numbers.front();

@@ -49,4 +49,7 @@ std::vector<std::string> run_curve_figures(const RunData& run, const SetSummary&
 /// The first of the numbers over every key whose values are numbers of one unit.
 std::vector<std::string> dependence_figures(const SetSummary& set, const std::vector<RunValue>& numbers);
 
+/// How much each number depends on each key, with intervals; empty where nothing is determined.
+std::string sensitivity_part(const SetSummary& set);
+
 }  // namespace softgrain::report

@@ -53,6 +53,14 @@ std::string short_key(const std::vector<SweptKey>& over, const std::string& key)
   return same > 1 ? key : last_part(key);
 }
 
+std::string values_text(const SweptKey& key) {
+  if (key.range.empty()) return join_text(key.values);
+  const std::size_t dots = key.range.find("..");
+  const std::size_t end = key.range.find(":log");
+  return key.range.substr(0, dots) + " to " + key.range.substr(dots + 2, end - dots - 2) +
+         (end == std::string::npos ? "" : ", logarithmic");
+}
+
 std::string point_name(const std::vector<SweptKey>& over, const std::map<std::string, std::string>& values) {
   std::string out;
   for (const SweptKey& one : over)

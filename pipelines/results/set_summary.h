@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/sensitivity.h"
 #include "pipelines/results/kind_results.h"
 #include "pipelines/results/summary.h"
 
@@ -16,11 +17,13 @@ namespace softgrain {
 struct SweptKey {
   std::string key;
   std::vector<std::string> values;
+  std::string range{};  ///< "0.1..0.8", "1e6..1e8:log" of a key that was sampled; its values are those of the points
 };
 
 void fields(auto&& visit, Of<SweptKey> auto& s) {
   visit("key", s.key);
   visit("values", s.values);
+  visit("range", s.range, kLeftOut);
 }
 
 /// One run of the set.
@@ -101,6 +104,47 @@ void fields(auto&& visit, Of<RunNorm> auto& s) {
   visit("reason", s.reason, kLeftOut);
 }
 
+/// How the points of a set were chosen in the ranges of its keys (--sample).
+struct DesignEntry {
+  std::string sample{};  ///< "lhs:20"
+  std::int64_t seed = 0;
+};
+
+void fields(auto&& visit, Of<DesignEntry> auto& s) {
+  visit("sample", s.sample);
+  visit("seed", s.seed);
+}
+
+void fields(auto&& visit, Of<EffectSize> auto& s) {
+  visit("value", s.value);
+  range_field(visit, "interval_95", s.low, s.high);
+}
+
+/// How a number of the runs depends on a key; what is not determined is null.
+struct KeyEffect {
+  std::string number{};
+  std::string key{};
+  std::size_t points = 0;                   ///< points with this number, of runs that are good
+  std::optional<EffectSize> rank{};         ///< Spearman's rank correlation
+  std::optional<EffectSize> coefficient{};  ///< standardised coefficient of a regression on all keys with numbers
+  double determination = kNaN;              ///< share of the variance that this regression explains
+  std::optional<EffectSize> first{};        ///< Sobol index of first order
+  std::optional<EffectSize> total{};        ///< total Sobol index
+  std::string reason{};                     ///< why something is not determined
+};
+
+void fields(auto&& visit, Of<KeyEffect> auto& s) {
+  visit("number", s.number);
+  visit("key", s.key);
+  visit("points", s.points);
+  visit("rank_correlation", s.rank);
+  visit("regression_coefficient", s.coefficient);
+  visit("regression_determination", s.determination);
+  visit("sobol_first", s.first);
+  visit("sobol_total", s.total);
+  visit("not_determined", s.reason, kLeftOut);
+}
+
 struct SetSummary {
   SummaryHead head;
   std::vector<SweptKey> over;
@@ -110,6 +154,8 @@ struct SetSummary {
   std::vector<PointEntry> points;
   std::string reference;       ///< run that the norms refer to
   std::vector<RunNorm> norms;  ///< norms of every run but the reference
+  std::optional<DesignEntry> design{};
+  std::vector<KeyEffect> sensitivity{};
 };
 
 void fields(auto&& visit, Of<SetSummary> auto& s) {
@@ -121,6 +167,8 @@ void fields(auto&& visit, Of<SetSummary> auto& s) {
   visit("points", s.points, kLeftOut);
   visit("reference", s.reference, kLeftOut);
   visit("norms", s.norms, kLeftOut);
+  visit("design", s.design, kLeftOut);
+  visit("sensitivity", s.sensitivity, kLeftOut);
 }
 
 /// Every number that one of the runs has, once, in the order in which they first appear.
@@ -131,6 +179,9 @@ std::string with_unit(const std::string& name, const std::string& unit);
 
 /// "bodies = 40, mu = 0.3": keys by their last parts where these tell them apart; "all runs" without any.
 std::string point_name(const std::vector<SweptKey>& over, const std::map<std::string, std::string>& values);
+
+/// "20, 40, 60", or the range of a key that was sampled: "0.1 to 0.8", "1e6 to 1e8, logarithmic".
+std::string values_text(const SweptKey& key);
 
 /// A key by its last part where no other of the keys ends with it.
 std::string short_key(const std::vector<SweptKey>& over, const std::string& key);

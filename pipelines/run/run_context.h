@@ -47,6 +47,10 @@ struct CommonOptions {
   std::string twin_cache;                          ///< --twin-cache DIR; empty: nothing is kept between runs
   bool different = false;                          ///< --different (compare)
   std::vector<std::string> over;                   ///< swept keys, --over key=a,b,c (sweep)
+  std::string sample;                              ///< --sample lhs:20, sobol:64 or saltelli:32 (sweep)
+  std::int64_t jobs = 1;                           ///< --jobs N (sweep): runs at once
+  std::string only;                                ///< --only NAME (sweep): this run of the set alone
+  bool slurm = false;                              ///< --slurm (sweep): writes a job array and runs nothing
   std::string seeds;                               ///< --seeds 1..8 (run, microsim, macrosim, sweep); empty: one run
   /// One of several runs: its summary goes to its file alone, and where it has ended --resume says AlreadyFinished.
   bool member = false;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <set>
 
 #include "common/core/error.h"
@@ -83,7 +84,32 @@ Texts read_values(const std::string& list, const std::string& option, Texts& pro
 
 std::string key_of(const std::string& setting) { return trimmed(setting.substr(0, setting.find('='))); }
 
-std::vector<SweptKey> read_keys(const Texts& over, const Texts& set, Texts& problems) {
+/// Whole numbers are values of a list, other ranges have no values of their own.
+void refuse_ranges(const Texts& values, const std::string& option, Texts& problems) {
+  for (const std::string& value : values) {
+    std::string ignored;
+    if (range_of(value, ignored))
+      problems.push_back(
+          fmt::format("{}: {}: a range goes with --sample lhs:N, sobol:N or saltelli:N; without it give "
+                      "values a,b,c, or whole numbers 1..8",
+                      option, value));
+  }
+}
+
+/// A key of a design: a range, or a list.
+SweptKey sampled_key(const std::string& key, const std::string& text, const std::string& option, Texts& problems) {
+  std::string problem;
+  if (range_of(text, problem)) {
+    if (!problem.empty()) problems.push_back(option + ": " + problem);
+    return {key, {}, text};
+  }
+  SweptKey out{key, read_values(text, option, problems)};
+  if (out.values.size() == 1)
+    problems.push_back(option + ": one value; with --sample give a range LOW..HIGH or LOW..HIGH:log, or a list");
+  return out;
+}
+
+std::vector<SweptKey> read_keys(const Texts& over, const Texts& set, bool sampled, Texts& problems) {
   std::vector<SweptKey> keys;
   for (const std::string& text : over) {
     const std::string option = "--over " + text;
@@ -96,7 +122,13 @@ std::vector<SweptKey> read_keys(const Texts& over, const Texts& set, Texts& prob
       problems.push_back(option + ": the key is swept twice");
     if (std::ranges::any_of(set, [&](const std::string& one) { return key_of(one) == key; }))
       problems.push_back(option + ": the key is set by --set as well");
-    keys.push_back({key, read_values(text.substr(text.find('=') + 1), option, problems)});
+    const std::string values = trimmed(text.substr(text.find('=') + 1));
+    if (sampled) {
+      keys.push_back(sampled_key(key, values, option, problems));
+      continue;
+    }
+    keys.push_back({key, read_values(values, option, problems)});
+    refuse_ranges(keys.back().values, option, problems);
   }
   return keys;
 }
@@ -140,6 +172,18 @@ std::string run_name(const RunPlan& plan, const PlannedRun& run) {
   return out;
 }
 
+/// Every run with every seed.
+std::vector<PlannedRun> with_seeds(const RunPlan& plan, std::vector<PlannedRun> runs) {
+  if (plan.seeds.empty()) return runs;
+  std::vector<PlannedRun> seeded;
+  for (const PlannedRun& run : runs)
+    for (const std::uint64_t seed : plan.seeds) {
+      seeded.push_back(run);
+      seeded.back().seed = seed;
+    }
+  return seeded;
+}
+
 /// One run for every choice of values, not yet named.
 std::vector<PlannedRun> product_of(const RunPlan& plan) {
   std::vector<PlannedRun> runs(1);
@@ -152,18 +196,53 @@ std::vector<PlannedRun> product_of(const RunPlan& plan) {
       }
     runs = std::move(more);
   }
-  if (plan.seeds.empty()) return runs;
-  std::vector<PlannedRun> seeded;
-  for (const PlannedRun& run : runs)
-    for (const std::uint64_t seed : plan.seeds) {
-      seeded.push_back(run);
-      seeded.back().seed = seed;
+  return with_seeds(plan, std::move(runs));
+}
+
+/// The range of a key that was read before, and what is wrong with it for a key of whole numbers.
+std::optional<SweptRange> sampled_range(const SweptKey& key, const TakesWholeNumbers& takes_whole, Texts& problems) {
+  std::string ignored;
+  auto range = range_of(key.range, ignored);
+  if (!range) return std::nullopt;
+  range->whole = takes_whole(key.key, value_at(*range, 0.5));
+  if (range->whole && (range->low != std::floor(range->low) || range->high != std::floor(range->high)))
+    problems.push_back(
+        fmt::format("--over {}={}: the key takes whole numbers: both ends must be such", key.key, key.range));
+  return range;
+}
+
+/// The points of the design, not yet with seeds. Their values become those of the keys.
+std::vector<PlannedRun> sampled_runs(RunPlan& plan, const TakesWholeNumbers& takes_whole, Texts& problems) {
+  const std::vector<std::vector<double>> points = unit_points(*plan.design, plan.over.size());
+  std::vector<PlannedRun> runs(points.size());
+  for (std::size_t k = 0; k < plan.over.size(); ++k) {
+    SweptKey& key = plan.over[k];
+    const auto range = sampled_range(key, takes_whole, problems);
+    std::set<std::string> seen;
+    Texts values;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const auto at = static_cast<std::size_t>(points[p][k] * static_cast<double>(key.values.size()));
+      const std::string value =
+          range ? value_at(*range, points[p][k]) : key.values[std::min(at, key.values.size() - 1)];
+      runs[p].values.push_back(value);
+      if (seen.insert(value).second) values.push_back(value);
     }
-  return seeded;
+    if (range) key.values = std::move(values);
+  }
+  return runs;
+}
+
+/// sample_001, ...: the number of a point does not change with the size of the design.
+std::string sample_name(std::size_t point, const PlannedRun& run) {
+  return fmt::format("sample_{:03}{}", point + 1, run.seed ? fmt::format("_seed={}", *run.seed) : "");
 }
 
 /// Values that make the same word get a number.
 void name_runs(RunPlan& plan) {
+  const std::size_t seeds = std::max<std::size_t>(1, plan.seeds.size());
+  for (std::size_t k = 0; plan.design && k < plan.runs.size(); ++k)
+    plan.runs[k].name = sample_name(k / seeds, plan.runs[k]);
+  if (plan.design) return;
   std::set<std::string> taken;
   for (PlannedRun& run : plan.runs) {
     const std::string name = run_name(plan, run);
@@ -174,7 +253,10 @@ void name_runs(RunPlan& plan) {
 
 void require_few(const RunPlan& plan, Texts& problems) {
   double runs = plan.seeds.empty() ? 1.0 : static_cast<double>(plan.seeds.size());
-  for (const SweptKey& one : plan.over) runs *= static_cast<double>(one.values.size());
+  if (plan.design)
+    runs *= static_cast<double>(plan.design->runs(plan.over.size()));
+  else
+    for (const SweptKey& one : plan.over) runs *= static_cast<double>(one.values.size());
   if (runs > static_cast<double>(kMostRuns))
     problems.push_back(fmt::format("{:.0f} runs are asked for, at most {} go into one sweep", runs, kMostRuns));
 }
@@ -198,16 +280,24 @@ std::vector<std::string> RunPlan::overrides(const PlannedRun& run) const {
   return out;
 }
 
-RunPlan make_plan(const Texts& over, const std::string& seeds, const Texts& set, bool one_seed) {
+RunPlan make_plan(const Texts& over, const std::string& seeds, const Texts& set, bool one_seed,
+                  const std::optional<SampleDesign>& design, const TakesWholeNumbers& takes_whole) {
   Texts problems;
   RunPlan plan;
-  plan.over = read_keys(over, set, problems);
+  plan.design = design;
+  plan.over = read_keys(over, set, design.has_value(), problems);
   plan.seeds = read_seeds(seeds, problems);
   refuse_other_seeds(plan, seeds, set, one_seed, problems);
   if (over.empty() && seeds.empty()) problems.emplace_back("nothing is swept: give --over key=a,b,c or --seeds 1..8");
+  if (design && over.empty()) problems.emplace_back("--sample: goes with --over key=LOW..HIGH");
   require_few(plan, problems);
   if (!problems.empty()) throw InputError(join_text(problems, "\n"));
-  plan.runs = product_of(plan);
+  if (design) {
+    plan.runs = with_seeds(plan, sampled_runs(plan, takes_whole, problems));
+    if (!problems.empty()) throw InputError(join_text(problems, "\n"));
+  } else {
+    plan.runs = product_of(plan);
+  }
   name_runs(plan);
   return plan;
 }

@@ -11,11 +11,15 @@
 
 #include "common/core/text.h"
 #include "common/io/interrupt.h"
+#include "common/io/key_record.h"
 #include "common/io/text_file.h"
 #include "pipelines/kinds/kinds.h"
 #include "pipelines/report/report.h"
 #include "pipelines/run/run.h"
 #include "pipelines/run/run_context.h"
+#include "pipelines/runs/job_array.h"
+#include "pipelines/runs/member_process.h"
+#include "pipelines/runs/set_sensitivity.h"
 #include "pipelines/runs/set_text.h"
 
 namespace softgrain {
@@ -42,6 +46,10 @@ CommonOptions options_of(const CommonOptions& all, const RunPlan& plan, const Pl
     options.seed_given = true;
   }
   options.over.clear();
+  options.sample.clear();
+  options.jobs = 1;
+  options.only.clear();
+  options.slurm = false;
   options.seeds.clear();
   options.json = false;
   options.member = true;
@@ -138,12 +146,14 @@ void remove_earlier_members(const std::string& directory, const std::vector<std:
 }
 
 /// Says which directories belong to the set; those of an earlier one go unless it is resumed.
-void keep_names(const RunContext& context, const RunPlan& plan) {
+/// `all`: also those of the same names, which would not be repeated.
+void keep_names(const RunContext& context, const RunPlan& plan, bool all) {
   const std::string path = context.path(kRunsFile);
   std::vector<std::string> before = lines_of(path);
   std::vector<std::string> names;
   for (const PlannedRun& run : plan.runs) names.push_back(run.name);
-  std::erase_if(before, [&](const std::string& name) { return std::ranges::find(names, name) != names.end(); });
+  if (!all || context.resume())
+    std::erase_if(before, [&](const std::string& name) { return std::ranges::find(names, name) != names.end(); });
   if (context.resume())
     names.insert(names.end(), before.begin(), before.end());
   else
@@ -166,14 +176,15 @@ RunEntry entry_of(const RunPlan& plan, const PlannedRun& planned) {
   return entry;
 }
 
-/// Runs it, or finds that it has ended. What it refuses or finds unusable only now is said in its entry, and the others
-/// go on.
-void make_run(ReadyRun run, const RunContext& context, RunEntry& entry) {
-  run.options.out = context.path(run.planned->name);
+/// Runs it, or finds that it has ended before (true). What it refuses or finds unusable only now is said in its entry,
+/// and the others go on.
+bool make_run(ReadyRun run, const std::string& directory, RunEntry& entry) {
+  run.options.out = directory + "/" + run.planned->name;
+  bool before = false;
   try {
     (void)kind_of(run.scene).run(run.scene, run.options);
   } catch (const AlreadyFinished&) {
-    context.say(entry.name + ": has ended before");
+    before = true;
     complete_ended_run(run.options.out);
   } catch (const UnusableResult& e) {
     entry.reason = e.what();
@@ -182,11 +193,11 @@ void make_run(ReadyRun run, const RunContext& context, RunEntry& entry) {
   } catch (const InputError& e) {
     entry.reason = e.what();
   }
-  if (!entry.reason.empty()) {
+  if (entry.reason.empty())
+    read_numbers(run.options.out, entry);
+  else
     entry.status = RunStatus::not_usable;
-    return;
-  }
-  read_numbers(run.options.out, entry);
+  return before;
 }
 
 std::vector<RunEntry> make_runs(const std::vector<ReadyRun>& ready, const RunPlan& plan, const RunContext& context) {
@@ -195,9 +206,43 @@ std::vector<RunEntry> make_runs(const std::vector<ReadyRun>& ready, const RunPla
     stop_if_interrupted("going from run to run; --resume goes on");
     entries.push_back(entry_of(plan, *run.planned));
     context.say(fmt::format("run {} of {}: {}", entries.size(), ready.size(), run.planned->name));
-    make_run(run, context, entries.back());
+    if (make_run(run, context.directory(), entries.back())) context.say(run.planned->name + ": has ended before");
   }
   return entries;
+}
+
+/// The same with several at once.
+std::vector<RunEntry> make_side_by_side(const CommonOptions& options, const RunPlan& plan, const RunContext& context) {
+  std::vector<RunEntry> entries;
+  for (const PlannedRun& planned : plan.runs) entries.push_back(entry_of(plan, planned));
+  run_side_by_side(options, context, entries);
+  return entries;
+}
+
+/// One run of the set by its name. Throws InputError.
+const PlannedRun& run_named(const RunPlan& plan, const std::string& name) {
+  const auto at = std::ranges::find(plan.runs, name, &PlannedRun::name);
+  if (at != plan.runs.end()) return *at;
+  std::vector<std::string> names;
+  for (const PlannedRun& run : plan.runs) names.push_back(run.name);
+  const std::string near = nearest_word(name, names);
+  throw InputError(fmt::format(
+      "--only {}: the set has no such run; {}", name,
+      near.empty() ? fmt::format("its runs are {} to {}", names.front(), names.back()) : "nearest is '" + near + "'"));
+}
+
+/// --only: one run of the set, whose entry the set finds when it is collected.
+ExitStatus run_alone(const CommonOptions& options, const RunPlan& plan, const std::string& directory) {
+  RunPlan one = plan;
+  one.runs = {run_named(plan, options.only)};
+  const std::vector<ReadyRun> ready = ready_runs(options, one);
+  RunEntry entry = entry_of(plan, one.runs.front());
+  (void)make_run(ready.front(), directory, entry);
+  write_member_entry(directory, entry);
+  const std::string line =
+      fmt::format("{}: {}{}\n", entry.name, to_string(entry.status), entry.reason.empty() ? "" : ": " + entry.reason);
+  write_standard_output(options.json ? json_of(entry).dump(2) + "\n" : line);
+  return entry.status == RunStatus::good ? ExitStatus::good : ExitStatus::not_usable;
 }
 
 /// What a key that is swept does not change although its name may be taken to say so.
@@ -217,6 +262,8 @@ SetSummary summarise(const Scene& scene, const RunPlan& plan, std::vector<RunEnt
   summary.seeds.assign(plan.seeds.begin(), plan.seeds.end());
   summary.runs = std::move(entries);
   summary.points = points_of(summary.over, summary.runs);
+  if (plan.design) summary.design = {plan.design->text(), static_cast<std::int64_t>(plan.design->seed)};
+  summary.sensitivity = sensitivity_of(summary);
   summary.head.title = (title.empty() ? fs::path(scene.path()).stem().string() : title) + ": " + varied_text(summary);
   note_swept_keys(plan, summary);
   for (const RunEntry& run : summary.runs)
@@ -227,26 +274,59 @@ SetSummary summarise(const Scene& scene, const RunPlan& plan, std::vector<RunEnt
 }
 
 std::uint64_t first_seed(const Scene& scene, const RunPlan& plan, const RunContext& context) {
-  if (!plan.seeds.empty()) return plan.seeds.front();
-  constexpr std::int64_t kMost = 1'000'000'000'000;
-  return context.seed(static_cast<std::uint64_t>(scene.root().count("seed", 0, kMost, 1)));
+  return plan.seeds.empty() ? context.seed(scene_seed(scene)) : plan.seeds.front();
 }
 
 }  // namespace
 
+std::uint64_t scene_seed(const Scene& scene) {
+  constexpr std::int64_t kMost = 1'000'000'000'000;
+  return static_cast<std::uint64_t>(scene.root().count("seed", 0, kMost, 1));
+}
+
+TakesWholeNumbers takes_whole_numbers(const CommonOptions& options) {
+  return [&options](const std::string& key, const std::string& value) {
+    std::vector<std::string> overrides = options.overrides;
+    overrides.push_back(key + "=" + value);
+    KeyRecord record;
+    std::string name;
+    try {
+      const Scene scene = Scene::load(options.inputs.front(), overrides);
+      name = scene.path();
+      kind_of(scene).read(scene);
+    } catch (const Error&) {  // what is wrong with the scene is said where the runs are read
+    }
+    const auto& keys = record.keys(name);
+    const auto at = keys.find(key);
+    return at != keys.end() && at->second.form == KeyForm::count;
+  };
+}
+
 ExitStatus run_set(const CommonOptions& options, const RunPlan& plan, const std::string& command,
                    const std::string& suffix) {
   const Scene scene = Scene::load(options.inputs.front(), options.overrides);
+  const std::string name = fs::path(scene.path()).stem().string() + "_" + suffix;
+  if (!options.only.empty())
+    return run_alone(options, plan, options.out.empty() ? default_directory(name) : options.out);
   const std::vector<ReadyRun> ready = ready_runs(options, plan);
-  const RunContext context(options, command, fs::path(scene.path()).stem().string() + "_" + suffix);
-  keep_names(context, plan);
+  const RunContext context(options, command, name);
+  keep_names(context, plan, options.slurm);
   forget_summary(context);
-  SetSummary summary = summarise(scene, plan, make_runs(ready, plan, context));
+  const Provenance provenance = context.provenance(scene, first_seed(scene, plan, context));
+  if (options.slurm) {
+    const std::string next = write_job_array(options, plan, context);
+    SummaryHead head{.status = RunStatus::written, .title = name + ": a job array", .remarks = {}, .files = {}};
+    for (const char* file : {"slurm/job.sh", "slurm/commands.txt"}) head.files[file] = context.path(file);
+    context.finish(json_of(head), provenance, next);
+    return ExitStatus::good;
+  }
+  SetSummary summary = summarise(
+      scene, plan, options.jobs > 1 ? make_side_by_side(options, plan, context) : make_runs(ready, plan, context));
+  forget_member_entries(context.directory());
   for (const char* file : {"report.html", "table.csv"}) summary.head.files[file] = context.path(file);
   write_text_atomic(context.path("table.csv"), as_csv(table_of(summary)));
   const bool good = summary.head.status == RunStatus::good;
-  context.finish(json_of(summary), context.provenance(scene, first_seed(scene, plan, context)),
-                 set_text(summary) + "report: " + context.path("report.html"));
+  context.finish(json_of(summary), provenance, set_text(summary) + "report: " + context.path("report.html"));
   write_report(context.directory());
   return good ? ExitStatus::good : ExitStatus::not_usable;
 }

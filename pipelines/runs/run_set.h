@@ -1,5 +1,5 @@
-// Which runs a sweep is made of (every choice of values of some keys of the scene, with every seed), and how they are
-// run: one after another, in directories below that of the set.
+// Which runs a sweep is made of (every choice of values of some keys of the scene, or a sample of their ranges, with
+// every seed), and how they are run: one after another or several at once, in directories below that of the set.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,12 @@
 
 #include "pipelines/results/set_summary.h"
 #include "pipelines/run/run_context.h"
+#include "pipelines/runs/sample_design.h"
 
 namespace softgrain {
 
 struct PlannedRun {
-  std::string name;                 ///< name of its directory: "bodies=40_seed=2"
+  std::string name;                 ///< name of its directory: "bodies=40_seed=2", "sample_007"
   std::vector<std::string> values;  ///< one per key
   std::optional<std::uint64_t> seed;
 };
@@ -22,6 +23,7 @@ struct RunPlan {
   std::vector<SweptKey> over;
   std::vector<std::uint64_t> seeds;  ///< empty: that of the scene
   std::vector<PlannedRun> runs;      ///< the first key varies slowest, seeds fastest
+  std::optional<SampleDesign> design{};
 
   /// What --set would say for this run.
   [[nodiscard]] std::vector<std::string> overrides(const PlannedRun& run) const;
@@ -29,15 +31,27 @@ struct RunPlan {
 
 /// `over`: texts "key=a,b,c" of --over, each a list as --set takes its values, commas within brackets and quotes left
 /// alone, or whole numbers "1..8"; `seeds`: "1..8", "1,3,7"; `set`: texts of --set, whose keys are not swept as well.
-/// Throws InputError with everything that is wrong, one a line: no key or value, a key or value twice, more than 10000
-/// runs, a seed said in two ways (`one_seed`: --seed is given).
-RunPlan make_plan(const std::vector<std::string>& over, const std::string& seeds, const std::vector<std::string>& set,
-                  bool one_seed = false);
+/// With a `design` keys are ranges (range_of) of which `takes_whole` says whether they take whole numbers, or lists,
+/// whose values are equally likely; runs are called sample_001, sample_002, ...
+/// Throws InputError with everything that is wrong, one a line: no key or value, a key or value twice, a range without
+/// a design, more than 10000 runs, a seed said in two ways (`one_seed`: --seed is given).
+RunPlan make_plan(
+    const std::vector<std::string>& over, const std::string& seeds, const std::vector<std::string>& set,
+    bool one_seed = false, const std::optional<SampleDesign>& design = {},
+    const TakesWholeNumbers& takes_whole = [](const auto&, const auto&) { return false; });
+
+/// The seed that the scene says.
+std::uint64_t scene_seed(const Scene& scene);
+
+/// Whether the reader of the scene takes whole numbers alone for a key.
+TakesWholeNumbers takes_whole_numbers(const CommonOptions& options);
 
 /// Runs the scene `options.inputs.front()` as the plan says, each run in OUT/NAME as its own kind runs it (the log, its
 /// report and all); OUT is --out, else results/SCENE_`suffix`. With --resume runs that have ended are not repeated, and
 /// one that was interrupted goes on where its kind can; runs that the plan has in addition are made. At the end writes
-/// summary.json, table.csv and the report of the set. Status not_usable when a run failed or is not usable.
+/// summary.json, table.csv and the report of the set. Status not_usable when a run failed or is not usable. With --jobs
+/// several runs are made at once, with the same results; with --only one run of the plan alone is made, and with
+/// --slurm none: a job array is written.
 ///
 /// Throws InputError with all that is wrong with any of the scenes before anything is run; IoError and Interrupted
 /// where a run ends so: those before it are kept.

@@ -9,6 +9,7 @@
 #include "common/core/text.h"
 #include "pipelines/law/terminal_plot.h"
 #include "pipelines/report/sections.h"
+#include "pipelines/runs/set_sensitivity.h"
 
 namespace softgrain {
 
@@ -39,8 +40,9 @@ std::string legend(const SetSummary& summary) {
   return law::aligned(rows, 2, 3);
 }
 
-constexpr std::size_t kColumns = 5;  ///< runs beside each other; more stand below each other
-constexpr std::size_t kShown = 15;   ///< differences
+constexpr std::size_t kColumns = 5;       ///< runs beside each other; more stand below each other
+constexpr std::size_t kShown = 15;        ///< differences
+constexpr std::size_t kSampledRuns = 20;  ///< runs of a design in the terminal
 
 /// A row per number, a column per run.
 std::string runs_across(const SetSummary& summary, const std::vector<RunValue>& numbers) {
@@ -62,10 +64,13 @@ std::string runs_down(const SetSummary& summary, const std::vector<RunValue>& nu
     text += fmt::format("  ({}) {}\n", k + 1, with_unit(numbers[k].name, numbers[k].unit));
     rows.front().push_back(fmt::format("({})", k + 1));
   }
-  for (const RunEntry& run : summary.runs) {
+  const std::size_t runs = summary.design ? std::min(summary.runs.size(), kSampledRuns) : summary.runs.size();
+  for (std::size_t r = 0; r < runs; ++r) {
+    const RunEntry& run = summary.runs[r];
     rows.push_back({run.name, to_string(run.status)});
     for (std::size_t k = 0; k < shown; ++k) rows.back().push_back(cell_of(run, numbers[k].name));
   }
+  if (summary.runs.size() > runs) text += fmt::format("  {} more runs in table.csv\n", summary.runs.size() - runs);
   if (numbers.size() > shown) text += fmt::format("  {} more numbers in summary and report\n", numbers.size() - shown);
   return text + law::aligned(rows, 2, 2);
 }
@@ -90,20 +95,19 @@ std::string number_text(double value, double error) {
 
 std::string varied_text(const SetSummary& summary) {
   std::string text = summary.over.empty() ? "" : "sweep over " + join_text(summary.over, ", ", &SweptKey::key);
+  if (summary.design) append_part(text, "sample " + summary.design->sample);
   if (!summary.seeds.empty())
     append_part(text, fmt::format("{} seed{}", summary.seeds.size(), summary.seeds.size() == 1 ? "" : "s"));
   return text;
 }
 
-std::string set_text(const SetSummary& summary) { return differences_text(summary) + numbers_text(summary); }
+std::string set_text(const SetSummary& summary) {
+  return differences_text(summary) + numbers_text(summary) + sensitivity_text(summary);
+}
 
 std::string differences_text(const SetSummary& summary) {
   std::string text;
-  for (const SweptKey& one : summary.over) {
-    std::string values;
-    for (const std::string& value : one.values) append_part(values, value, ", ");
-    text += fmt::format("varied: {} = {}\n", one.key, values);
-  }
+  for (const SweptKey& one : summary.over) text += fmt::format("varied: {} = {}\n", one.key, values_text(one));
   std::size_t shown = 0;
   for (const SweptKey& one : summary.differences) {
     if (++shown > kShown) continue;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
 #include "common/io/file_safety.h"
@@ -94,6 +95,41 @@ TEST_F(RunSet, ASweepHasADirectoryTableAndReportForEveryChoice) {
   EXPECT_EQ(table.find("run,macro.bodies,macro.wall_mu,seed,status,axial stress at the end [Pa],"), 0U) << table;
   const std::string report = read_text(file("out") + "/report.html");
   EXPECT_NE(report.find("data-x-label=\"macro.bodies\""), std::string::npos) << "no plot over the key";
+}
+
+/// Ranges of keys: names are numbers, values stand in the table, and a larger design takes what is there.
+TEST_F(RunSet, ADesignRunsPointsOfRangesAndSaysWhatMatters) {
+  const std::string over = "--over macro.wall_mu=0.0..0.4 --over macro.bodies=6..9 --out " + quoted("out");
+  expect(program("sweep", over + "--sample sobol:4"), 0,
+         {"varied: macro.wall_mu = 0.0 to 0.4", "sensitivity: not determined: 4 points, at least 8 are needed"});
+  const auto first = fs::last_write_time(file("out") + "/sample_003/macro.h5");
+  expect(program("sweep", over + "--sample sobol:12 --resume"), 0, {"sensitivity, with 95 % intervals", "sample_012"});
+  EXPECT_EQ(fs::last_write_time(file("out") + "/sample_003/macro.h5"), first);
+  const json summary = summary_of(file("out"));
+  ASSERT_EQ(summary["runs"].size(), 12U);
+  EXPECT_EQ(summary["design"]["sample"], "sobol:12");
+  EXPECT_EQ(summary["design"]["seed"], 1);
+  for (const json& run : summary["runs"]) {
+    const json member = summary_of(file("out") + "/" + run["name"].get<std::string>());
+    EXPECT_EQ(std::to_string(member["macro"]["bodies"].get<int>()), run["values"]["macro.bodies"]);
+    EXPECT_EQ(member["provenance"]["seed"], 1);
+  }
+  EXPECT_EQ(summary["sensitivity"][0]["key"], "macro.wall_mu");
+  EXPECT_TRUE(summary["sensitivity"][0]["rank_correlation"]["value"].is_number());
+  EXPECT_EQ(read_text(file("out") + "/table.csv").find("run,macro.wall_mu,macro.bodies,seed,status,"), 0U);
+  EXPECT_NE(read_text(file("out") + "/report.html").find("<h3>Sensitivity</h3>"), std::string::npos);
+  // The seed of the program is that of the design and of the scenes.
+  expect(program("sweep", over + "--sample sobol:4 --seed 5 --resume"), 2, {"sample_001", "another"});
+}
+
+TEST_F(RunSet, RangesAreRefusedWithoutADesign) {
+  const std::string out = "--out " + quoted("out");
+  expect(program("sweep", "--over macro.wall_mu=0.0..0.4 " + out), 2, {"a range goes with --sample"});
+  expect(program("sweep", "--over macro.bodies=6.5..9 --sample lhs:4 " + out), 2, {"the key takes whole numbers"});
+  expect(program("sweep", "--over macro.wall_mu=0.0..0.4 --sample grid:4 " + out), 2, {"must be lhs:N, sobol:N"});
+  expect(program("sweep", "--over macro.wall_nu=0.0..0.4 --sample lhs:4 " + out), 2,
+         {"unknown key 'wall_nu' in [macro]; nearest known key is 'wall_mu'"});
+  EXPECT_FALSE(fs::exists(file("out")));
 }
 
 TEST_F(RunSet, EverythingThatIsWrongIsSaidBeforeAnyRun) {
@@ -221,6 +257,88 @@ TEST_F(RunSet, AnInterruptedSweepGoesOnWhereItWas) {
   const json parts = summary_of(file("parts"));
   ASSERT_EQ(parts["runs"].size(), 2U);
   for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(parts["runs"][k]["numbers"], whole["runs"][k]["numbers"]);
+}
+
+/// Numbers of the runs of a set.
+std::vector<json> numbers_of_runs(const std::string& directory) {
+  std::vector<json> out;
+  for (const json& run : summary_of(directory)["runs"])
+    out.push_back({run["name"], run["status"], run.value("reason", ""), run["numbers"]});
+  return out;
+}
+
+/// One of the four does not converge: the same numbers, status and reason as one after another.
+TEST_F(RunSet, SeveralAtOnceGiveTheSameAsOneAfterAnother) {
+  const std::string over = "--over macro.max_passes=10,20000 --seeds 1..2 ";
+  expect(program("sweep", over + "--out " + quoted("one")), 3);
+  const ProgramOutcome outcome =
+      run_the_program("sweep " + quoted("macro.toml") + over + "--threads 3 --jobs 3 --out " + quoted("several"));
+  expect(outcome, 3,
+         {"4 runs, 3 at once with 1 thread each", "4 of 4 runs have ended", " left",
+          "run max_passes=10_seed=1 is not usable"});
+  EXPECT_EQ(numbers_of_runs(file("several")), numbers_of_runs(file("one")));
+  EXPECT_EQ(summary_of(file("several"))["points"], summary_of(file("one"))["points"]);
+  EXPECT_EQ(read_text(file("several") + "/table.csv"), read_text(file("one") + "/table.csv"));
+  EXPECT_FALSE(fs::exists(file("several") + "/.members"));
+  // Runs that have ended are not repeated.
+  const auto first = fs::last_write_time(file("several") + "/max_passes=20000_seed=2/macro.h5");
+  expect(program("sweep", over + "--jobs 2 --resume --out " + quoted("several")), 3);
+  EXPECT_EQ(fs::last_write_time(file("several") + "/max_passes=20000_seed=2/macro.h5"), first);
+  EXPECT_EQ(numbers_of_runs(file("several")), numbers_of_runs(file("one")));
+  expect(program("sweep", over + "--jobs 2 --resume --set macro.steps=3 --out " + quoted("several")), 2,
+         {"belongs to another scene"});
+  expect(program("sweep", over + "--jobs 2 --slurm --out " + quoted("several")), 2, {"--jobs: ", "--slurm"});
+  expect(program("sweep", over + "--jobs 0"), 2, {"--jobs 0: must be a whole number, from 1"});
+}
+
+/// A signal stops all that run at once, and the set goes on where they were.
+TEST_F(RunSet, AnInterruptedSweepOfSeveralAtOnceGoesOn) {
+  const auto arguments = [&](const std::string& out, bool resume) {
+    std::vector<std::string> all{"sweep",   file("macro.toml"),
+                                 "--over",  "macro.bodies=40,50",
+                                 "--set",   "macro.steps=20",
+                                 "--quiet", "--threads",
+                                 "2",       "--out",
+                                 file(out)};
+    if (out != "whole") all.insert(all.end(), {"--jobs", "2"});
+    if (resume) all.emplace_back("--resume");
+    return all;
+  };
+  ASSERT_TRUE(ended_with(wait_for(start_program(arguments("whole", false))), 0));
+  const auto both_began = [&] {
+    return fs::exists(file("parts") + "/bodies=40/.run") && fs::exists(file("parts") + "/bodies=50/.run");
+  };
+  const int ended = signal_when(start_program(arguments("parts", false)), both_began, SIGTERM);
+  EXPECT_TRUE(ended_with(ended, 130)) << ended;
+  EXPECT_FALSE(fs::exists(file("parts") + "/summary.json"));
+  for (const char* run : {"bodies=40", "bodies=50"})
+    EXPECT_NO_THROW(DirectoryLock(file("parts") + "/" + run)) << "its process is still at work";
+  ASSERT_TRUE(ended_with(wait_for(start_program(arguments("parts", true))), 0));
+  EXPECT_EQ(numbers_of_runs(file("parts")), numbers_of_runs(file("whole")));
+}
+
+/// What a job array starts, without a cluster: every command of the file, then the set collects.
+TEST_F(RunSet, AJobArrayIsWrittenRunAndCollected) {
+  const std::string sweep = "--over macro.bodies=6..9 --sample lhs:2 --seed 3 --set macro.steps=1 ";
+  expect(program("sweep", sweep + "--out " + quoted("one")), 0);
+  expect(program("sweep", sweep + "--slurm --out " + quoted("array")), 0,
+         {"2 commands, one per run", "nothing was submitted", "submit: sbatch", "collect", "--resume"});
+  const std::string script = read_text(file("array") + "/slurm/job.sh");
+  for (const char* words : {"#SBATCH --array=1-2", "#SBATCH --cpus-per-task=1", "SLURM_ARRAY_TASK_ID"})
+    EXPECT_NE(script.find(words), std::string::npos) << words;
+  EXPECT_FALSE(fs::exists(file("array") + "/sample_001"));
+  for (const char* task : {"1", "2"}) {
+    const std::string line =
+        "SLURM_ARRAY_TASK_ID=" + std::string(task) + " bash " + quoted("array/slurm/job.sh") + " >/dev/null 2>&1";
+    EXPECT_EQ(std::system(line.c_str()), 0) << line;
+  }
+  EXPECT_TRUE(fs::exists(file("array") + "/sample_002/macro.h5"));
+  const auto first = fs::last_write_time(file("array") + "/sample_002/macro.h5");
+  expect(program("sweep", sweep + "--resume --out " + quoted("array")), 0);
+  EXPECT_EQ(fs::last_write_time(file("array") + "/sample_002/macro.h5"), first);
+  EXPECT_EQ(numbers_of_runs(file("array")), numbers_of_runs(file("one")));
+  expect(program("sweep", sweep + "--only sample_03 --out " + quoted("array")), 2,
+         {"--only sample_03: the set has no such run"});
 }
 
 /// Too few passes for one of them: status 3, the others stand, and means leave it out.

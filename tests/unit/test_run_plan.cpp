@@ -6,6 +6,7 @@
 #include "common/core/error.h"
 #include "common/io/scene.h"
 #include "pipelines/runs/run_set.h"
+#include "pipelines/runs/set_sensitivity.h"
 
 namespace softgrain {
 namespace {
@@ -75,6 +76,111 @@ TEST(RunPlan, SaysAllThatIsWrongAtOnce) {
   EXPECT_EQ(complaint({"a.seed=1,2"}, "", {"b.seed=3"}, true), "") << "other keys of that name";
   EXPECT_NE(complaint({"a=1..200", "b=1..200"}, "").find("40000 runs"), std::string::npos);
   EXPECT_NE(complaint({"a=1..99999999999"}, "").find("more than 10000 values"), std::string::npos);
+}
+
+RunPlan sampled(const Texts& over, const std::string& sample, const std::string& seeds = "") {
+  return make_plan(over, seeds, {}, false, read_design(sample, 1),
+                   [](const std::string& key, const std::string&) { return key == "bodies"; });
+}
+
+/// Names are short and those of a larger design; values are within the ranges, whole where the key asks for it.
+TEST(RunPlan, ADesignNamesItsPointsByNumber) {
+  const RunPlan plan = sampled({"mu=0.1..0.8", "E=1e6..1e8:log", "bodies=20..22", "law=a,b"}, "sobol:4", "3..4");
+  EXPECT_EQ(names_of(plan),
+            (Texts{"sample_001_seed=3", "sample_001_seed=4", "sample_002_seed=3", "sample_002_seed=4",
+                   "sample_003_seed=3", "sample_003_seed=4", "sample_004_seed=3", "sample_004_seed=4"}));
+  EXPECT_EQ(plan.over[1].range, "1e6..1e8:log");
+  EXPECT_EQ(plan.over[0].values.size(), 4U);
+  EXPECT_EQ(values_text(plan.over[0]), "0.1 to 0.8");
+  EXPECT_EQ(values_text(plan.over[1]), "1e6 to 1e8, logarithmic");
+  for (const PlannedRun& run : plan.runs) {
+    EXPECT_GE(std::stod(run.values[0]), 0.1);
+    EXPECT_LE(std::stod(run.values[0]), 0.8);
+    EXPECT_GE(std::stod(run.values[1]), 1e6);
+    EXPECT_EQ(run.values[2].size(), 2U) << run.values[2];
+    EXPECT_TRUE(run.values[3] == "a" || run.values[3] == "b");
+  }
+  const RunPlan larger = sampled({"mu=0.1..0.8", "E=1e6..1e8:log", "bodies=20..22", "law=a,b"}, "sobol:5", "3..4");
+  for (std::size_t k = 0; k < plan.runs.size(); ++k) {
+    EXPECT_EQ(larger.runs[k].name, plan.runs[k].name);
+    EXPECT_EQ(larger.runs[k].values, plan.runs[k].values);
+  }
+  EXPECT_EQ(names_of(sampled({"mu=0..1", "E=0..1"}, "saltelli:2")).back(), "sample_008");
+}
+
+TEST(RunPlan, RangesAndDesignsGoTogether) {
+  EXPECT_EQ(complaint({"mu=0.1..0.8", "E=1e6..1e8:log"}, ""),
+            "--over mu=0.1..0.8: 0.1..0.8: a range goes with --sample lhs:N, sobol:N or saltelli:N; without it give "
+            "values a,b,c, or whole numbers 1..8\n"
+            "--over E=1e6..1e8:log: 1e6..1e8:log: a range goes with --sample lhs:N, sobol:N or saltelli:N; without it "
+            "give values a,b,c, or whole numbers 1..8");
+  const auto refused = [](const Texts& over, const std::string& sample) -> std::string {
+    try {
+      (void)sampled(over, sample);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refused({"mu=0.8..0.1", "E=0..1:log", "law=a"}, "lhs:4"),
+            "--over mu=0.8..0.1: 0.8..0.1: must rise\n"
+            "--over E=0..1:log: 0..1:log: a logarithmic range must be above 0\n"
+            "--over law=a: one value; with --sample give a range LOW..HIGH or LOW..HIGH:log, or a list");
+  EXPECT_EQ(refused({"bodies=2.5..8"}, "lhs:4"),
+            "--over bodies=2.5..8: the key takes whole numbers: both ends must be such");
+  EXPECT_NE(refused({}, "lhs:4").find("--sample: goes with --over"), std::string::npos);
+  EXPECT_NE(refused({"a=0..1", "b=0..1"}, "saltelli:5000").find("20000 runs are asked for"), std::string::npos);
+  for (const char* wrong : {"lhs", "lhs:", "lhs:1", "lhs:4.5", "grid:8", "sobol:10001"})
+    EXPECT_NE(refused({"a=0..1"}, wrong).find("must be lhs:N, sobol:N or saltelli:N"), std::string::npos) << wrong;
+}
+
+/// stress = 10 mu - log E, of a run per point of a design.
+SetSummary linear_set(const std::string& sample) {
+  const RunPlan plan = sampled({"mu=0..1", "E=1..10:log", "law=a,b"}, sample);
+  SetSummary set;
+  set.over = plan.over;
+  set.design = {plan.design->text(), 1};
+  for (const PlannedRun& run : plan.runs) {
+    RunEntry one{.name = run.name, .status = RunStatus::good};
+    for (std::size_t k = 0; k < 3; ++k) one.values[plan.over[k].key] = run.values[k];
+    one.numbers = {{"stress", "Pa", 10.0 * std::stod(run.values[0]) - std::log(std::stod(run.values[1]))},
+                   {"constant", "", 1.0}};
+    set.runs.push_back(one);
+  }
+  return set;
+}
+
+TEST(RunPlan, SensitivityIsThatOfEveryNumberToEveryKey) {
+  const std::vector<KeyEffect> effects = sensitivity_of(linear_set("sobol:32"));
+  ASSERT_EQ(effects.size(), 6U);
+  EXPECT_EQ(effects[0].number + effects[0].key, "stressmu");
+  EXPECT_GT(effects[0].rank->low, 0.9);
+  EXPECT_NEAR(effects[0].determination, 1.0, 1e-9) << "linear in mu and in log E";
+  EXPECT_NEAR(effects[1].coefficient->value / effects[0].coefficient->value, -std::log(10.0) / 10.0, 0.02);
+  EXPECT_FALSE(effects[0].total.has_value());
+  EXPECT_FALSE(effects[2].rank.has_value());
+  EXPECT_EQ(effects[2].reason, "values that are no numbers have no order");
+  EXPECT_EQ(effects[3].reason, "the number does not vary");
+  const std::vector<KeyEffect> few = sensitivity_of(linear_set("sobol:4"));
+  EXPECT_EQ(few[0].reason, "4 points, at least 8 are needed");
+  EXPECT_FALSE(few[0].rank.has_value());
+}
+
+/// A base point of which one run failed counts nowhere among the indices.
+TEST(RunPlan, IndicesLeaveOutBasePointsWithARunThatIsNotGood) {
+  SetSummary set = linear_set("saltelli:16");
+  ASSERT_EQ(set.runs.size(), 80U);
+  const std::vector<KeyEffect> effects = sensitivity_of(set);
+  EXPECT_EQ(effects[0].points, 32U) << "points A and B";
+  EXPECT_GT(effects[0].first->value, 0.8);
+  EXPECT_EQ(effects[2].total->value, 0.0) << "the law does nothing here";
+  set.runs[7].status = RunStatus::not_usable;
+  const std::vector<KeyEffect> fewer = sensitivity_of(set);
+  EXPECT_EQ(fewer[0].points, 32U) << "it was none of A or B";
+  EXPECT_FALSE(fewer[0].first.has_value());
+  EXPECT_EQ(fewer[0].reason, "15 base points, at least 16 are needed for Sobol indices");
+  set.sensitivity = fewer;
+  EXPECT_NE(sensitivity_text(set).find("rank correlation"), std::string::npos);
 }
 
 RunEntry entry(const std::string& mu, double stress, RunStatus status = RunStatus::good, double error = kNaN) {
