@@ -318,7 +318,7 @@ std::vector<RunValue> values_of(const report::RunData& run) {
 NextSteps next_of(const report::RunData& run) {
   return {
       "Every recorded state for ParaView, OVITO or a spreadsheet: `softgrain export " + run.directory +
-          " --to vtp` (or `lammps-dump`, `csv`).",
+          " --to vtp` (or `lammps-dump`, `lammps-data`, `csv`).",
       "Whether the result depends on the time step: `softgrain sweep SCENE.toml --over time.step=A,B,C`, with A the "
       "step of this run, B and C a half and a quarter of it."};
 }
