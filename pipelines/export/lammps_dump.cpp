@@ -155,7 +155,8 @@ std::string data_text(const Snapshot& s) {
 }  // namespace
 
 bool has_masses(const Snapshot& s) {
-  return std::ranges::all_of(s.particles, [](const SnapshotParticle& p) { return std::isfinite(p.mass); });
+  return std::ranges::all_of(s.particles,
+                             [](const SnapshotParticle& p) { return std::isfinite(p.mass) && p.mass > 0.0; });
 }
 
 std::vector<ExportFile> data_files(const Snapshot& s, std::int64_t number) {
