@@ -6,6 +6,7 @@
 #include <span>
 
 #include "common/core/error.h"
+#include "common/core/limits.h"
 #include "common/data/columns.h"
 #include "common/data/soft_particle_schema.h"
 
