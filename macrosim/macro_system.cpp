@@ -209,7 +209,7 @@ Snapshot macro_snapshot(const MacroSystem& macro, const MacroPacking& packing) {
   for (std::size_t k = 0; k < s.particles.size(); ++k) {
     SnapshotParticle& p = s.particles[k];
     p.body = macro.body[k];
-    p.velocity = {};
+    p.velocity = p.spin = {};
     if (packing.bodies[static_cast<std::size_t>(p.body)].soft)
       p.role = resolved ? ParticleRole::inner : ParticleRole::soft;
   }

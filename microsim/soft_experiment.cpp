@@ -119,7 +119,7 @@ Snapshot soft_snapshot(const SoftExperiment& e) {
   for (std::size_t k = 0; k < s.particles.size(); ++k) {
     s.particles[k].role = ParticleRole::inner;
     s.particles[k].body = k < static_cast<std::size_t>(e.first_grains) ? 0 : 1;
-    s.particles[k].velocity = {};
+    s.particles[k].velocity = s.particles[k].spin = {};
   }
   for (std::size_t k = 0; k < s.walls.size(); ++k)
     if (s.walls[k].shape == WallShape::sphere_inside) s.walls[k].body = static_cast<std::int64_t>(k);

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "common/core/error.h"
@@ -48,13 +50,22 @@ void write_segments(const h5::Group& g, std::size_t count) {
   g.write("segment", std::span<const std::int64_t>(rows), {count, 2});
 }
 
+std::string mass_unit(const Snapshot& s) {
+  const bool si = s.length_unit == "m" && s.force_unit == "N" && s.time_unit == "s";
+  return si ? "kg" : s.force_unit + " " + s.time_unit + "^2/" + s.length_unit;
+}
+
 void write_particles(const h5::Group& g, const Snapshot& s) {
   using P = SnapshotParticle;
   const auto& all = s.particles;
   write_vectors(g, "position", s.length_unit, all, [](const P& p) { return p.position; });
   write_column(g, "radius", s.length_unit, all, [](const P& p) { return p.radius; });
-  if (s.has_velocity)
+  if (s.has_velocity) {
     write_vectors(g, "velocity", s.length_unit + "/" + s.time_unit, all, [](const P& p) { return p.velocity; });
+    write_vectors(g, "spin", "rad/" + s.time_unit, all, [](const P& p) { return p.spin; });
+  }
+  if (std::ranges::all_of(all, [](const P& p) { return std::isfinite(p.mass); }))
+    write_column(g, "mass", mass_unit(s), all, [](const P& p) { return p.mass; });
   write_column(g, "id", "1", all, [](const P& p) { return p.id; });
   write_column(g, "role", "1", all, [](const P& p) { return static_cast<std::int64_t>(p.role); });
   g.attribute_of("role", "values", "0 solid, 1 soft, 2 inner");
@@ -83,6 +94,11 @@ void read_particles(const h5::Group& g, Snapshot& s) {
   s.has_velocity = g.has("velocity");
   if (s.has_velocity)
     read_vectors(g, "velocity", s.length_unit + "/" + s.time_unit, all, [](P& p, const Vec3& v) { p.velocity = v; });
+  if (g.has("spin")) read_vectors(g, "spin", "rad/" + s.time_unit, all, [](P& p, const Vec3& v) { p.spin = v; });
+  if (g.has("mass"))
+    read_finite(
+        g, "mass", mass_unit(s), all, [](P& p, double v) { p.mass = v; },
+        Limits{.low = std::numeric_limits<double>::min()});
   read_integers(g, "id", all, [](P& p, std::int64_t v) { p.id = v; });
   read_integers(g, "role", all, [](P& p, std::int64_t v) { p.role = checked(v, ParticleRole::inner, "role"); });
   read_integers(g, "body", all, [](P& p, std::int64_t v) { p.body = v; });

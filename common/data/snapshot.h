@@ -42,6 +42,9 @@ struct SnapshotParticle {
   ParticleRole role = ParticleRole::solid;
   std::int64_t body = 0;  ///< number of the body it belongs to: grains of one soft particle (and its shell) share it
   std::int64_t material = 0;  ///< index into the materials of the run
+  Vec3 spin{};                ///< angular velocity, zero unless Snapshot::has_velocity
+  /// Mass in units of force time^2/length (kg); NaN: not known, as in files of earlier versions.
+  double mass = std::numeric_limits<double>::quiet_NaN();
 };
 
 enum class WallShape : std::int64_t { plane, sphere_inside };

@@ -24,8 +24,8 @@ struct SnapshotBodies {
 std::vector<SnapshotContact> read_snapshot_contacts(const h5::Group& group, const SnapshotBodies& bodies,
                                                     const Snapshot& units);
 
-/// One state: attributes, particles (position, radius, id, role, body, material, index; velocity), walls, cell, and the
-/// group "contacts".
+/// One state: attributes, particles (position, radius, id, role, body, material, index; velocity and spin where they
+/// count, mass where all are known), walls, cell, and the group "contacts".
 void write_snapshot(const h5::Group& group, const Snapshot& snapshot);
 /// Throws IoError when arrays do not fit together or a number is not finite.
 Snapshot read_snapshot(const h5::Group& group);

@@ -62,6 +62,9 @@ void add_walls(const Particles<D>& p, std::vector<SnapshotWall>& walls) {
   }
 }
 
+Vec3 spin_in_space(const Vec3& spin) { return spin; }
+Vec3 spin_in_space(const Vec<1>& spin) { return {{0.0, 0.0, spin[0]}}; }
+
 }  // namespace
 
 template <int D>
@@ -86,6 +89,8 @@ Snapshot snapshot_of(const System<D>& system, bool contacts) {
     one.position = in_space<D>(p.sphere[u].x);
     one.radius = p.sphere[u].r;
     one.velocity = in_space<D>(Vec<D>(p.velocity[u]));
+    one.spin = spin_in_space(p.spin[u]);
+    if (p.inverse_mass[u] > 0.0) one.mass = 1.0 / p.inverse_mass[u];
     one.id = one.body = static_cast<std::int64_t>(out.particles.size());
     one.material = p.material[u];
     out.particles.push_back(one);

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "common/core/error.h"
+#include "common/core/limits.h"
 #include "common/data/columns.h"
 #include "common/data/soft_particle_schema.h"
 
@@ -167,6 +168,7 @@ void write_spec(const h5::Group& g, const GrainBoxSpec& spec) {
     g.write("generation_lower_pressures_Pa", std::span<const double>(spec.generation.lower_pressures));
   g.attribute("youngs_modulus_Pa", spec.material.youngs_modulus);
   g.attribute("poisson_ratio", spec.material.poisson_ratio);
+  g.attribute("density_kg_m3", spec.material.density);
   const double radii[] = {spec.material.radius_min, spec.material.radius_max};
   g.write("radii", std::span<const double>(radii));
   g.attribute_of("radii", "unit", "m");
@@ -190,12 +192,14 @@ void read_material(const h5::Group& g, GrainBoxMaterial& material) {
   material.radius_max = radii[1];
   material.youngs_modulus = g.number("youngs_modulus_Pa");
   material.poisson_ratio = g.number("poisson_ratio");
+  if (g.has_attribute("density_kg_m3")) material.density = g.number("density_kg_m3");
 }
 
 GrainBoxResult read_result(const h5::Group& g) {
   GrainBoxResult result;
   GrainBoxSpec& spec = result.spec;
   spec.material.youngs_modulus = kNaN;
+  spec.material.density = kNaN;
   spec.name = g.text("name");
   spec.of = g.has_attribute("arrangement_of") ? g.text("arrangement_of") : spec.name;
   spec.grains = g.integer("grains");

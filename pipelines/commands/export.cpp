@@ -1,5 +1,5 @@
-// softgrain export RUN --to vtp|lammps-dump|csv: the states of a run as files for ParaView, OVITO and everything else.
-// Makes no run directory of its own, so that the run's summary stays as it is.
+// softgrain export RUN --to vtp|lammps-dump|lammps-data|csv: the states of a run as files for ParaView, OVITO and
+// everything else. Makes no run directory of its own, so that the run's summary stays as it is.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -22,18 +22,20 @@ std::string default_directory(const std::string& run, ExportFormat format) {
 }
 
 nlohmann::json to_json(const ExportedSeries& s) {
-  return {{"name", s.name},
-          {"kind", to_string(s.kind)},
-          {"states", s.states},
-          {"with_contacts", s.with_contacts},
-          {"open", s.files}};
+  nlohmann::json out{{"name", s.name},
+                     {"kind", to_string(s.kind)},
+                     {"states", s.states},
+                     {"with_contacts", s.with_contacts},
+                     {"open", s.files}};
+  if (!s.remark.empty()) out["remark"] = s.remark;
+  return out;
 }
 
 std::string text_of(const std::vector<ExportedSeries>& all, const std::string& directory) {
   std::string text;
   for (const ExportedSeries& s : all)
-    text += fmt::format("{} ({}): {} states, {} with contacts; open {}\n", s.name, to_string(s.kind), s.states,
-                        s.with_contacts, join_text(s.files));
+    text += fmt::format("{} ({}): {} states, {} with contacts; open {}{}\n", s.name, to_string(s.kind), s.states,
+                        s.with_contacts, join_text(s.files), s.remark.empty() ? "" : "; " + s.remark);
   return text + "files: " + directory + "\n";
 }
 

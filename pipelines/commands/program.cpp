@@ -65,7 +65,7 @@ constexpr std::array<Command, 9> kCommands{{
      false, command_report},
     {"check", "Validates a scene, card, result or run directory and says what follows from it, without running", "FILE",
      "file or run directory to check", 1, 1, false, true, false, command_check},
-    {"export", "Writes the states of a run for ParaView, OVITO and others; default RUN/export-FORM", "RUN",
+    {"export", "Writes the states of a run for ParaView, OVITO, LAMMPS and others; default RUN/export-FORM", "RUN",
      "run directory, or one of its files with states", 1, 1, false, false, true, command_export},
 }};
 
@@ -183,7 +183,7 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
     app.add_flag("--different", o.different,
                  "Error norms also of runs that differ in bodies, materials, tests or packings");
   if (command.function == command_export)
-    app.add_option("--to", o.to, "Form of the files: vtp, lammps-dump or csv")->option_text("FORM");
+    app.add_option("--to", o.to, "Form of the files: vtp, lammps-dump, lammps-data or csv")->option_text("FORM");
   if (command.function == command_run || command.function == command_microsim || command.function == command_macrosim)
     app.add_option("--observables", observables,
                    "Writes what was observed to PREFIX_sim.txt and the numbers set by --set to PREFIX_param.txt, as "

@@ -6,6 +6,7 @@
 #include <functional>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "common/core/error.h"
@@ -89,6 +90,8 @@ class Exporter {
     series.entries.push_back(entry);
     ++series.facts.states;
     if (s.has_contacts) ++series.facts.with_contacts;
+    if (format_ == ExportFormat::lammps_data && !has_masses(s))
+      series.facts.remark = "the masses of the particles are not recorded: densities in the file are 1";
   }
 
   std::vector<ExportedSeries> finish() {
@@ -118,8 +121,17 @@ class Exporter {
   }
 
   [[nodiscard]] std::vector<ExportFile> files_of(const Snapshot& s, std::int64_t number) const {
-    if (format_ == ExportFormat::vtp) return vtp_files(s, number);
-    return format_ == ExportFormat::csv ? csv_files(s, number) : dump_files(s, number);
+    switch (format_) {
+      case ExportFormat::vtp:
+        return vtp_files(s, number);
+      case ExportFormat::csv:
+        return csv_files(s, number);
+      case ExportFormat::lammps_data:
+        return data_files(s, number);
+      case ExportFormat::lammps_dump:
+        return dump_files(s, number);
+    }
+    throw std::logic_error("export: a form without files");
   }
 
   /// Throws InputError, and takes back what was written, where a file of this name is there that no export listed.
@@ -167,9 +179,10 @@ std::vector<double> times_of(std::vector<double> moments) {
 
 ExportFormat export_format(const std::string& name) {
   if (const auto format = parse_enum<ExportFormat>(name)) return *format;
-  if (name.empty()) throw InputError("export: which form? give --to vtp, --to lammps-dump or --to csv");
-  const std::string near = nearest_word(name, {"vtp", "lammps-dump", "csv"});
-  throw InputError(fmt::format("export: --to {}: unknown form; {}allowed are vtp, lammps-dump, csv", name,
+  if (name.empty())
+    throw InputError("export: which form? give --to vtp, --to lammps-dump, --to lammps-data or --to csv");
+  const std::string near = nearest_word(name, {"vtp", "lammps-dump", "lammps-data", "csv"});
+  throw InputError(fmt::format("export: --to {}: unknown form; {}allowed are vtp, lammps-dump, lammps-data, csv", name,
                                near.empty() ? "" : "nearest is " + near + "; "));
 }
 
@@ -187,7 +200,9 @@ std::string state_file_name(const Snapshot& snapshot, StateContent content, std:
 
 std::vector<ExportedSeries> export_states(const std::string& run, ExportFormat format, const std::string& directory) {
   std::optional<Exporter> exporter;
-  for_each_snapshot(run, SnapshotChoice::all, [&](const Snapshot& s) {
+  // A simulation starts from one state.
+  const SnapshotChoice choice = format == ExportFormat::lammps_data ? SnapshotChoice::last : SnapshotChoice::all;
+  for_each_snapshot(run, choice, [&](const Snapshot& s) {
     if (!exporter) {
       require_writable_directory(directory);
       exporter.emplace(format, directory);

@@ -1,4 +1,4 @@
-// States of a run as files for other programs: VTP for ParaView and OVITO, LAMMPS dumps, CSV tables.
+// States of a run as files for other programs: VTP for ParaView and OVITO, dumps and data files of LAMMPS, CSV tables.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,14 @@
 
 namespace softgrain {
 
-enum class ExportFormat { vtp, lammps_dump, csv };
+enum class ExportFormat { vtp, lammps_dump, lammps_data, csv };
 
 template <>
-inline constexpr auto enum_names<ExportFormat> = enum_name_list<ExportFormat>(
-    {{ExportFormat::vtp, "vtp"}, {ExportFormat::lammps_dump, "lammps-dump"}, {ExportFormat::csv, "csv"}});
+inline constexpr auto enum_names<ExportFormat> =
+    enum_name_list<ExportFormat>({{ExportFormat::vtp, "vtp"},
+                                  {ExportFormat::lammps_dump, "lammps-dump"},
+                                  {ExportFormat::lammps_data, "lammps-data"},
+                                  {ExportFormat::csv, "csv"}});
 
 /// Throws InputError that names the nearest for a word that is none of them.
 ExportFormat export_format(const std::string& name);
@@ -39,6 +42,10 @@ struct ExportFile {
 /// becomes '_'), then say what the file holds and the number: shelled-0_particles_000002.vtp.
 std::vector<ExportFile> vtp_files(const Snapshot& snapshot, std::int64_t number);
 std::vector<ExportFile> dump_files(const Snapshot& snapshot, std::int64_t number);
+/// One file for `read_data` with atom_style sphere. Types are the pairs of role and material that there are.
+std::vector<ExportFile> data_files(const Snapshot& snapshot, std::int64_t number);
+/// Whether all masses are known, from which the densities in a data file follow; otherwise they are 1.
+bool has_masses(const Snapshot& snapshot);
 std::vector<ExportFile> csv_files(const Snapshot& snapshot, std::int64_t number);
 
 /// SERIES_KIND_NUMBER.extension
@@ -56,12 +63,15 @@ struct ExportedSeries {
   SnapshotKind kind = SnapshotKind::particles;
   std::int64_t states = 0;
   std::int64_t with_contacts = 0;
-  std::vector<std::string> files;  ///< files to open: .pvd of a VTP series, table of a CSV series, first dump
+  std::vector<std::string>
+      files;             ///< files to open: .pvd of a VTP series, table of a CSV series, first dump, data file
+  std::string remark{};  ///< what stands in the files for what the run does not say; empty: nothing
 };
 
-/// Writes all states of a run (as read_snapshots() takes it) to `directory`, which is made; every file atomically. What
-/// an earlier export of the same form left there is removed first (export_files.h); other files stay.
-/// Throws InputError when there are no states, or a file is in the way that no export listed; IoError.
+/// Writes all states of a run (as read_snapshots() takes it) to `directory`, which is made; as data files of LAMMPS the
+/// last one of each series. Every file atomically. What an earlier export of the same form left there is removed first
+/// (export_files.h); other files stay. Throws InputError when there are no states, or a file is in the way that no
+/// export listed; IoError.
 std::vector<ExportedSeries> export_states(const std::string& run, ExportFormat format, const std::string& directory);
 
 // Small XDMF files beside HDF5 files, through which ParaView reads the states in them without a copy.

@@ -21,6 +21,8 @@ std::string extension_of(ExportFormat format) {
       return "vtp";
     case ExportFormat::lammps_dump:
       return "dump";
+    case ExportFormat::lammps_data:
+      return "data";
     default:
       return "csv";
   }
@@ -48,7 +50,8 @@ std::vector<std::string> names_in(const std::string& directory) {
   return out;
 }
 
-constexpr std::array kFormats{ExportFormat::vtp, ExportFormat::lammps_dump, ExportFormat::csv};
+constexpr std::array kFormats{ExportFormat::vtp, ExportFormat::lammps_dump, ExportFormat::lammps_data,
+                              ExportFormat::csv};
 
 }  // namespace
 

@@ -36,7 +36,7 @@ class ExportList {
   ExportFormat format_;
 };
 
-/// Default directory of an export, beside the states: export-vtp, export-lammps-dump, export-csv.
+/// Default directory of an export, beside the states: export-vtp, export-lammps-dump, export-lammps-data, export-csv.
 std::string export_folder(ExportFormat format);
 
 /// What exports left in the default directories of a run; a directory goes when nothing else is in it.

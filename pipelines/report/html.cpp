@@ -1,6 +1,7 @@
 #include "pipelines/report/html.h"
 
 #include <algorithm>
+#include <array>
 #include <span>
 
 #include "common/core/text.h"
@@ -13,6 +14,14 @@ namespace {
 constexpr const char* kNoNetwork =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
     "style-src 'unsafe-inline'; img-src data: blob:\">\n";
+
+struct Entity {
+  char character;
+  std::string_view text;
+};
+
+constexpr std::array<Entity, 5> kEntities{
+    {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}}};
 
 std::string table_row(const std::vector<std::string>& cells, const std::vector<std::string>& classes,
                       const std::string& tag) {
@@ -46,25 +55,23 @@ std::string escape(const std::string& text) {
   std::string out;
   out.reserve(text.size());
   for (const char ch : text) {
-    switch (ch) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        if (static_cast<unsigned char>(ch) >= 0x20 || ch == '\n' || ch == '\t') out += ch;
-    }
+    const auto known = std::ranges::find(kEntities, ch, &Entity::character);
+    if (known != kEntities.end())
+      out += known->text;
+    else if (static_cast<unsigned char>(ch) >= 0x20 || ch == '\n' || ch == '\t')
+      out += ch;
+  }
+  return out;
+}
+
+std::string unescape(const std::string& html) {
+  std::string out;
+  out.reserve(html.size());
+  for (std::size_t at = 0; at < html.size();) {
+    const auto known =
+        std::ranges::find_if(kEntities, [&](const Entity& e) { return html.compare(at, e.text.size(), e.text) == 0; });
+    out += known == kEntities.end() ? html[at] : known->character;
+    at += known == kEntities.end() ? 1 : known->text.size();
   }
   return out;
 }

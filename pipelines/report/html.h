@@ -10,6 +10,9 @@ namespace softgrain::report {
 /// Text made safe for element content and quoted attributes; control characters that XML forbids are dropped.
 std::string escape(const std::string& text);
 
+/// The text that escape() was given, but for what that dropped.
+std::string unescape(const std::string& html);
+
 /// A table of escaped texts, folded under a line that names its first columns. Columns after the first are aligned to
 /// the right unless `left_columns` says otherwise; columns with long texts to the left, in several lines.
 class HtmlTable {

@@ -1,5 +1,5 @@
 // The report of a run: one self-contained page with figures and tables, readable without a network and printable; its
-// figures as separate SVG files, for papers and slides; its style sheet and scripts.
+// figures as separate SVG files, for papers and slides, and as tables, for spreadsheets; its style sheet and scripts.
 #pragma once
 
 #include <string>
@@ -9,7 +9,8 @@
 namespace softgrain {
 
 /// Reads what DIR holds (summary.json, measurements.h5, law.toml, law.h5, macro.h5, grain_box.h5) and writes
-/// DIR/report.html. Sections without data are left out. Throws IoError for missing, damaged or unwritable files.
+/// DIR/report.html with the figures and curves beside it. Sections without data are left out. Throws IoError for
+/// missing, damaged or unwritable files.
 void write_report(const std::string& run_directory);
 
 }  // namespace softgrain
@@ -17,17 +18,25 @@ void write_report(const std::string& run_directory);
 namespace softgrain::report {
 
 struct Figure {
-  std::string name;  ///< file name without extension, from the figure's title
-  std::string svg;   ///< complete document
+  std::string name;   ///< file name without extension, from the figure's title
+  std::string svg;    ///< complete document
+  std::string table;  ///< its values as CSV; empty: it is no plot
+};
+
+/// The body of a page, and what stands beside the page.
+struct BodyAndFigures {
+  std::string body;  ///< links below the plots in place of their tables
+  std::vector<Figure> figures;
 };
 
 /// Every svg element of an HTML body, in order; names are made unique by a number.
-std::vector<Figure> figures_of(const std::string& html);
+BodyAndFigures figures_of(const std::string& html);
 
-/// Writes them to DIR/figures in place of those that an earlier report left there. Throws IoError.
+/// Writes them to DIR/figures/NAME.svg and DIR/curves/NAME.csv in place of those that an earlier report left there.
+/// Throws IoError.
 void write_figures(const std::string& run_directory, const std::vector<Figure>& figures);
 
-/// Removes those that a report left in DIR/figures, and the directory when nothing else is in it.
+/// Removes those that a report left in DIR/figures and DIR/curves, and each directory when nothing else is in it.
 void remove_figures(const std::string& run_directory);
 
 }  // namespace softgrain::report

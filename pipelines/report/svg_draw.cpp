@@ -15,8 +15,6 @@ namespace {
 
 constexpr double kFarAway = 1e4;
 
-std::string hover_of(const Series& s) { return s.hover.empty() ? s.label : s.hover; }
-
 std::string title(const std::string& text) { return text.empty() ? "" : "<title>" + escape(text) + "</title>"; }
 
 /// Path through the points, broken where one cannot be drawn.
@@ -130,9 +128,6 @@ std::string data_list(const std::string& name, const std::vector<double>& values
   return " data-" + name + "=\"" + join_text(values, ",", data_value) + "\"";
 }
 
-/// The legend entry that hides and shows it.
-std::string entry_of(const Series& s) { return s.group.empty() ? s.label : s.group; }
-
 /// Values are separated by commas, so that those that cannot be shown leave a gap.
 std::string series_data(const Series& s) {
   std::string out = " data-entry=\"" + escape(entry_of(s)) + "\" data-name=\"" + escape(hover_of(s)) + "\"";
@@ -159,6 +154,9 @@ std::string legend_sample(const Series& s, double x, double y) {
 }
 
 }  // namespace
+
+const std::string& hover_of(const Series& series) { return series.hover.empty() ? series.label : series.hover; }
+const std::string& entry_of(const Series& series) { return series.group.empty() ? series.label : series.group; }
 
 double Frame::px(double value) const { return std::clamp(left + width * x.position(value), -kFarAway, kFarAway); }
 double Frame::py(double value) const {

@@ -51,6 +51,12 @@ std::string draw_series(const Series& series, const Frame& frame);
 /// Grid, frame, ticks and labels. `right` may be absent.
 std::string draw_axes(const Frame& frame, const PlotOptions& options);
 
+/// What a curve is called under the pointer.
+const std::string& hover_of(const Series& series);
+
+/// The legend entry that hides and shows it.
+const std::string& entry_of(const Series& series);
+
 /// Rows of legend entries, wrapped to the width.
 struct Legend {
   std::string drawing;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "pipelines/report/figure_table.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/svg_draw.h"
 
@@ -111,7 +112,7 @@ std::string Plot::svg() const {
   out += svg::draw_axes(frame, options_);
   out += fmt::format("<g clip-path=\"url(#{}-clip)\">\n", escape(options_.id));
   for (const Series& s : series_) out += svg::draw_series(s, frame);
-  return out + "</g>\n" + legend.drawing + "</svg>\n";
+  return out + "</g>\n" + legend.drawing + table_element(curve_table(options_, series_)) + "</svg>\n";
 }
 
 }  // namespace softgrain::report

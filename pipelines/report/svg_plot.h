@@ -89,7 +89,7 @@ class Plot {
   [[nodiscard]] bool empty() const { return series_.empty(); }
 
   /// The drawing as one svg element, scalable through its viewBox. Its attributes data-* hold axes and values, for
-  /// the script of the page (assets/report.js).
+  /// the script of the page (assets/report.js). It carries the table of its values (figure_table.h).
   [[nodiscard]] std::string svg() const;
 
  private:

@@ -54,7 +54,7 @@ struct CommonOptions {
   std::string seeds;                               ///< --seeds 1..8 (run, microsim, macrosim, sweep); empty: one run
   /// One of several runs: its summary goes to its file alone, and where it has ended --resume says AlreadyFinished.
   bool member = false;
-  std::string to;            ///< file format, --to vtp, lammps-dump or csv (export)
+  std::string to;            ///< file format, --to vtp, lammps-dump, lammps-data or csv (export)
   std::string command_line;  ///< command line as given, for provenance
 };
 

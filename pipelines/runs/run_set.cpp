@@ -128,7 +128,7 @@ std::vector<std::string> lines_of(const std::string& path) {
 
 /// What a run leaves beside results.
 bool is_housekeeping(const fs::path& file) {
-  static const std::set<std::string> names{"log.txt", ".lock", "figures"};
+  static const std::set<std::string> names{"log.txt", ".lock", "figures", "curves"};
   return names.contains(file.filename().string()) || file.extension() == ".xdmf";  // of states that are gone
 }
 

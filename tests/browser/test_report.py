@@ -7,6 +7,7 @@ Debian packages: chromium chromium-driver python3-selenium, and libjs-three for 
 skipped and said). --keep: the report and pictures of it are left in DIR.
 """
 import argparse
+import csv
 import subprocess
 import sys
 import tempfile
@@ -18,6 +19,7 @@ from browser import PLACE_OF_POINT, SKIPPED, missing, start_browser
 from selenium.webdriver import ActionChains
 from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
 from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
 
 # The quickstart in seconds: few coarse grains, few points. Its laws are underdetermined, so that it may end with status 3.
 SETTINGS = [
@@ -43,6 +45,13 @@ const d = pen.getImageData(0, 0, 120, 80).data;
 let n = 0;
 for (let k = 0; k < d.length; k += 4) if (d[k] + d[k + 1] + d[k + 2] < 720) ++n;
 return n / (120 * 80);
+"""
+
+# Keeps what the link arguments[0] would save. The page may fetch nothing, not even that.
+WATCH_LINK = """
+const make = URL.createObjectURL;
+URL.createObjectURL = (blob) => { window.saved = blob; return make.call(URL, blob); };
+arguments[0].addEventListener("click", (e) => e.preventDefault(), { once: true });
 """
 
 
@@ -190,7 +199,28 @@ class ReportInABrowser(unittest.TestCase):
         self.picture("chains")
         self.assertEqual([e for e in self.browser.get_log("browser") if e["level"] == "SEVERE"], [])
 
-    def test_8_fits_a_phone_and_paper(self):
+    def test_8_a_link_below_every_plot_saves_its_values(self):
+        plot = self.plot("Fn(Δ), soft particle on a solid plane")
+        links = self.browser.find_elements(By.CSS_SELECTOR, "figure a.csv")
+        self.assertEqual(len(links), len(self.browser.find_elements(By.CSS_SELECTOR, "svg.plot")))
+        link = self.script("return arguments[0].nextElementSibling", plot)
+        name = link.get_attribute("download")
+        self.script(WATCH_LINK, link)
+        link.send_keys(Keys.ENTER)
+        self.assertTrue(link.get_attribute("href").startswith("blob:"), link.get_attribute("href"))
+        made = self.browser.execute_async_script("window.saved.text().then(arguments[0])")
+        beside = (self.page.parent / "curves" / name).read_text(encoding="utf-8-sig")
+        made, beside = (list(csv.reader(text.splitlines())) for text in (made, beside))
+        self.assertEqual(made[0], beside[0])
+        self.assertEqual(len(made), len(beside))
+        for a, b in zip(made[1:], beside[1:]):
+            self.assertEqual(a[:2], b[:2])
+            for u, v in zip(a[2:], b[2:]):
+                self.assertEqual(u == "", v == "")
+                if u:
+                    self.assertAlmostEqual(float(u), float(v), delta=1e-4 * abs(float(v)))
+
+    def test_9_fits_a_phone_and_paper(self):
         self.browser.set_window_size(500, 900)  # the narrowest that Chromium takes
         time.sleep(0.5)
         wide, there = self.script("return [document.documentElement.scrollWidth, document.documentElement.clientWidth]")

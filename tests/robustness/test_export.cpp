@@ -6,8 +6,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <numbers>
 #include <regex>
 #include <set>
+#include <sstream>
 
 #include "common/io/hdf5_file.h"
 #include "pipelines/snapshots/snapshots.h"
@@ -53,6 +55,72 @@ TEST(Export, WritesEveryFormAndLeavesTheRunAlone) {
   EXPECT_EQ(files_with(run + "/export-lammps-dump", ".dump"), 31U);
   EXPECT_EQ(files_with(run + "/export-csv", ".csv"), 21U + 5U + 21U + 1U);
   EXPECT_EQ(read_text(run + "/summary.json"), before);
+}
+
+/// What the last recorded frame holds, as a program that knows nothing of LAMMPS reads it.
+TEST(Export, DataFilesOfLammpsHoldTheLastState) {
+  const KindRuns runs(kParticles);
+  ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("a"))), 0));
+  const ProgramOutcome done = run_the_program("export " + quoted(runs.out("a")) + " --json --to lammps-data");
+  ASSERT_EQ(done.status, 0) << done.output;
+  const json told = json::parse(done.output)["series"][0];
+  EXPECT_EQ(told["states"], 1);
+  EXPECT_FALSE(told.contains("remark")) << "run.h5 has masses";
+  const std::string file = runs.out("a") + "/export-lammps-data/" + told["open"][0].get<std::string>();
+  const Snapshot last = read_snapshots(runs.out("a")).back();
+  std::istringstream in(read_text(file));
+  std::string line;
+  while (std::getline(in, line) && line != "Atoms # sphere") {
+  }
+  for (const SnapshotParticle& p : last.particles) {
+    std::int64_t id = 0;
+    std::int64_t type = 0;
+    double diameter = 0.0;
+    double density = 0.0;
+    Vec3 x;
+    in >> id >> type >> diameter >> density >> x[0] >> x[1] >> x[2];
+    EXPECT_EQ(id, p.id + 1);
+    EXPECT_GE(type, 1);
+    EXPECT_EQ(diameter, 2.0 * p.radius);
+    EXPECT_NEAR(density * std::numbers::pi / 6.0 * std::pow(diameter, 3.0), p.mass, 1e-12 * p.mass);
+    EXPECT_EQ(x, p.position);
+  }
+  in >> line;
+  EXPECT_EQ(line, "Velocities");
+}
+
+TEST(Export, LammpsReadsDataFiles) {
+  if (std::system("lmp -h >/dev/null 2>&1") != 0) GTEST_SKIP() << "no lmp (Debian: lammps)";
+  const KindRuns runs(kParticles);
+  ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("a"))), 0));
+  ASSERT_EQ(run_the_program("export " + quoted(runs.out("a")) + " --to lammps-data").status, 0);
+  const std::string data = runs.out("a") + "/export-lammps-data/particles_particles_000000.data";
+  const Snapshot last = read_snapshots(runs.out("a")).back();
+  std::string boundary;
+  for (const bool p : last.periodic) boundary += p ? " p" : " f";
+  write_text_atomic(runs.out("in.lmp"), "units si\natom_style sphere\nboundary" + boundary + "\nread_data " + data +
+                                            "\nvariable m equal mass(all)\nvariable v equal vcm(all,z)\n"
+                                            "print \"SEEN $(atoms) ${m} ${v}\"\n");
+  const std::string seen = runs.out("seen.txt");
+  ASSERT_EQ(std::system(("lmp -log none -in " + quoted(runs.out("in.lmp")) + " >" + quoted(seen) + " 2>&1").c_str()), 0)
+      << read_text(seen);
+  double mass = 0.0;
+  double momentum = 0.0;
+  for (const SnapshotParticle& p : last.particles) {
+    mass += p.mass;
+    momentum += p.mass * p.velocity[2];
+  }
+  const std::string text = read_text(seen);
+  const std::size_t at = text.find("\nSEEN ");
+  ASSERT_NE(at, std::string::npos) << text;
+  std::istringstream in(text.substr(at + 6));
+  std::size_t atoms = 0;
+  double mass_seen = 0.0;
+  double velocity_seen = 0.0;
+  in >> atoms >> mass_seen >> velocity_seen;
+  EXPECT_EQ(atoms, last.particles.size());
+  EXPECT_NEAR(mass_seen, mass, 1e-9 * mass);
+  EXPECT_NEAR(velocity_seen, momentum / mass, 1e-9 * std::abs(momentum / mass) + 1e-300);
 }
 
 TEST(Export, LeavesNothingOfAnEarlierExportAndEverythingElse) {

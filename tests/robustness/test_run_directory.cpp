@@ -99,6 +99,7 @@ TEST_F(RunDirectory, ExportsAndFiguresOfAnEarlierRunGoAndWhatAUserPutThereStays)
     for (const auto& entry : fs::directory_iterator(out(directory))) found.insert(entry.path().filename().string());
     return found;
   };
+  write_text_atomic(out("curves/mine.csv"), "hn [mm],Fn [N]\n1,2\n");
   const std::set<std::string> of_macro = names("figures");
   EXPECT_GT(of_macro.size(), 1U);
   expect(particles(), 0);
@@ -112,6 +113,10 @@ TEST_F(RunDirectory, ExportsAndFiguresOfAnEarlierRunGoAndWhatAUserPutThereStays)
   for (const auto& entry : fs::directory_iterator(other + "/figures"))
     expected.insert(entry.path().filename().string());
   EXPECT_EQ(names("figures"), expected);
+  std::set<std::string> tables{"mine.csv"};
+  for (const auto& entry : fs::directory_iterator(other + "/curves")) tables.insert(entry.path().filename().string());
+  EXPECT_TRUE(tables.contains("energy-over-time.csv"));
+  EXPECT_EQ(names("curves"), tables);
   EXPECT_EQ(read_text(out("export-csv/mine.txt")), "mine");
 }
 

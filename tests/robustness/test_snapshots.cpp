@@ -168,6 +168,7 @@ TEST(Snapshots, OfPowdersAndBoxes) {
   ASSERT_EQ(packs.size(), 2U);
   for (std::size_t k = 0; k < packs.size(); ++k) {
     EXPECT_EQ(packs[k].series, record[k].spec.name);
+    for (const SnapshotParticle& p : packs[k].particles) EXPECT_GT(p.mass, 0.0);
     // Stress of the walls, from the planes at the low and the high end of z.
     const Vec3 lengths = record[k].state.points.back().lengths;
     double push = 0.0;
@@ -194,7 +195,8 @@ TEST(Snapshots, ChangeNothing) {
       EXPECT_TRUE(std::filesystem::remove(runs.out("a") + file));
     }
   }
-  expect_same_runs(runs.out("a"), runs.out("b"), {"grading-curve.svg"});  // which is of kept states
+  expect_same_runs(runs.out("a"), runs.out("b"),
+                   {"grading-curve.svg", "grading-curve.csv"});  // which is of kept states
 }
 
 TEST(Snapshots, OfNoRunAreTrouble) {

@@ -1,7 +1,10 @@
 // Exported files, read back: what OVITO and ParaView ask of VTP, dumps as LAMMPS writes them, tables.
 #include <gtest/gtest.h>
 
+#include <cctype>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <sstream>
 
 #include "common/core/error.h"
@@ -168,6 +171,70 @@ TEST(ExportFiles, DumpsAreAsLammpsWritesThem) {
   EXPECT_TRUE(on_walls[0].starts_with("1 2 1 1.5 ")) << on_walls[0];
 }
 
+/// The lines of a section of a data file, without those that are empty.
+std::vector<std::vector<double>> section_of(const std::string& data, const std::string& name) {
+  std::istringstream lines(data);
+  std::vector<std::vector<double>> out;
+  bool inside = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty()) continue;
+    if (std::isalpha(static_cast<unsigned char>(line[0])) != 0) {
+      inside = line == name;
+      continue;
+    }
+    if (!inside) continue;
+    std::istringstream in(line);
+    out.emplace_back();
+    for (std::string word; in >> word;) out.back().push_back(std::stod(word));
+  }
+  return out;
+}
+
+TEST(ExportFiles, DataFilesAreAsLammpsReadsThem) {
+  Snapshot s = a_state();
+  for (SnapshotParticle& p : s.particles) p.mass = 2.5;
+  s.particles[1].role = ParticleRole::solid;
+  s.particles[2].material = 4;
+  s.particles[2].spin = {{0.0, 0.0, 7.0}};
+  const auto files = data_files(s, 0);
+  ASSERT_EQ(files.size(), 1U);
+  EXPECT_EQ(files[0].name, "scene_free-0_particles_000000.data");
+  const std::string& text = files[0].text;
+  EXPECT_TRUE(text.starts_with("scene/free-0: a -- label, units m, N, s\n\n3 atoms\n3 atom types\n")) << text;
+  for (const char* needed : {"# type 1: solid, material 0\n", "# type 2: inner, material 0\n",
+                             "# type 3: inner, material 4\n", "\n0 1 xlo xhi\n0 1 ylo yhi\n", "\n0.25 0 0 xy xz yz\n"})
+    EXPECT_NE(text.find(needed), std::string::npos) << needed << text;
+  const auto atoms = section_of(text, "Atoms # sphere");
+  const auto velocities = section_of(text, "Velocities");
+  ASSERT_EQ(atoms.size(), 3U);
+  ASSERT_EQ(velocities.size(), 3U);
+  const std::vector<double> types{2, 1, 3};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const SnapshotParticle& p = s.particles[k];
+    ASSERT_EQ(atoms[k].size(), 7U);
+    EXPECT_EQ(atoms[k][0], static_cast<double>(k + 1));
+    EXPECT_EQ(atoms[k][1], types[k]);
+    EXPECT_EQ(atoms[k][2], 2.0 * p.radius);  // to the last bit
+    EXPECT_NEAR(atoms[k][3] * std::numbers::pi / 6.0 * std::pow(atoms[k][2], 3.0), p.mass, 1e-14);
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(atoms[k][static_cast<std::size_t>(4 + c)], p.position[c]);
+    EXPECT_EQ(velocities[k],
+              (std::vector<double>{static_cast<double>(k + 1), 1.0 / 3.0, 0.0, -1e-300, 0.0, 0.0, p.spin[2]}));
+  }
+}
+
+TEST(ExportFiles, DataFilesSayWhatIsNotRecorded) {
+  Snapshot s = a_state();
+  s.has_velocity = false;
+  s.label = "two\nlines";
+  s.cell_edges[1] = {{0.0, 1.0, 0.0}};
+  const std::string text = data_files(s, 0)[0].text;
+  EXPECT_FALSE(has_masses(s));
+  EXPECT_TRUE(text.starts_with("scene/free-0: two lines, units m, N, s; masses not recorded, density 1\n\n")) << text;
+  EXPECT_EQ(section_of(text, "Atoms # sphere")[0][3], 1.0);
+  EXPECT_TRUE(section_of(text, "Velocities").empty());
+  EXPECT_EQ(text.find("xy xz yz"), std::string::npos);
+}
+
 std::vector<std::vector<std::string>> cells_of(const std::string& csv) {
   std::vector<std::vector<std::string>> out;
   std::istringstream lines(csv);
@@ -235,6 +302,7 @@ TEST(ExportFiles, IndicesSayUnitsAndNumberWhatGoesBack) {
 
 TEST(ExportFiles, UnknownFormsAreRefused) {
   EXPECT_EQ(export_format("lammps-dump"), ExportFormat::lammps_dump);
+  EXPECT_EQ(export_format("lammps-data"), ExportFormat::lammps_data);
   EXPECT_THROW((void)export_format(""), InputError);
   try {
     (void)export_format("vpt");

@@ -331,6 +331,7 @@ GrainBoxResult small_result() {
   r.spec.fit = {{1e6, 1e7}, {1e7, 3e7}};
   r.spec.material.youngs_modulus = 5e9;
   r.spec.material.poisson_ratio = 0.33;
+  r.spec.material.density = 2650.0;
   r.spec.material.radius_max = 2e-3;
   r.spec.generation.lower_pressures = {4e6, 10e6};
   r.state.pressures_met = 3;
@@ -350,6 +351,7 @@ TEST(GrainBoxFiles, GiveBackWhatWasWritten) {
   EXPECT_EQ(b.spec.fit.high[1], 3e7);
   EXPECT_EQ(b.spec.material.youngs_modulus, 5e9);
   EXPECT_EQ(b.spec.material.poisson_ratio, 0.33);
+  EXPECT_EQ(b.spec.material.density, 2650.0);
   EXPECT_EQ(b.spec.material.radius_max, 2e-3);
   ASSERT_EQ(b.state.points.size(), 30U);
   EXPECT_EQ(b.state.points[5].strain, a.state.points[5].strain);

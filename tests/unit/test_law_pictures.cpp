@@ -11,6 +11,7 @@
 #include "common/contact/laws.h"
 #include "common/contact/make_laws.h"
 #include "common/data/multi_contact_law.h"
+#include "pipelines/report/figure_table.h"
 #include "pipelines/report/svg_plot.h"
 
 namespace softgrain {
@@ -63,7 +64,7 @@ void expect_picture(const report::PlotOptions& options, const std::vector<Series
   if (std::getenv("SOFTGRAIN_WRITE_PICTURES") != nullptr) {
     Plot plot(options);
     for (const Series& s : curves) plot.add(s);
-    std::ofstream(path) << plot.svg() << "\n<!-- data\n" << data << "-->\n";
+    std::ofstream(path) << report::without_table(plot.svg()).svg << "\n<!-- data\n" << data << "-->\n";
   }
   const std::string file = content(path);
   const std::size_t from = file.find("<!-- data\n") + 10;

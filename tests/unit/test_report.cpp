@@ -8,6 +8,7 @@
 #include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
+#include "common/io/csv_file.h"
 #include "common/io/text_file.h"
 #include "pipelines/kinds/soft_particle/scene.h"
 #include "pipelines/report/law_curves.h"
@@ -89,6 +90,50 @@ TEST_F(Report, CurvesCarryTheirValuesForTheScript) {
   EXPECT_TRUE(has_text(html, "Law minus resolved twin, axial"));
   EXPECT_TRUE(has_text(html, "Error against cost"));
   EXPECT_TRUE(has_text(html, "default-src 'none'"));
+}
+
+TEST_F(Report, EveryCurveHasATableBesideThePageAndALinkToIt) {
+  save(synthetic::measurements(), path("measurements.h5"));
+  save_card(synthetic::card(), path("law.toml"));
+  save_macro(synthetic::macro(), path("macro.h5"));
+  const std::string html = written();
+  EXPECT_FALSE(has_text(html, "<metadata")) << "tables are beside the page, not in it";
+  std::size_t tables = 0;
+  for (const auto& entry : fs::directory_iterator(directory_ / "curves")) {
+    const std::string name = entry.path().stem();
+    EXPECT_TRUE(has_text(html, "href=\"curves/" + name + ".csv\" download=\"" + name + ".csv\"")) << name;
+    EXPECT_TRUE(fs::exists(path("figures/" + name + ".svg"))) << name;
+    const CsvFile table = CsvFile::read(entry.path());
+    ASSERT_GE(table.columns().size(), 4U) << name;
+    EXPECT_EQ(table.columns()[1].title, "curve") << name;
+    EXPECT_FALSE(table.rows().empty()) << name;
+    ++tables;
+  }
+  EXPECT_GE(tables, 8U);
+  const std::string forces = read_text(path("curves/fn-soft-particle-on-a-solid-plane.csv"));
+  EXPECT_TRUE(has_text(forces, ",curve,normal overlap \u0394 = hn/Rs,normal force Fn [N],error bar [N],band low [N]"));
+  EXPECT_TRUE(has_text(forces, "\none packing (12),packing 4 (seed 104),0.05"));
+  EXPECT_FALSE(has_text(read_text(path("figures/fn-soft-particle-on-a-solid-plane.svg")), "<metadata"));
+}
+
+TEST_F(Report, TablesOfAnEarlierReportGoAndThoseOfTheReaderStay) {
+  save(synthetic::measurements(), path("measurements.h5"));
+  (void)written();
+  const std::string one = "curves/fn-soft-particle-on-a-solid-plane.csv";
+  const std::string kept = read_text(path(one));
+  write_text_atomic(path("curves/fn-of-mine.csv"), kept);
+  write_text_atomic(path("curves/data.csv"), "hn [mm],Fn [N]\n1,2\n");
+  fs::remove(path("measurements.h5"));
+  save_macro(synthetic::macro(), path("macro.h5"));
+  fs::remove_all(path("figures"));
+  (void)written();
+  EXPECT_FALSE(fs::exists(path(one)));
+  EXPECT_EQ(read_text(path("curves/fn-of-mine.csv")), kept);
+  EXPECT_TRUE(fs::exists(path("curves/data.csv")));
+  fs::remove(path("curves/fn-of-mine.csv"));
+  fs::remove(path("curves/data.csv"));
+  report::remove_figures(directory_.string());
+  EXPECT_FALSE(fs::exists(path("curves")));
 }
 
 TEST_F(Report, TheHeadSaysWhatCameOutAndLinksToTheSections) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "common/core/error.h"
@@ -101,7 +102,10 @@ TEST(Snapshot, ComesBackFromAFile) {
   shot.particles[1].role = ParticleRole::inner;
   shot.particles[1].body = 12;
   shot.walls[0].body = 3;
+  shot.particles[2].spin = {{0.5, -0.25, 1.0 / 3.0}};
+  for (const SnapshotParticle& p : shot.particles) EXPECT_GT(p.mass, 0.0);
   Snapshot bare = shot;
+  bare.particles[0].mass = Snapshot::kNone;
   bare.has_contacts = bare.has_velocity = false;
   bare.contacts.clear();
   save_snapshots({shot, bare}, directory.file("states.h5"), build_provenance());
@@ -121,6 +125,11 @@ TEST(Snapshot, ComesBackFromAFile) {
   EXPECT_EQ(b.particles[1].role, ParticleRole::inner);
   EXPECT_EQ(b.particles[1].body, 12);
   EXPECT_EQ(b.particles[2].position, shot.particles[2].position);
+  EXPECT_EQ(b.particles[2].spin, shot.particles[2].spin);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(b.particles[k].mass, shot.particles[k].mass);
+    EXPECT_TRUE(std::isnan(back[1].particles[k].mass)) << "kept where all are known";
+  }
   ASSERT_EQ(b.walls.size(), 1U);
   EXPECT_EQ(b.walls[0].normal, shot.walls[0].normal);
   EXPECT_EQ(b.walls[0].body, 3);

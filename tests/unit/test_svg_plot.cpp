@@ -6,6 +6,7 @@
 #include <regex>
 #include <stdexcept>
 
+#include "pipelines/report/figure_table.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/svg_plot.h"
@@ -120,6 +121,45 @@ TEST(Plot, HoldsAxesAndValuesForTheScript) {
   EXPECT_NE(svg.find(">fitted</text>"), std::string::npos);
 }
 
+/// A plot with a curve, its band and points with errors.
+Plot plot_of_all_columns() {
+  PlotOptions all = options();
+  all.title = "F(\u0394), \"soft\" & <solid>";
+  all.x.label = "\u0394";
+  Plot plot(all);
+  plot.add({.label = "", .hover = "packing 7", .x = {0.1, 2.0 / 3.0}, .y = {1e-300, NAN}, .group = "one packing"});
+  plot.add({.label = "mean", .hover = "", .x = {0.5}, .y = {-4.0}, .y_error = {0.25}});
+  plot.add({.label = "band", .hover = "", .x = {0.0, 1.0}, .y = {}, .band_low = {0.0, 1.0}, .band_high = {1.0, 2.0}});
+  return plot;
+}
+
+TEST(Plot, CarriesItsValuesAsATableWithEveryDigit) {
+  const std::string svg = plot_of_all_columns().svg();
+  EXPECT_EQ(unbalanced_tags(svg), "");
+  const DrawingAndTable parts = without_table(svg);
+  EXPECT_EQ(parts.table,
+            "\"F(\u0394), \"\"soft\"\" & <solid>\",curve,\u0394,y [N],error bar [N],band low [N],band high [N]\n"
+            "one packing,packing 7,0.1,1e-300,,,\n"
+            "one packing,packing 7,0.6666666666666666,,,,\n"
+            "mean,mean,0.5,-4,0.25,,\n"
+            "band,band,0,,,0,1\n"
+            "band,band,1,,,1,2\n");
+  EXPECT_EQ(title_of_table(parts.table), "F(\u0394), \"soft\" & <solid>");
+  EXPECT_EQ(unbalanced_tags(parts.svg), "");
+  EXPECT_EQ(parts.svg.find("one packing,"), std::string::npos);
+  EXPECT_EQ(without_table(parts.svg).table, "");
+  EXPECT_EQ(without_table(parts.svg).svg, parts.svg);
+}
+
+TEST(Plot, TablesHaveTheColumnsThatTheirCurvesHave) {
+  Plot plot(options());
+  plot.add({.label = "a", .hover = "", .x = {0, 1}, .y = {2, 3}});
+  const std::string table = without_table(plot.svg()).table;
+  EXPECT_EQ(table, "Title,curve,x [m],y [N]\na,a,0,2\na,a,1,3\n");
+  EXPECT_EQ(title_of_table(table), "Title");
+  EXPECT_EQ(title_of_table("hn [mm],Fn [N]\n1,curve,2\n"), std::nullopt);
+}
+
 TEST(Plot, NeverWritesNumbersThatAreNotFinite) {
   Plot plot(options(Scale::logarithmic));
   plot.add({.label = "gap",
@@ -138,7 +178,7 @@ TEST(Plot, FarAwayDataStayBoundedAndDoNotStretchTheAxes) {
   Plot plot(options());
   plot.add({.label = "data", .hover = "", .x = {0, 1}, .y = {0, 1}});
   plot.add({.label = "reference", .hover = "", .x = {0, 1}, .y = {0, 1e300}, .sets_range = false});
-  const std::string svg = plot.svg();
+  const std::string svg = without_table(plot.svg()).svg;
   EXPECT_EQ(svg.find("e+"), std::string::npos);
   EXPECT_NE(svg.find(">0.8<"), std::string::npos);
 }
@@ -161,6 +201,11 @@ TEST(Markup, TheCheckFindsWhatIsWrong) {
 }
 
 TEST(Html, EscapesAndDropsControlCharacters) { EXPECT_EQ(escape("<&>\"'\x01"), "&lt;&amp;&gt;&quot;&#39;"); }
+
+TEST(Html, EscapedTextComesBack) {
+  const std::string text = "a < b && \"c\" > 'd' &amp; &lt;";
+  EXPECT_EQ(unescape(escape(text)), text);
+}
 
 TEST(Html, ASectionWithoutBodyLeavesNoTrace) {
   EXPECT_EQ(section("id", "Heading", "what to see", ""), "");

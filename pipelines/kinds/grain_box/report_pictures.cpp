@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "common/core/particles.h"
 #include "microsim/grain_box/box_measure.h"
 #include "microsim/grain_box/record.h"
 #include "pipelines/report/html.h"
@@ -200,11 +201,12 @@ Vec3 contact_point(const GrainPack& pack, const PackContact& c) {
   return pack.position[i] - c.normal * arm;
 }
 
-void add_bodies(const GrainPack& pack, Snapshot& s) {
+void add_bodies(const GrainPack& pack, double density, Snapshot& s) {
   for (std::size_t k = 0; k < pack.radius.size(); ++k) {
     SnapshotParticle p;
     p.position = pack.position[k];
     p.radius = pack.radius[k];
+    p.mass = density * kSphereVolume * p.radius * p.radius * p.radius;
     p.id = p.body = static_cast<std::int64_t>(k);
     s.particles.push_back(p);
   }
@@ -221,7 +223,7 @@ Snapshot picture_of(const GrainBoxResult& result) {
   Snapshot s;
   s.kind = SnapshotKind::grain_box;
   s.series = result.spec.name;
-  add_bodies(pack, s);
+  add_bodies(pack, result.spec.material.density, s);
   s.has_contacts = true;
   for (const PackContact& c : pack.contacts) {
     SnapshotContact out;

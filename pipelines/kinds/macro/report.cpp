@@ -164,6 +164,17 @@ std::string stress_figure(const std::vector<MacroCurve>& curves, MacroTest test,
   return figure(stress.svg() + (difference.empty() ? "" : difference.svg()), caption);
 }
 
+std::string coordination_figure(const std::vector<MacroCurve>& curves, MacroTest test) {
+  Plot plot({.id = "macro-" + to_string(test) + "-coordination",
+             .title = "Coordination number, " + to_string(test),
+             .x = strain_axis(curves, test),
+             .y = {.label = "neighbours per body"},
+             .height = kStressHeight});
+  add_curves(plot, curves, &MacroCurve::coordination_bodies, 1.0);
+  return plot.empty() ? ""
+                      : figure(plot.svg(), "Bodies and walls that a body touches, a soft particle being one body.");
+}
+
 std::string mean_text(const MeanError& m, double unit) { return format_with_error(m.mean * unit, m.error * unit); }
 
 std::string comparison_table(const Comparison& c) {
@@ -230,7 +241,7 @@ std::string macro_section(const RunData& run) {
     const auto twins = curves_of(curves, "shelled");
     if (tests.size() > 1) body += "<h3>" + escape(to_string(test)) + "</h3>\n";
     body += figure_row({stress_figure(curves, test, true), stress_figure(curves, test, false)});
-    body += stage_parts(curves, test);
+    body += stage_parts(curves, test) + figure_row({coordination_figure(curves, test)});
     body += comparison_part(laws, twins) + bodies_table(curves) + law_paragraph(curves);
   }
   return section(

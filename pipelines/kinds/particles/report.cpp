@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "common/core/error.h"
 #include "common/core/text.h"
@@ -14,6 +15,7 @@
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/run_data.h"
+#include "pipelines/report/svg_plot.h"
 #include "pipelines/run/findings.h"
 
 namespace softgrain::report {
@@ -49,7 +51,52 @@ std::vector<std::string> pair_row(const PairSummary& s) {
           format_number(s.max_force, 6), format_number(s.max_overlap, 6)};
 }
 
+/// Energies of the recorded frames [J] over time [s].
+struct FrameEnergies {
+  std::vector<double> time;
+  std::vector<double> translational;
+  std::vector<double> rotational;
+  std::vector<double> gravitational;
+};
+
+FrameEnergies load_energies(const std::string& path) {
+  const h5::Group frames = h5::open_file(path).open("trajectory");
+  FrameEnergies e{frames.doubles("time"), frames.doubles("translational_energy"), frames.doubles("rotational_energy"),
+                  frames.doubles("gravitational_energy")};
+  for (const auto* values : {&e.translational, &e.rotational, &e.gravitational})
+    if (values->size() != e.time.size()) throw IoError(path + ": as many energies as times are needed");
+  return e;
+}
+
+std::string energy_figure(const FrameEnergies& e) {
+  double largest = 0.0;
+  for (const auto* values : {&e.translational, &e.rotational, &e.gravitational})
+    for (const double v : *values)
+      if (std::isfinite(v)) largest = std::max(largest, std::abs(v));
+  if (e.time.size() < 2 || largest == 0.0) return "";
+  const SiPrefix prefix = si_prefix(largest);
+  Plot plot({.id = "particles-energy",
+             .title = "Energy over time",
+             .x = {.label = "time [s]"},
+             .y = {.label = "energy [" + prefix.symbol + "J]"}});
+  std::size_t color = 0;
+  for (const auto& [label, values] : {std::pair{"translational", &e.translational},
+                                      {"rotational", &e.rotational},
+                                      {"gravitational", &e.gravitational}}) {
+    Series s{.label = label, .hover = "", .x = e.time, .y = *values, .style = {.color = palette::cycle(color++)}};
+    for (double& v : s.y) v /= prefix.factor;
+    if (std::ranges::any_of(s.y, [](double v) { return v != 0.0; })) plot.add(std::move(s));
+  }
+  return figure(plot.svg(), "Of all particles, without the energy of springs; gravitational: zero at the origin.");
+}
+
 }  // namespace
+
+std::string energies_section(const RunData& run) {
+  const FrameEnergies* energies = run.file<FrameEnergies>("run.h5", load_energies);
+  const std::string drawn = energies == nullptr ? "" : energy_figure(*energies);
+  return drawn.empty() ? "" : section("energy", "Energies", "Energies of the recorded frames.", figure_row({drawn}));
+}
 
 std::string particles_section(const RunData& run) {
   const auto summary = run.summary_as<ParticlesSummary>();
@@ -90,13 +137,19 @@ std::vector<SnapshotParticle> read_particles(const h5::Group& bodies) {
   const std::vector<double> radius = bodies.doubles("radius");
   const std::vector<std::int64_t> material = bodies.integers("material");
   require(material.size() == radius.size(), "material");
-  require(std::all_of(radius.begin(), radius.end(), [](double r) { return std::isfinite(r) && r > 0.0; }), "radius");
+  const auto positive = [](double x) { return std::isfinite(x) && x > 0.0; };
+  require(std::ranges::all_of(radius, positive), "radius");
+  std::vector<double> mass(radius.size(), kNaN);
+  if (bodies.has("mass")) mass = bodies.doubles("mass");
+  require(mass.size() == radius.size(), "mass");
+  require(!bodies.has("mass") || std::ranges::all_of(mass, positive), "mass");
   std::vector<std::int64_t> soft;
   if (bodies.has("material_is_soft")) soft = bodies.integers("material_is_soft");
   std::vector<SnapshotParticle> particles(radius.size());
   for (std::size_t k = 0; k < particles.size(); ++k) {
     SnapshotParticle& p = particles[k];
     p.radius = radius[k];
+    p.mass = mass[k];
     p.material = material[k];
     p.id = p.body = static_cast<std::int64_t>(k);
     const auto m = static_cast<std::size_t>(material[k]);
@@ -151,6 +204,7 @@ void require_fits(const Trajectory& t, const Bodies& bodies) {
   const std::size_t frames = t.time.size();
   require(t.position.size() == 3 * frames * bodies.particles.size(), "position");
   require(t.velocity.size() == t.position.size(), "velocity");
+  require(t.spin.size() == t.position.size(), "spin");
   require(t.wall_position.size() == 3 * frames * bodies.walls.size(), "wall_position");
   require(t.cell_edges.size() == 9 * frames && all_finite(t.cell_edges), "cell_edges");
   require(all_finite(t.wall_position), "wall_position");
@@ -171,6 +225,7 @@ Snapshot frame_of(const Trajectory& t, const Bodies& bodies, std::size_t frame) 
   for (std::size_t k = 0; k < s.particles.size(); ++k) {
     s.particles[k].position = vector_at(t.position, frame * s.particles.size() + k);
     s.particles[k].velocity = vector_at(t.velocity, frame * s.particles.size() + k);
+    s.particles[k].spin = vector_at(t.spin, frame * s.particles.size() + k);
   }
   for (std::size_t k = 0; k < s.walls.size(); ++k)
     s.walls[k].point = vector_at(t.wall_position, frame * s.walls.size() + k);
@@ -182,7 +237,7 @@ Snapshot frame_of(const Trajectory& t, const Bodies& bodies, std::size_t frame) 
 
 bool is_valid(const Snapshot& s) {
   return std::all_of(s.particles.begin(), s.particles.end(), [](const SnapshotParticle& p) {
-    return std::isfinite(norm2(p.position)) && std::isfinite(norm2(p.velocity));
+    return std::isfinite(norm2(p.position)) && std::isfinite(norm2(p.velocity)) && std::isfinite(norm2(p.spin));
   });
 }
 
@@ -264,7 +319,7 @@ std::vector<RunValue> values_of(const report::RunData& run) {
 NextSteps next_of(const report::RunData& run) {
   return {
       "Every recorded state for ParaView, OVITO or a spreadsheet: `softgrain export " + run.directory +
-          " --to vtp` (or `lammps-dump`, `csv`).",
+          " --to vtp` (or `lammps-dump`, `lammps-data`, `csv`).",
       "Whether the result depends on the time step: `softgrain sweep SCENE.toml --over time.step=A,B,C`, with A the "
       "step of this run, B and C a half and a quarter of it."};
 }
@@ -277,7 +332,7 @@ KindResults particles_results() {
                      .check = check_particles_file,
                      .visit = visit_particles},
                     {.names = "run(_contacts)?\\.xdmf"}},
-          .sections = {{Part::states, report::particles_section}},
+          .sections = {{Part::states, report::energies_section}, {Part::states, report::particles_section}},
           .lines = lines_of,
           .values = values_of,
           .next = next_of};

@@ -34,6 +34,7 @@ KindResults particles_results();
 void visit_particles(const std::string& path, SnapshotChoice choice, const VisitSnapshot& visit);
 
 namespace report {
+std::string energies_section(const RunData& run);   ///< energies of the recorded frames over time
 std::string particles_section(const RunData& run);  ///< final states and contacts
 }
 

@@ -1,5 +1,5 @@
-// Plots of a report: values under the pointer, and legend entries that hide and show their curves. The drawings are
-// complete without it; what it needs is in their attributes data-* (svg_draw.cpp). Print has all tables unfolded.
+// Plots of a report: values under the pointer, legend entries that hide and show their curves, and tables of the values
+// to save. The drawings are complete without it; what it needs is in their attributes data-* (svg_draw.cpp). Print has all tables unfolded.
 "use strict";
 (() => {
   const reach = 22; // how far from a curve the pointer may be [px of the view box]
@@ -86,6 +86,27 @@
     return -1;
   }
 
+  /// The values of a plot as CSV: the table of figure_table.cpp, with the digits that the page holds.
+  function tableOf(svg) {
+    const groups = [...svg.querySelectorAll(".series")].map((g) => g.dataset);
+    const unit = (svg.dataset.yLabel.match(/\[[^\]]*\]/) || []).map((u) => " " + u).join("");
+    const more = [["error", "error bar"], ["low", "band low"], ["high", "band high"]].filter(([key]) => groups.some((d) => d[key]));
+    const rows = [[svg.getAttribute("aria-label"), "curve", svg.dataset.xLabel, svg.dataset.yLabel, ...more.map(([, name]) => name + unit)]];
+    for (const d of groups) {
+      if (!d.x) continue;
+      const columns = [d.x, d.y, ...more.map(([key]) => d[key])].map((values) => (values || "").split(","));
+      columns[0].forEach((_, i) => rows.push([d.entry, d.name, ...columns.map((c) => c[i] || "")]));
+    }
+    const quoted = (cell) => (/[",\n]/.test(cell) ? '"' + cell.replaceAll('"', '""') + '"' : cell);
+    return rows.map((row) => row.map(quoted).join(",") + "\n").join("");
+  }
+
+  /// Fills the link below a plot when it is used, so that it needs no file beside the page.
+  function fillLink(link, svg) {
+    if (link.href.startsWith("blob:")) return;
+    link.href = URL.createObjectURL(new Blob(["\ufeff" + tableOf(svg)], { type: "text/csv" }));
+  }
+
   const tip = document.createElement("div");
   tip.className = "tip";
   tip.hidden = true;
@@ -128,6 +149,8 @@
       svg.addEventListener("pointerdown", (e) => this.look(e));
       svg.addEventListener("pointerleave", () => this.leave());
       for (const entry of svg.querySelectorAll(".entry")) this.makeButton(entry);
+      const link = svg.nextElementSibling;
+      if (link && link.matches("a.csv")) link.addEventListener("click", () => fillLink(link, svg));
     }
 
     at(event) {

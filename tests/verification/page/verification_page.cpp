@@ -7,6 +7,7 @@
 
 #include "common/core/text.h"
 #include "common/io/provenance.h"
+#include "pipelines/report/figure_table.h"
 #include "tests/verification/page/page.h"
 
 namespace {
@@ -46,7 +47,7 @@ void write_page(const std::filesystem::path& directory) {
   std::string page = kHead + (" Version " + build_provenance().version + ".\n");
   for (const PageSection& s : sections) {
     page += text_of(s);
-    for (const PageFigure& f : s.figures) write(directory / (f.file + ".svg"), f.svg + "\n");
+    for (const PageFigure& f : s.figures) write(directory / (f.file + ".svg"), report::without_table(f.svg).svg + "\n");
   }
   write(directory / "cases.md", page);
   write(directory / "cases.csv", table_of(sections));
