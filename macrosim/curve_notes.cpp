@@ -24,29 +24,40 @@ std::string off_text(const MacroCurve& c, const MacroStage& stage, const Vec3& a
   return text;
 }
 
-/// Axes that a stage holds at the stress with which it began although there was none.
-void note_free_sides(MacroCurve& c, const MacroStage& stage, std::int64_t number, const Vec3& began) {
-  std::string axes;
+/// Axes that a stage holds at the stress with which it began although there was none, or hardly more than `met` [Pa],
+/// to which stresses of the stage are met at best.
+void note_free_sides(MacroCurve& c, const MacroStage& stage, std::int64_t number, const Vec3& began, double met) {
+  constexpr double kHardlyMore = 10.0;
+  std::string none;
+  std::string little;
   for (int a = 0; a < 3; ++a) {
     const AxisDrive& drive = stage.axis[static_cast<std::size_t>(a)];
-    if (drive.by_stress && drive.as_at == number && began[a] == 0.0) append_part(axes, std::string(1, "xyz"[a]), ", ");
+    if (!drive.by_stress || drive.as_at != number || std::abs(began[a]) >= kHardlyMore * met) continue;
+    if (began[a] == 0.0)
+      append_part(none, std::string(1, "xyz"[a]), ", ");
+    else
+      append_part(little, fmt::format("{:.3g} Pa along {}", began[a], "xyz"[a]), ", ");
   }
-  if (axes.empty()) return;
-  append_part(c.note, fmt::format("stage '{}' began without stress along {}, which it holds: its sides are free",
-                                  stage.record.name, axes));
+  if (!none.empty())
+    append_part(c.note, fmt::format("stage '{}' began without stress along {}, which it holds: its sides are free",
+                                    stage.record.name, none));
+  if (!little.empty())
+    append_part(c.note, fmt::format("stage '{}' began with {}, which it holds to {:.3g} Pa at best: its sides are "
+                                    "nearly free",
+                                    stage.record.name, little, met));
 }
 
-/// A stage that loads under the name of an unloading, or the other way round.
-void note_wrong_way(MacroCurve& c, const MacroStage& stage, const Vec3& began) {
+/// A stage that loads under the name of an unloading, or the other way round; `sign`: see way_sign().
+void note_wrong_way(MacroCurve& c, const MacroStage& stage, double sign, const Vec3& began) {
   const std::optional<double> target = stage.target_stress();
   const StageKind kind = stage.record.kind;
   if (!target || (kind != StageKind::unload && kind != StageKind::reload)) return;
   const double from = stage.goes_to_mean() ? (began[0] + began[1] + began[2]) / 3.0 : began[2];
-  if (kind == StageKind::unload ? *target <= from : *target >= from) return;
+  if ((kind == StageKind::unload ? -sign : sign) * (*target - from) >= 0.0) return;
   c.usable = false;
   append_part(c.note, fmt::format("stage '{}' goes from {:.4g} Pa to {:.4g} Pa: it {}, and its modulus is not that of "
                                   "what its kind says",
-                                  stage.record.name, from, *target, *target > from ? "loads" : "unloads"));
+                                  stage.record.name, from, *target, kind == StageKind::unload ? "loads" : "unloads"));
 }
 
 }  // namespace
@@ -84,14 +95,15 @@ void note_unrest(MacroCurve& c, const IncrementRest& worst, const MacroStage& st
       one ? "" : fmt::format(", increment {} of the {} before it", worst.number, stage.increments_per_step));
 }
 
-void note_stages(MacroCurve& c, const std::vector<MacroStage>& stages) {
+void note_stages(MacroCurve& c, const MacroSpec& spec) {
+  const std::vector<MacroStage> stages = stages_of(spec);
   for (std::size_t k = 0; k < stages.size(); ++k) {
     const auto number = static_cast<std::int64_t>(k);
     const auto first = static_cast<std::size_t>(first_point(stages, number));
     if (first + 1 >= c.strain.size()) return;
     const Vec3 began{{c.stress_x[first], c.stress_y[first], c.stress_axial[first]}};
-    note_free_sides(c, stages[k], number, began);
-    note_wrong_way(c, stages[k], began);
+    note_free_sides(c, stages[k], number, began, stress_tolerance(stages[k]) * least_stress(spec));
+    note_wrong_way(c, stages[k], way_sign(stages, number), began);
   }
 }
 

@@ -40,7 +40,7 @@ void note_out_of_reach(MacroCurve& curve, const MacroStage& stage, const Vec3& a
 /// Notes at the end of a test which stages are not what their names say. Stages that hold axes at the stress with which
 /// they began, although it was zero, have free sides: another test than in a sample under stress. Stages that unload to
 /// a higher stress, or reload to a lower one, make the curve not usable.
-void note_stages(MacroCurve& curve, const std::vector<MacroStage>& stages);
+void note_stages(MacroCurve& curve, const MacroSpec& spec);
 
 /// "'unload', 'unload 2'": names of the stages of a test that count; a long list is cut.
 std::string stage_names(const MacroSpec& spec, const std::function<bool(const MacroStage&)>& counts);

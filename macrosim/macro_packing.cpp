@@ -101,6 +101,18 @@ std::int64_t MacroPacking::soft_count() const {
   return std::count_if(bodies.begin(), bodies.end(), [](const MacroBody& b) { return b.soft; });
 }
 
+std::vector<BodySpring> springs_of_test(const MacroSpec& spec, const MacroPacking& packing) {
+  const auto bodies = static_cast<std::int32_t>(packing.bodies.size());
+  const auto solid = [&](std::int32_t b) { return !packing.bodies[static_cast<std::size_t>(b)].soft; };
+  std::vector<BodySpring> out;
+  for (const BodySpring& s : packing.springs) {
+    const bool wall = s.j >= bodies;
+    const double friction = wall ? spec.wall_friction : spec.friction;
+    if (friction > 0.0 && solid(s.i) && (wall || solid(s.j))) out.push_back(s);
+  }
+  return out;
+}
+
 MacroPacking make_macro_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample,
                                 const PreparationWatch& watch) {
   return pack_bodies(spec, drawn_bodies(spec, seed, sample), seed, sample, watch);
@@ -117,6 +129,8 @@ MacroPacking pack_bodies(const MacroSpec& spec, std::vector<MacroBody> bodies, s
 }
 
 namespace {
+
+constexpr std::int64_t kWalls = 6;
 
 void write_springs(const h5::Group& group, const std::vector<BodySpring>& springs) {
   if (springs.empty()) return;
@@ -137,7 +151,7 @@ void read_springs(const h5::Group& group, MacroPacking& packing) {
   const auto bodies = static_cast<std::int64_t>(packing.bodies.size());
   if (2 * values.size() != 3 * pairs.size()) throw IoError("macro packing: springs of wrong length");
   for (std::size_t k = 0; 2 * k < pairs.size(); ++k) {
-    if (pairs[2 * k] < 0 || pairs[2 * k] >= bodies || pairs[2 * k + 1] < 0 || pairs[2 * k + 1] >= bodies)
+    if (pairs[2 * k] < 0 || pairs[2 * k] >= bodies || pairs[2 * k + 1] < 0 || pairs[2 * k + 1] >= bodies + kWalls)
       throw IoError("macro packing: a spring of bodies that are not there");
     packing.springs.push_back({static_cast<std::int32_t>(pairs[2 * k]),
                                static_cast<std::int32_t>(pairs[2 * k + 1]),

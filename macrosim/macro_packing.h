@@ -20,10 +20,10 @@ struct MacroBody {
   bool soft = false;
 };
 
-/// The tangential spring of two bodies in touch, as laws keep it.
+/// The tangential spring of two bodies in touch, or of a body and a wall, as laws keep it.
 struct BodySpring {
   std::int32_t i = 0;
-  std::int32_t j = 0;
+  std::int32_t j = 0;  ///< body, or bodies + number of the wall in the order of the box
   Vec3 spring{};
 };
 
@@ -51,6 +51,10 @@ inline std::string sizes_text(const MacroSpec& spec) {
   return (spec.solid_sizes ? spec.solid_sizes->text() : "") +
          (spec.soft_sizes ? "soft: " + spec.soft_sizes->text() : "") + spec.packing_text;
 }
+
+/// The springs with which a test begins: between solid grains, and of solid grains with walls, where the test has
+/// friction there. What soft particles bore is that of hard bodies, and forgotten.
+std::vector<BodySpring> springs_of_test(const MacroSpec& spec, const MacroPacking& packing);
 
 /// Told the share of a preparation that is done.
 using PreparationWatch = std::function<void(double share)>;

@@ -71,29 +71,31 @@ void close_box(MacroSystem& out, const MacroSpec& spec, const MacroPacking& pack
   for (const MacroBody& b : packing.bodies) out.largest_radius = std::max(out.largest_radius, b.r);
 }
 
-/// Springs between solid grains that a preparation with friction left, by the slots of their grains in a system.
-std::vector<BodySpring> solid_springs(const MacroSystem& macro, const MacroPacking& packing) {
-  std::vector<Slot> slot(packing.bodies.size(), -1);
+/// springs_of_test() by the slots of their grains and walls in a system. Slots of solid grains lie in the order of
+/// their bodies in law runs and in twins, walls after all.
+std::vector<BodySpring> springs_by_slot(const MacroSpec& spec, const MacroPacking& packing, const MacroSystem& macro) {
+  std::vector<Slot> slot(packing.bodies.size() + macro.box.plane.size(), -1);
   for (std::size_t u = 0; u < macro.body.size(); ++u)
-    if (const std::int32_t b = macro.body[u]; b < macro.bodies && !packing.bodies[at(b)].soft)
+    if (const std::int32_t b = macro.body[u]; b >= macro.bodies || !packing.bodies[at(b)].soft)
       slot[at(b)] = static_cast<Slot>(u);
-  std::vector<BodySpring> out;
-  for (const BodySpring& b : packing.springs)
-    if (slot[at(b.i)] >= 0 && slot[at(b.j)] >= 0) out.push_back({slot[at(b.i)], slot[at(b.j)], b.spring});
+  std::vector<BodySpring> out = springs_of_test(spec, packing);
+  for (BodySpring& s : out) {
+    s.i = slot[at(s.i)];
+    s.j = slot[at(s.j)];
+  }
   return out;
 }
 
 /// Solid grains go on bearing what they bore along their contacts when the preparation ended, in a run by laws and in
-/// its twin; what soft particles bore is that of hard bodies, and forgotten. Slots of solid grains lie in the order of
-/// their bodies in both.
+/// its twin.
 void load_springs(const MacroSpec& spec, const MacroPacking& packing, MacroSystem& macro) {
-  if (packing.springs.empty() || !(spec.friction > 0.0)) return;
+  const std::vector<BodySpring> springs = springs_by_slot(spec, packing, macro);
+  if (springs.empty()) return;
   System3& s = macro.system;
-  const std::vector<BodySpring> springs = solid_springs(macro, packing);
   rebuild_neighbours(s);
   auto& list = s.contacts;
   for (const ContactSection& section : list.sections) {
-    if (section.geometry != Geometry::sphere_sphere) continue;
+    if (section.geometry == Geometry::sphere_shell) continue;
     auto c = at(section.begin);
     for (const BodySpring& b : springs) {
       const auto before = [&](std::size_t k) { return list.i[k] != b.i ? list.i[k] < b.i : list.j[k] < b.j; };

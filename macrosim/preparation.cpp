@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "common/core/error.h"
 #include "common/core/particles.h"
@@ -79,10 +80,12 @@ MacroPacking place_loosely(std::vector<MacroBody> bodies, std::uint64_t seed, st
   for (const MacroBody& b : bodies) volume += kSphereVolume * cube(b.r);
   if (boundary == Boundary::periodic) require_room_for_images(bodies);
   RandomStream random(seed, kMacroPositions, sample);
-  for (; fraction > 0.05; fraction *= 0.8) {
+  const double least = std::min(0.05, fraction / 6.0);
+  do {
     const double edge = std::cbrt(volume / fraction);
     if (place(bodies, edge, boundary, random)) return {{}, {{edge, edge, edge}}, std::move(bodies)};
-  }
+    fraction *= 0.8;
+  } while (fraction > least);
   throw UnusableResult("macro: could not place all bodies without overlap");
 }
 
@@ -136,6 +139,10 @@ DampedOptions pressing_options(const MacroSpec& spec, bool last, double load, do
   return options;
 }
 
+double preparation_wall_friction(const MacroSpec& spec) {
+  return spec.protocol.friction > 0.0 && spec.boundary == Boundary::walls ? spec.wall_friction : 0.0;
+}
+
 AnyLaw HardBodies::law(const MacroSpec& spec, double friction, double restitution) {
   const Material hard = hard_material(spec);
   return hertz_law(HertzCoefficients::of(hard, hard, friction, restitution), false);
@@ -143,9 +150,10 @@ AnyLaw HardBodies::law(const MacroSpec& spec, double friction, double restitutio
 
 HardBodies::HardBodies(const MacroSpec& spec, const MacroPacking& packing, double friction, double restitution) {
   frictional_ = friction > 0.0;
-  system.materials = {hard_material(spec)};
-  system.laws = LawSet(1);
+  system.materials = {hard_material(spec), hard_material(spec)};
+  system.laws = LawSet(2);
   system.laws.set(0, 0, law(spec, friction, restitution));
+  system.laws.set(0, 1, law(spec, frictional_ ? preparation_wall_friction(spec) : 0.0, restitution));
   const bool periodic = spec.boundary == Boundary::periodic;
   const Vec3 corner = periodic ? packing.low : Vec3{};
   for (const MacroBody& b : packing.bodies) {
@@ -156,7 +164,7 @@ HardBodies::HardBodies(const MacroSpec& spec, const MacroPacking& packing, doubl
     if (friction > 0.0) grain.inertia = 0.4 * grain.mass * b.r * b.r;
     add_grain(system.particles, grain);
   }
-  box = periodic ? add_periodic_cell(system, packing.size()) : add_box(system, packing.low, packing.high, 0);
+  box = periodic ? add_periodic_cell(system, packing.size()) : add_box(system, packing.low, packing.high, 1);
 }
 
 double HardBodies::pressure() {
@@ -179,10 +187,10 @@ std::vector<BodySpring> HardBodies::springs() const {
   const auto& list = system.contacts;
   if (!frictional_ || !list.has_spring) return out;
   for (const ContactSection& section : list.sections) {
-    if (section.geometry != Geometry::sphere_sphere) continue;
     for (auto c = at(section.begin); c < at(section.end); ++c)
       if (list.spring[c] != Stored<3>{}) out.push_back({list.i[c], list.j[c], list.spring[c]});
   }
+  std::ranges::sort(out, {}, [](const BodySpring& s) { return std::pair(s.i, s.j); });  // those of walls came last
   return out;
 }
 

@@ -46,12 +46,16 @@ void require_room_for_images(const std::vector<MacroBody>& bodies);
 ///   gaps in a few hundred passes and a well-connected packing comes to rest soon; under the last one alone the bodies
 ///   would creep through ever so many rearrangements.
 /// - fast, slow: the box is shrunk at the rate of an inertial number by molecular dynamics, all bodies moving along at
-///   first, until its walls bear the pressure; then all is relaxed under it. Both have the friction of the test and
-///   differ in the rate alone.
+///   first, until its walls bear the pressure; then all is relaxed under it. Both have the friction of the test (its
+///   walls too, see preparation_wall_friction) and differ in the rate alone.
 /// - dense: the largest bodies, up to coarse_share of the volume, jam by themselves; the others grow in the voids
 ///   between them, which stand still, until they have their size or jam; then all are freed and relaxed as in
 ///   frictionless.
 PreparationProtocol protocol_of(Preparation preparation, double friction);
+
+/// Friction of bodies with walls during a preparation: that of the test, or what the walls held would be lost when it
+/// begins; 0 where the preparation has none, or no walls.
+double preparation_wall_friction(const MacroSpec& spec);
 
 /// What is said when a compaction ends without jamming.
 std::string not_jammed_text(const MacroSpec& spec);
@@ -87,7 +91,8 @@ inline double pressing_stress_tolerance(const MacroSpec& spec, bool last) {
 /// area of one.
 DampedOptions pressing_options(const MacroSpec& spec, bool last, double load, double bodies, double mean_radius);
 
-// All bodies of a macro packing as hard grains in their box: what preparations move and press.
+// All bodies of a macro packing as hard grains in their box: what preparations move and press. Materials 0 body, 1
+// wall. With `friction` among bodies, walls have preparation_wall_friction().
 
 struct HardBodies {
   System3 system;

@@ -46,7 +46,7 @@ BoxControl box_control(const MacroSpec& spec, const MacroStage& stage, const Vec
   for (std::size_t k = 0; k < 3; ++k) control.by_stress[k] = stage.axis[k].by_stress;
   control.stress = stress;
   control.isotropic = stage.isotropic;
-  control.tolerance = stage.tolerance / 3.0;
+  control.tolerance = stress_tolerance(stage);
   control.least_stress = least_stress(spec);
   control.farthest = kFarthestStrain;
   return control;

@@ -86,7 +86,7 @@ void run_stages(State& state, const MacroSpec& spec, const Engine& engine, const
     const bool last = point + 1 == points || state.over;
     if (last || use.rejected > 0) {
       engine.note_use(state, use);
-      note_stages(state.curve, stages);
+      note_stages(state.curve, spec);
     }
     keeper.at_point(state, static_cast<double>(point + 1) / static_cast<double>(points), kDoing);
     if (use.rejected > 0 || state.over) return;

@@ -74,6 +74,14 @@ std::int64_t first_point(const std::vector<MacroStage>& stages, std::int64_t sta
   return point;
 }
 
+double way_sign(const std::vector<MacroStage>& stages, std::int64_t stage) {
+  while (stage > 0 &&
+         stages[static_cast<std::size_t>(stage)].record.kind != stages[static_cast<std::size_t>(stage)].record.way)
+    --stage;
+  const AxisDrive& z = stages[static_cast<std::size_t>(stage)].axis[2];
+  return !z.by_stress && z.value < 0.0 ? -1.0 : 1.0;
+}
+
 double strain_at(const MacroSpec& spec, std::int64_t point) {
   const std::int64_t before = preload_points(spec);
   if (point < before) return -spec.preload * static_cast<double>(before - point) / static_cast<double>(before);
@@ -121,7 +129,7 @@ MacroSpec slightly_changed(MacroSpec spec) {
   spec.preload *= kSlightly;
   for (MacroStage& stage : spec.stages)
     for (AxisDrive& axis : stage.axis)
-      if (!axis.by_stress) axis.value *= kSlightly;
+      if (!axis.by_stress || axis.to_stress()) axis.value *= kSlightly;
   return spec;
 }
 

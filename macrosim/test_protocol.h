@@ -30,6 +30,10 @@ StagePoint stage_point(const std::vector<MacroStage>& stages, std::int64_t point
 /// The recorded point at which a stage begins.
 std::int64_t first_point(const std::vector<MacroStage>& stages, std::int64_t stage);
 
+/// The direction along z of the way that a stage goes or turns back on: -1 where the last stage of a way of its own, up
+/// to this one, lengthens z by strain; else 1.
+double way_sign(const std::vector<MacroStage>& stages, std::int64_t stage);
+
 /// Nominal strain at a point of a short form, from the start; in shear logarithmic from the end of the preload, which
 /// is recorded at -preload .. 0.
 double strain_at(const MacroSpec& spec, std::int64_t point);
@@ -50,11 +54,14 @@ inline constexpr double kFarthestStrain = 0.3;
 /// Stresses asked for count for this at least where a tolerance is relative to them [Pa].
 inline double least_stress(const MacroSpec& spec) { return spec.start_pressure * spec.youngs_modulus; }
 
+/// Relative tolerance of the stresses of a stage: of the largest asked for, or least_stress() where that is larger.
+inline double stress_tolerance(const MacroStage& stage) { return stage.tolerance / 3.0; }
+
 /// The mean contact force never counts for less in a test [N]; `largest_radius` of the bodies [m].
 double test_force_floor(const MacroSpec& spec, double largest_radius);
 
-/// A test whose strains differ from those of `spec` in their twelfth digit. Paths of grains are chaotic: where contacts
-/// slide and open, two such runs part, and no run is more certain than that.
+/// A test whose strains, and stresses to go to, differ from those of `spec` in their twelfth digit. Paths of grains are
+/// chaotic: where contacts slide and open, two such runs part, and no run is more certain than that.
 MacroSpec slightly_changed(MacroSpec spec);
 
 }  // namespace softgrain

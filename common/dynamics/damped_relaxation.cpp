@@ -137,6 +137,12 @@ void DampedRelaxation<D>::move_all(System<D>& s, const Fire::Steering& steering,
   watch_.moved(fire_.step * std::sqrt(used2));
 }
 
+/// Whether it is looked after so many passes how far the relaxation is.
+template <int D>
+bool DampedRelaxation<D>::is_judged(std::int64_t passes) const {
+  return passes % kMassInterval == 0 || passes >= options_.max_passes;
+}
+
 template <int D>
 RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* frame) {
   RelaxationResult result;
@@ -150,7 +156,7 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* fram
   watch_.forget();
   add_gravity(s);
   for (;;) {
-    if (result.passes % kMassInterval == 0) {
+    if (is_judged(result.passes)) {
       const double scale = std::max(stiffness_.mean_force(), options_.force_floor);
       const double worst = worst_net_force(s.particles, options_.unbalanced_fraction);
       result.residual = scale > 0.0 ? worst / scale : 0.0;
@@ -171,7 +177,7 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* fram
     if (frame != nullptr) frame->carry(s, fire_.step);
     if (frame != nullptr || flows) watch_.forget();
     watch_.require_list(s);
-    if ((result.passes + 1) % kMassInterval == 0)
+    if (is_judged(result.passes + 1))
       add_contact_forces(s, fire_.step, stiffness_, History::advance);
     else
       add_contact_forces(s, fire_.step, History::advance);

@@ -19,7 +19,8 @@ namespace bridge = softgrain::lammps;
 
 namespace {
 
-constexpr int kWords = 8;  ///< number of values per remembered contact
+constexpr int kWords = 8;      ///< number of values per remembered contact
+constexpr int kSpringRow = 5;  ///< number of values per row of a file of springs
 
 double* put(const bridge::AtomMemory& memory, double* buf) {
   *buf++ = static_cast<double>(memory.size());
@@ -66,15 +67,40 @@ void FixSoftgrainHistory::init() {
   if (pair == nullptr) error->all(FLERR, std::string("fix softgrain/history is made by pair style softgrain alone"));
 }
 
-void FixSoftgrainHistory::remember(int tag, int partner, const softgrain::Vec<3>& spring) {
-  const int i = atom->map(tag);
-  if (i >= 0 && i < atom->nlocal) memory_[static_cast<std::size_t>(i)].push_back({partner, spring, 0.0, {}});
+/// Whether the atom is one of this rank.
+bool FixSoftgrainHistory::remember(int tag, int partner, const softgrain::Vec<3>& spring) {
+  const int i = tag < atom->get_map_size() ? atom->map(tag) : -1;  // the map knows no bounds itself
+  const bool own = i >= 0 && i < atom->nlocal;
+  if (own) memory_[static_cast<std::size_t>(i)].push_back({partner, spring, 0.0, {}});
+  return own;
+}
+
+/// Takes the rows of a block that are of atoms of this rank. All ranks refuse rows of atoms that are nowhere: their
+/// springs would be lost.
+void FixSoftgrainHistory::take_springs(const std::vector<double>& rows, const std::string& file) {
+  double ends = 0.0;  // of springs: two between atoms, one at a wall
+  double taken = 0.0;
+  for (std::size_t k = 0; k < rows.size(); k += kSpringRow) {
+    const double* r = rows.data() + k;
+    const int first = static_cast<int>(r[0]);
+    const int second = static_cast<int>(r[1]);
+    if (first < 1 || second == 0 || first == second)
+      error->all(FLERR, "springs of contacts: '" + file + "': no contact has the ids " + std::to_string(first) +
+                            " and " + std::to_string(second));
+    const softgrain::Vec<3> spring{{r[2], r[3], r[4]}};
+    ends += second > 0 ? 2.0 : 1.0;
+    if (remember(first, second, spring)) taken += 1.0;
+    if (second > 0 && remember(second, first, -spring)) taken += 1.0;
+  }
+  double all = 0.0;
+  MPI_Allreduce(&taken, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  if (all < ends) error->all(FLERR, "springs of contacts: '" + file + "' names atoms that are not there");
 }
 
 /// The first rank reads, in blocks; every rank keeps what its atoms need.
 void FixSoftgrainHistory::read_springs(const std::string& file) {
   constexpr int kBlock = 20000;
-  constexpr int kRow = 5;
+  if (atom->map_style == 0) error->all(FLERR, std::string("springs of contacts need atom_modify map yes"));
   std::ifstream in;
   double count = -1.0;
   if (comm->me == 0) {
@@ -87,16 +113,12 @@ void FixSoftgrainHistory::read_springs(const std::string& file) {
   std::vector<double> rows;
   for (double done = 0.0; done < count; done += kBlock) {
     const int now = static_cast<int>(std::min<double>(kBlock, count - done));
-    rows.assign(static_cast<std::size_t>(kRow * now), 0.0);
+    rows.assign(static_cast<std::size_t>(kSpringRow) * static_cast<std::size_t>(now), 0.0);
     if (comm->me == 0)
       for (double& x : rows)
         if (!(in >> x)) error->one(FLERR, "springs of contacts: '" + file + "' ends too soon");
-    MPI_Bcast(rows.data(), kRow * now, MPI_DOUBLE, 0, world);
-    for (const double* r = rows.data(); r != rows.data() + rows.size(); r += kRow) {
-      const softgrain::Vec<3> spring{{r[2], r[3], r[4]}};
-      remember(static_cast<int>(r[0]), static_cast<int>(r[1]), spring);
-      remember(static_cast<int>(r[1]), static_cast<int>(r[0]), -spring);
-    }
+    MPI_Bcast(rows.data(), kSpringRow * now, MPI_DOUBLE, 0, world);
+    take_springs(rows, file);
   }
 }
 

@@ -38,13 +38,15 @@ class FixSoftgrainHistory : public Fix {
   int maxsize_restart() override;
   double memory_usage() override;
 
-  /// Springs that contacts begin with: "N springs", then a row per contact: both tags, the spring as the first sees it.
+  /// Springs that contacts begin with: "N springs", then a row per contact: both tags (of a wall minus its number, from
+  /// 1), the spring as the first sees it.
   void read_springs(const std::string& file);
 
   PairSoftgrain* pair = nullptr;
 
  private:
-  void remember(int tag, int partner, const softgrain::Vec<3>& spring);
+  bool remember(int tag, int partner, const softgrain::Vec<3>& spring);
+  void take_springs(const std::vector<double>& rows, const std::string& file);
   void store();
   void store_once();
   [[nodiscard]] int largest() const;

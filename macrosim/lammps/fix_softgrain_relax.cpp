@@ -326,6 +326,11 @@ void FixSoftgrainRelax::move() {
   }
 }
 
+/// Whether it is looked after so many passes how far the relaxation is.
+bool FixSoftgrainRelax::is_judged(double passes) const {
+  return static_cast<std::int64_t>(passes) % PseudoMasses::kInterval == 0 || passes >= max_passes_;
+}
+
 void FixSoftgrainRelax::initial_integrate(int) {
   const auto pass = static_cast<std::int64_t>(passes_);
   if (pass % PseudoMasses::kInterval == 0) scale_masses();
@@ -334,7 +339,7 @@ void FixSoftgrainRelax::initial_integrate(int) {
   if (pressed()) carry();
   if (log_lists_) watch_lists();
   pair_->spring_dt = fire_.step;
-  pair_->gathered.wanted = (pass + 1) % PseudoMasses::kInterval == 0;
+  pair_->gathered.wanted = is_judged(passes_ + 1.0);
 }
 
 void FixSoftgrainRelax::end_of_step() {
@@ -345,7 +350,7 @@ void FixSoftgrainRelax::end_of_step() {
     for (int i = 0; i < atom->nlocal; ++i)
       if (norm2(atom->f[i]) == 0.0) std::fill(atom->v[i], atom->v[i] + 3, 0.0);
   }
-  if (static_cast<std::int64_t>(passes_) % PseudoMasses::kInterval == 0) judge();
+  if (is_judged(passes_)) judge();
 }
 
 void FixSoftgrainRelax::post_run() {

@@ -130,11 +130,22 @@ void FixSoftgrainWall::follow_box() {
   }
 }
 
+/// Where the time step changes, planes go on from where they are.
+void FixSoftgrainWall::go_on_from_here() {
+  if (followed_ >= 0) {
+    for (std::size_t k = 0; k < planes.size(); ++k) from_[k] = planes[k].point;
+    start_ = followed_;
+  }
+  dt_ = update->dt;
+}
+
 void FixSoftgrainWall::follow() {
+  if (followed_ == update->ntimestep && update->setupflag == 0) return;  // a list was made in this step
   if (box_) {
     follow_box();
   } else if (moving_) {
-    const double time = static_cast<double>(update->ntimestep - start_) * update->dt;
+    if (dt_ != update->dt) go_on_from_here();
+    const double time = static_cast<double>(update->ntimestep - start_) * dt_;
     for (std::size_t k = 0; k < planes.size(); ++k) planes[k].point = from_[k] + planes[k].velocity * time;
   }
   followed_ = update->ntimestep;
@@ -234,9 +245,10 @@ double FixSoftgrainWall::compute_vector(int k) {
   return force_all_[static_cast<std::size_t>(k)];
 }
 
-/// Where moving planes started, so that a restarted run finds them where they are.
+/// Where moving planes started, so that a restarted run finds them where they are. The step is written as -1 - step,
+/// which says that the number of planes follows: earlier versions wrote none.
 void FixSoftgrainWall::write_restart(FILE* file) {
-  std::vector<double> data{static_cast<double>(update->ntimestep)};
+  std::vector<double> data{-1.0 - static_cast<double>(update->ntimestep), static_cast<double>(planes.size())};
   for (const bridge::Plane& p : planes)
     for (int k = 0; k < 3; ++k) data.push_back(p.point[k]);
   if (comm->me != 0) return;
@@ -246,11 +258,18 @@ void FixSoftgrainWall::write_restart(FILE* file) {
 }
 
 void FixSoftgrainWall::restart(char* buf) {
-  std::vector<double> data(1 + 3 * from_.size());
-  std::memcpy(data.data(), buf, data.size() * sizeof(double));
-  start_ = static_cast<bigint>(data[0]);
+  std::array<double, 2> head{};
+  std::memcpy(head.data(), buf, sizeof head);
+  const bool counted = head[0] < 0.0;
+  if (counted && head[1] != static_cast<double>(from_.size()))
+    error->all(FLERR, "fix softgrain/wall " + std::string(id) + ": the restart file has " +
+                          std::to_string(static_cast<int>(head[1])) + " planes of it, the script " +
+                          std::to_string(from_.size()) + ": give it another ID, or the same planes");
+  start_ = static_cast<bigint>(counted ? -1.0 - head[0] : head[0]);
+  std::vector<double> places(3 * from_.size());
+  std::memcpy(places.data(), buf + (counted ? 2 : 1) * sizeof(double), places.size() * sizeof(double));
   for (std::size_t k = 0; k < from_.size(); ++k)
-    for (int a = 0; a < 3; ++a) from_[k][a] = data[1 + 3 * k + static_cast<std::size_t>(a)];
+    for (int a = 0; a < 3; ++a) from_[k][a] = places[3 * k + static_cast<std::size_t>(a)];
 }
 
 double FixSoftgrainWall::memory_usage() { return static_cast<double>(store.size()) * 80.0; }

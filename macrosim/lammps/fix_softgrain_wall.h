@@ -51,6 +51,7 @@ class FixSoftgrainWall : public Fix {
   void read_plane(char** words, int count, int& at);
   void read_law(char** words, int count, int& at);
   void follow_box();
+  void go_on_from_here();
   void ask_for_list();
 
   bool box_ = false;
@@ -59,6 +60,7 @@ class FixSoftgrainWall : public Fix {
   std::vector<softgrain::Vec<3>> from_;    ///< places of the planes at that step
   std::vector<softgrain::Vec<3>> listed_;  ///< places of the planes at the last list
   bigint followed_ = -1;
+  double dt_ = -1.0;  ///< time step that moving planes go by
   std::vector<int> law_of_type_;
   std::vector<double> force_;      ///< normal force of the bodies of this rank on every plane [N]
   std::vector<double> force_all_;  ///< normal force of the bodies of all ranks on every plane [N]

@@ -46,6 +46,7 @@ AnyLaw read_card(char** words, int count, MPI_Comm world, LAMMPS_NS::Error* erro
       choices.beyond = value;
     } else if (key == "kt" && (value == "initial" || value == "secant")) {
       choices.secant = value == "secant";
+      choices.slope_said = true;
     } else {
       error->all(FLERR, "softgrain: '" + key + " " + value +
                             "': a card knows modulus E, friction MU, kt initial|secant, damping Z, beyond "
@@ -117,10 +118,17 @@ PowerTerm term(const toml::table& pair, const std::string& part, const std::stri
   return threshold_term(a, b, delta);
 }
 
-/// The stiffness that was asked for, else the one that was fitted, else none.
-PowerTerm tangential_term(const toml::table& pair, bool secant, const std::string& where) {
+/// The stiffness that was asked for. Where the script does not say which: the initial one, else the one that was
+/// fitted, else none.
+PowerTerm tangential_term(const toml::table& pair, const CardChoices& choices, const std::string& where) {
+  const bool secant = choices.secant;
   const bool has_initial = pair.at_path("tangential_initial.fitted").value_or(false);
   const bool has_secant = pair.at_path("tangential_secant.fitted").value_or(false);
+  if (choices.slope_said && !(secant ? has_secant : has_initial))
+    throw InputError(where + ": kt " + (secant ? "secant" : "initial") + ": the card has " +
+                     (has_secant    ? "the secant alone"
+                      : has_initial ? "the initial slope alone"
+                                    : "no tangential stiffness: leave kt out"));
   if (has_secant && (secant || !has_initial)) return term(pair, "tangential_secant", where);
   return has_initial ? term(pair, "tangential_initial", where) : PowerTerm{};
 }
@@ -190,7 +198,7 @@ AnyLaw law_of_card(const std::string& path, const std::string& kind, const CardC
     throw InputError(where + " is not usable: its status is \"" + status + "\"");
   SoftContact law;
   law.normal = term(pair, "normal", where);
-  law.tangential = tangential_term(pair, choices.secant, where);
+  law.tangential = tangential_term(pair, choices, where);
   law.delta = number(pair, "normal.delta.value", where);
   law.modulus = choices.modulus;
   law.friction = choices.friction;

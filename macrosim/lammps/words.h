@@ -39,9 +39,10 @@ AnyLaw law_of_file(const std::string& path, const std::string& name, MPI_Comm wo
 struct CardChoices {
   double modulus = 0.0;  ///< E of what is inside the soft particles [Pa]
   double friction = 0.0;
-  double damping = 0.0;  ///< zeta, fraction of critical
-  bool secant = false;   ///< kt at 1 degree instead of the initial slope
-  std::string beyond;    ///< error, clamp or extrapolate; empty: as the card says
+  double damping = 0.0;     ///< zeta, fraction of critical
+  bool secant = false;      ///< kt at 1 degree instead of the initial slope
+  std::string beyond;       ///< error, clamp or extrapolate; empty: as the card says
+  bool slope_said = false;  ///< whether the script says which slope: no other takes its place
 };
 
 /// The law of kind "soft-solid" (first body soft) or "soft-soft" of a card as calibrate writes it. Throws InputError,

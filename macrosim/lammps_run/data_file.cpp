@@ -53,10 +53,6 @@ std::string head(const std::string& title, const MacroPacking& packing, const Bo
   return text + "\nAtoms # sphere\n\n";
 }
 
-bool is_solid(const MacroPacking& packing, const BodySpring& s) {
-  return !packing.bodies[static_cast<std::size_t>(s.i)].soft && !packing.bodies[static_cast<std::size_t>(s.j)].soft;
-}
-
 /// Text in parts, of which the first is `head`, as a file that is there whole or not at all.
 class TextFile {
  public:
@@ -108,19 +104,18 @@ void write_data_file(const std::string& path, const std::string& title, const Ma
   out.close();
 }
 
-void write_springs_file(const std::string& path, const MacroPacking& packing) {
-  const auto count = std::count_if(packing.springs.begin(), packing.springs.end(),
-                                   [&](const BodySpring& s) { return is_solid(packing, s); });
-  TextFile out(path, fmt::format("{} springs\n", count));
-  for (const BodySpring& s : packing.springs)
-    if (is_solid(packing, s)) out.line("{} {} {} {} {}\n", s.i + 1, s.j + 1, s.spring[0], s.spring[1], s.spring[2]);
+void write_springs_file(const std::string& path, const MacroSpec& spec, const MacroPacking& packing) {
+  const std::vector<BodySpring> springs = springs_of_test(spec, packing);
+  const auto bodies = static_cast<std::int32_t>(packing.bodies.size());
+  TextFile out(path, fmt::format("{} springs\n", springs.size()));
+  for (const BodySpring& s : springs)
+    out.line("{} {} {} {} {}\n", s.i + 1, s.j < bodies ? s.j + 1 : bodies - s.j - 1, s.spring[0], s.spring[1],
+             s.spring[2]);
   out.close();
 }
 
 bool has_springs(const MacroSpec& spec, const MacroPacking& packing) {
-  return spec.friction > 0.0 && spec.preparation != Preparation::lammps &&
-         std::any_of(packing.springs.begin(), packing.springs.end(),
-                     [&](const BodySpring& s) { return is_solid(packing, s); });
+  return spec.preparation != Preparation::lammps && !springs_of_test(spec, packing).empty();
 }
 
 }  // namespace softgrain::lammps

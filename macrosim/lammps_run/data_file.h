@@ -31,9 +31,9 @@ BodyTypes body_types(const MacroPacking& packing);
 void write_data_file(const std::string& path, const std::string& title, const MacroPacking& packing,
                      const BodyTypes& types, double density, double inner_solid_fraction);
 
-/// The springs between solid bodies of a preparation with friction, as pair style softgrain reads them. Throws
+/// The springs of solid bodies that a preparation with friction left, as pair style softgrain reads them. Throws
 /// IoError.
-void write_springs_file(const std::string& path, const MacroPacking& packing);
+void write_springs_file(const std::string& path, const MacroSpec& spec, const MacroPacking& packing);
 
 /// Whether a test begins with them.
 bool has_springs(const MacroSpec& spec, const MacroPacking& packing);

@@ -55,7 +55,9 @@ std::string common_numbers(const ScriptScene& s) {
   const MacroSpec& spec = s.spec;
   const double largest = *std::max_element(s.types.largest.begin(), s.types.largest.end());
   std::string text;
-  text += setting("tolerance", fmt::format("{}", spec.tolerance), "largest net force over mean contact force, at rest");
+  if (spec.test != MacroTest::stages)
+    text +=
+        setting("tolerance", fmt::format("{}", spec.tolerance), "largest net force over mean contact force, at rest");
   text += setting("floor", fmt::format("{}", test_force_floor(spec, largest)),
                   "the mean contact force counts for this at least [N]");
   text += setting("max_passes", fmt::format("{}", spec.max_passes), "of every relaxation");
@@ -129,9 +131,11 @@ std::string laws(const ScriptScene& s) {
     text += "\n";
   }
   text += watching(s);
-  text += "fix          relax all softgrain/relax tolerance ${tolerance} floor ${floor} max_passes ${max_passes}";
-  if (s.spec.test == MacroTest::stages)
-    text += fmt::format(" &\n  least_stress {} farthest {}", least_stress(s.spec), kFarthestStrain);
+  const bool staged = s.spec.test == MacroTest::stages;
+  text += fmt::format(
+      "fix          relax all softgrain/relax tolerance ${{{}}} floor ${{floor}} max_passes ${{max_passes}}",
+      staged ? "tolerance1" : "tolerance");
+  if (staged) text += fmt::format(" &\n  least_stress {} farthest {}", least_stress(s.spec), kFarthestStrain);
   text += "\n";
   return text +
          "# a look at the start: from here on the box may change, after a restart file too\n"

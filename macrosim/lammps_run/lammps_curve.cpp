@@ -72,8 +72,31 @@ double strain_of(const PointRow& row, const MacroSpec& spec, const MacroCurve& c
   return strain;
 }
 
+/// Rows of a run that went on without the stresses at which its stages began are refused: it took another way. Where a
+/// stress was not reached, the row has that of an increment before its last one.
+void require_asked(const PointRow& row, const MacroSpec& spec, const std::vector<MacroStage>& stages,
+                   const MacroCurve& c) {
+  constexpr double kRounding = 1e-6;  // stresses at the begin were summed in another order
+  const auto point = static_cast<std::int64_t>(c.strain.size());
+  const StagePoint at = stage_point(stages, point);
+  const MacroStage& stage = stages[static_cast<std::size_t>(at.stage)];
+  if (point == 0 || !stage.by_stress() || row[Point::over] > 0.0) return;
+  const std::vector<Vec3> starts = stage_starts(stages, c, point);
+  const Vec3 there = stress_at(stage, at.number * stage.increments_per_step, starts);
+  const Vec3 asked{{row[Point::asked_x], row[Point::asked_y], row[Point::asked_z]}};
+  const double scale = least_stress(spec) + norm(there) + norm(starts.back());
+  for (int k = 0; k < 3; ++k)
+    if (!(std::abs(asked[k] - there[k]) <= kRounding * scale))
+      throw IoError(fmt::format(
+          "points.txt: point {} asks for {:.6g} Pa along {}, the test for {:.6g} Pa there: the run went on without the "
+          "stresses at which its stages began (-var begin{}{} ...; --resume gives them). Remove the rows from this "
+          "point on, in {} and {}",
+          row[Point::number], asked[k], "xyz"[k], there[k], at.stage + 1, "xyz"[k], kPointsFile, kPointsCopy));
+}
+
 void add_point(const PointRow& row, const MacroSpec& spec, const std::vector<MacroStage>& stages, MacroCurve& c) {
   const double strain = strain_of(row, spec, c);
+  require_asked(row, spec, stages, c);
   const std::int64_t number = stage_point(stages, static_cast<std::int64_t>(c.strain.size())).stage;
   const MacroStage& stage = stages[static_cast<std::size_t>(number)];
   c.stage.push_back(static_cast<double>(number));
@@ -139,7 +162,7 @@ void add_points(const std::vector<PointRow>& rows, const MacroSpec& spec, MacroC
   const std::vector<MacroStage> stages = stages_of(spec);
   for (const PointRow& row : rows) add_point(row, spec, stages, curve);
   if (!rows.empty() && curve.soft > 0) note_law_use(curve, law_use(rows.back()), curve.strain.back());
-  note_stages(curve, stages);
+  note_stages(curve, spec);
 }
 
 std::vector<double> normal_forces(const std::vector<DumpedContact>& contacts) {

@@ -14,7 +14,8 @@
 namespace softgrain::lammps {
 
 /// Appends the rows to a curve that begin_curve() made; notes that a law was refused or a relaxation did not converge
-/// are those of our own engine. Throws IoError when strains are not those of the test.
+/// are those of our own engine. Throws IoError when strains, or the stresses asked for, are not those of the
+/// test.
 void add_points(const std::vector<PointRow>& rows, const MacroSpec& spec, MacroCurve& curve);
 
 /// Whether the test ended before its last recorded point, and there is nothing to go on with.

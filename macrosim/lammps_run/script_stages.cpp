@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "macrosim/lammps_run/input_script.h"
 #include "macrosim/lammps_run/points_columns.h"
 #include "macrosim/lammps_run/script_parts.h"
 #include "macrosim/test_protocol.h"
@@ -19,6 +20,43 @@ std::string equal(const std::string& name, const std::string& formula) {
 
 /// The stress along an axis when a stage began: what was recorded then.
 std::string begin_name(std::int64_t stage, int axis) { return fmt::format("begin{}{}", stage + 1, kAxes[axis]); }
+
+/// The last point of the stages that ask for stresses by what they were when this stage began; its first one where none
+/// does.
+std::int64_t begin_needed_until(const std::vector<MacroStage>& stages, std::int64_t stage) {
+  std::int64_t until = first_point(stages, stage);
+  for (std::int64_t s = stage; s < static_cast<std::int64_t>(stages.size()); ++s) {
+    const MacroStage& one = stages[static_cast<std::size_t>(s)];
+    const bool asks = s == stage ? one.by_stress()
+                                 : std::any_of(one.axis.begin(), one.axis.end(),
+                                               [&](const AxisDrive& d) { return d.by_stress && d.as_at == stage; });
+    if (asks) until = first_point(stages, s + 1);
+  }
+  return until;
+}
+
+/// Commands that stop a run which goes on in the middle of stages without the stresses at which they began: it would
+/// take another way.
+std::string require_begins(const std::vector<MacroStage>& stages) {
+  std::string text;
+  for (std::int64_t k = 0; k < static_cast<std::int64_t>(stages.size()); ++k) {
+    const std::int64_t first = first_point(stages, k);
+    const std::int64_t until = begin_needed_until(stages, k);
+    if (until == first) continue;
+    const auto name = [&](int axis) { return begin_name(k, axis); };
+    text += fmt::format(
+        "if \"${{from}} >= {0} && ${{from}} < {1} && &\n"
+        "    $(is_defined(variable,{2})*is_defined(variable,{3})*is_defined(variable,{4})) == 0\" then &\n"
+        "  'print \"ERROR: after point ${{from}} the test goes by the stresses at which stage {5} began: &\n"
+        "give -var {2} SX -var {3} SY -var {4} SZ, &\n"
+        "the columns stress_x, stress_y and stress_z of point {0} in {6}\"' &\n"
+        "  \"quit 1\"\n",
+        first, until, name(0), name(1), name(2), k + 1, kPointsFile);
+  }
+  return text.empty() ? text : "# a run that goes on needs the stresses at which its stages began\n" + text;
+}
+
+std::string tolerance_name(std::int64_t stage) { return fmt::format("tolerance{}", stage + 1); }
 
 /// The box along an axis after increment n over that before.
 std::string factor(const MacroStage& stage, int axis) {
@@ -59,8 +97,8 @@ std::string block(const MacroStage& stage, std::int64_t number, std::int64_t fir
     text += equal(fmt::format("by{}", kAxes[k]), stage.axis[static_cast<std::size_t>(k)].by_stress ? "1" : "0");
     text += equal(fmt::format("asked{}", kAxes[k]), asked(stage, number, k));
   }
-  return text + fmt::format("variable isotropic string {}\nvariable rest equal {}\njump SELF staged\n",
-                            stage.isotropic ? "yes" : "no", stage.tolerance);
+  return text + fmt::format("variable isotropic string {}\nvariable rest equal v_{}\njump SELF staged\n",
+                            stage.isotropic ? "yes" : "no", tolerance_name(number));
 }
 
 std::string targets() {
@@ -88,10 +126,11 @@ std::string stage_settings(const ScriptScene& s) {
   }
   text += setting("z_start", fmt::format("{}", s.packing.size()[2]), "length of the box along z at the start [m]");
   for (std::size_t k = 0; k < stages.size(); ++k)
-    for (int axis = 0; axis < 3; ++axis)
-      text += setting(begin_name(static_cast<std::int64_t>(k), axis), "0",
-                      fmt::format("stress along {} when stage {} began [Pa]", kAxes[axis], k + 1));
-  return text;
+    text += setting(tolerance_name(static_cast<std::int64_t>(k)), fmt::format("{}", stages[k].tolerance),
+                    fmt::format("largest net force over the mean one, stage {}", k + 1));
+  return text +
+         "# A run that goes on within stages also needs the stresses at which they began [Pa]:\n"
+         "# -var begin1x SX -var begin1y SY -var begin1z SZ, of stage 1\n";
 }
 
 std::string stage_variables(const ScriptScene& s) {
@@ -107,14 +146,13 @@ std::string stage_variables(const ScriptScene& s) {
 
 std::string stage_loop(const ScriptScene& s) {
   const auto stages = stages_of(s.spec);
-  std::string text =
-      "if \"${from} >= ${last}\" then \"jump SELF end\"\n"
-      "variable point loop $(v_from+1) ${last}\n"
-      "label point\n"
-      "variable passes equal 0\n"
-      "variable looked_at equal 0\n"
-      "variable seconds equal 0\n" +
-      unrest_begins();
+  std::string text = "if \"${from} >= ${last}\" then \"jump SELF end\"\n" + require_begins(stages) +
+                     "variable point loop $(v_from+1) ${last}\n"
+                     "label point\n"
+                     "variable passes equal 0\n"
+                     "variable looked_at equal 0\n"
+                     "variable seconds equal 0\n" +
+                     unrest_begins();
   for (std::size_t k = stages.size(); k-- > 1;)
     text += fmt::format("if \"${{point}} > {}\" then \"jump SELF stage{}\"\n",
                         first_point(stages, static_cast<std::int64_t>(k)), k + 1);

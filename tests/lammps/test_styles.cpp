@@ -8,6 +8,7 @@
 #include "common/contact/make_laws.h"
 #include "common/contact/soft_contact.h"
 #include "common/core/error.h"
+#include "common/io/text_file.h"
 #include "macrosim/lammps/words.h"
 #include "tests/lammps/in_process.h"
 #include "tests/lammps/macro_scene.h"
@@ -15,6 +16,7 @@
 // After the headers of LAMMPS.
 #include "compute.h"
 #include "fix.h"
+#include "macrosim/lammps/fix_softgrain_wall.h"
 #include "modify.h"
 
 namespace softgrain::test {
@@ -94,6 +96,61 @@ TEST(Styles, APlaneThatMovesCarriesItsBodyAlong) {
   EXPECT_GT(atoms.v[0][0], 0.01);
 }
 
+/// Lines of a script with one sphere below a lid that comes down, and a file of laws.
+std::vector<std::string> lid_script(const TemporaryDirectory& directory) {
+  const Material grain{"grain", 2500.0, 5e5, 0.3, false};
+  std::ofstream(directory.path() + "/laws.toml")
+      << laws_text({{"solid", hertz_law(HertzCoefficients::of(grain, grain, 0.5, 1.0), false)}});
+  return {"shell cd " + directory.path(),
+          "units si",
+          "atom_style sphere",
+          "boundary f f f",
+          "newton off",
+          "comm_modify vel yes",
+          "neighbor 0.003 bin",
+          "region box block 0 0.1 0 0.1 0 0.1",
+          "create_box 1 box",
+          "create_atoms 1 single 0.05 0.05 0.02",
+          "set type 1 diameter 0.02 density 2500",
+          "pair_style softgrain soft none",
+          "pair_coeff * * laws.toml solid",
+          "fix lid all softgrain/wall plane 0 0 0.03 0 0 -1 move 0 0 -0.1 law 1 laws.toml solid",
+          "compute contacts all softgrain/contacts",
+          "thermo_style custom step f_lid[1] c_contacts[11]"};
+}
+
+/// A plane that moves goes on from where it is when the time step changes.
+TEST(Styles, AnotherTimeStepMovesNoPlane) {
+  const TemporaryDirectory directory;
+  InProcess lammps;
+  for (const std::string& line : lid_script(directory)) lammps(line);
+  for (const char* line : {"timestep 1e-4", "run 100 post no"}) lammps(line);
+  const double force = fix_value(lammps, "lid", 0);
+  EXPECT_GT(force, 1.0) << "1 mm into the sphere, which nothing moves";
+  for (const char* line : {"timestep 1e-5", "run 0 post no"}) lammps(line);
+  EXPECT_DOUBLE_EQ(fix_value(lammps, "lid", 0), force);
+  lammps("run 1000 post no");  // another millimetre
+  EXPECT_NEAR(fix_value(lammps, "lid", 0), std::pow(2.0, 1.5) * force, 1e-6 * force);
+}
+
+/// Springs of a preparation, those with walls too; the sphere is 1 mm into the lid.
+TEST(Styles, SpringsOfWallsAreReadByTheirNumber) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory.path() + "/springs.txt") << "1 springs\n1 -1 1e-5 2e-5 0\n";
+  InProcess lammps;
+  for (std::string line : lid_script(directory)) {
+    if (line.starts_with("pair_style")) line += " springs springs.txt";
+    if (line.starts_with("fix lid")) line.replace(line.find("0.03"), 4, "0.029");
+    lammps(line);
+    if (line.starts_with("atom_style")) lammps("atom_modify map yes");
+  }
+  lammps("run 0 post no");
+  const auto& store = lammps.pair().walls.at(0)->store;
+  ASSERT_EQ(store.size(), 1U);
+  EXPECT_NEAR(store.spring[0][0], 1e-5, 1e-12);
+  EXPECT_NEAR(store.spring[0][1], 2e-5, 1e-12);
+}
+
 TEST(Styles, ALawCardIsReadAsTheProgramReadsIt) {
   const std::string path = SOFTGRAIN_SOURCE_DIR "/results/published/law.toml";
   const LawCard card = load_card(path);
@@ -104,6 +161,17 @@ TEST(Styles, ALawCardIsReadAsTheProgramReadsIt) {
           lammps::law_of_card(path, to_string(kind), {5e5, 0.3, 0.1, secant, ""}, MPI_COMM_WORLD));
       EXPECT_EQ(laws_text({{"law", ours}}), laws_text({{"law", theirs}}));
     }
+  std::string text = read_text(path);  // a card without the initial slope
+  for (std::size_t at = 0; (at = text.find("[pair.tangential_initial]", at)) != std::string::npos; ++at)
+    text.replace(text.find("fitted = true", at), 13, "fitted = false");
+  const TemporaryDirectory directory;
+  std::ofstream(directory.path() + "/one.toml") << text;
+  const auto slope = [&](bool said) {
+    return lammps::law_of_card(directory.path() + "/one.toml", "soft-solid", {5e5, 0.3, 0.1, false, "", said},
+                               MPI_COMM_WORLD);
+  };
+  EXPECT_NO_THROW((void)slope(false)) << "the one that it has";
+  EXPECT_THROW((void)slope(true), InputError);
   EXPECT_THROW((void)lammps::law_of_card(path, "soft", {5e5, 0.3, 0.0, false, ""}, MPI_COMM_WORLD), InputError);
   EXPECT_THROW((void)lammps::law_of_card("no such file", "soft-soft", {}, MPI_COMM_WORLD), IoError);
   EXPECT_THROW((void)lammps::law_of_file(path, "x", MPI_COMM_WORLD), InputError);

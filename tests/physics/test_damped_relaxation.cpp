@@ -88,6 +88,19 @@ TEST(DampedRelaxation, NoneLeadsTheOthersByMoreThanAllowed) {
   EXPECT_NEAR(others, -1e-6, 1e-11);
 }
 
+/// Whether at rest is looked at every ten passes, and after the last one that is allowed.
+TEST(DampedRelaxation, MakesNoMorePassesThanAllowed) {
+  for (const std::int64_t most : {7, 10, 15, 23}) {
+    System3 s = row_with_one_apart();
+    const RelaxationResult result = relax(s, 1e-10, most);
+    EXPECT_EQ(result.end, RelaxationEnd::capped) << most;
+    EXPECT_EQ(result.passes, most);
+    System3 same = row_with_one_apart();
+    for (const std::int64_t more : {most, std::int64_t{4000}}) (void)relax(same, 1e-10, more);
+    EXPECT_NEAR(same.particles.sphere[9].x[2], 0.0096, 1e-11) << "what was left can be taken up";
+  }
+}
+
 TEST(DampedRelaxation, UnderGravityTheFloorCarriesTheWeight) {
   System3 s = hertz_system<3>(0.0, 1.0, false);
   s.gravity[2] = -9.81;

@@ -191,7 +191,9 @@ NamedStatistics statistics_of(MacroSpec spec, std::uint64_t samples) {
 /// Friction lets bodies jam loosely and with fewer contacts.
 TEST(MacroPreparation, FastIsLooseForItsFriction) {
   const NamedStatistics smooth = statistics_of(prepared_by(Preparation::frictionless, 120), 8);
-  const NamedStatistics rough = statistics_of(prepared_by(Preparation::fast, 120), 8);
+  MacroSpec with_friction = prepared_by(Preparation::fast, 120);
+  with_friction.wall_friction = 0.3;  // every fourth body is at a wall
+  const NamedStatistics rough = statistics_of(with_friction, 8);
   EXPECT_LT(std::hypot(smooth.fraction.error, rough.fraction.error), 0.008);
   EXPECT_LT(rough.fraction.mean, smooth.fraction.mean - 0.03);
   EXPECT_GT(rough.fraction.mean, smooth.fraction.mean - 0.09);
@@ -257,6 +259,36 @@ TEST(MacroPreparation, WhatCannotBePreparedSaysHowFarItCame) {
   }
 }
 
+/// Contacts with walls go on as the preparation left them too, so that a test begins about at its pressure, whatever
+/// the friction of its walls.
+TEST(MacroPreparation, ATestBeginsAtThePressureOfARoughPreparation) {
+  for (const Preparation p : {Preparation::fast, Preparation::slow})
+    for (const double wall_friction : {0.0, 0.3}) {
+      MacroSpec spec = prepared_by(p, 60);
+      spec.soft_share = 0.0;
+      spec.friction = 0.3;
+      spec.wall_friction = wall_friction;
+      spec.start_pressure = 1e-4;
+      spec.protocol.tolerance = 1e-3;
+      const MacroPacking packing = make_macro_packing(spec, 1, 0);
+      const bool walls = std::ranges::any_of(packing.springs, [](const BodySpring& s) { return s.j >= 60; });
+      EXPECT_EQ(walls, wall_friction > 0.0) << to_string(p);
+      spec.steps = 1;
+      spec.increments_per_step = 1;
+      spec.strain_end = 1e-5;
+      CompressionState state;
+      state.macro = make_law_system(spec, packing, {}, 1.0);
+      force_pass(state.macro.system, 0.0, History::none);
+      EXPECT_LT(residual(state.macro.system).relative(0.0), 1.1 * spec.protocol.tolerance) << to_string(p);
+      state.curve = begin_curve(spec, packing, state.macro, "law", 0);
+      compress(state, spec);
+      const MacroCurve& c = state.curve;
+      const double mean = (c.stress_x.front() + c.stress_y.front() + c.stress_axial.front()) / 3.0;
+      const double pressure = spec.start_pressure * spec.youngs_modulus;
+      EXPECT_NEAR(mean, pressure, 0.02 * pressure) << to_string(p) << ", mu of walls " << wall_friction;
+    }
+}
+
 /// What contacts bore at the end of a preparation with friction, twins begin with as runs by laws do: without soft
 /// particles both are the same bodies, and have the same bits.
 TEST(MacroPreparation, TwinsBeginWithTheSpringsThatItLeft) {
@@ -266,6 +298,7 @@ TEST(MacroPreparation, TwinsBeginWithTheSpringsThatItLeft) {
       spec.soft_share = 0.0;
       spec.friction = 0.3;  // or nobody asks for springs
       spec.boundary = boundary;
+      spec.wall_friction = boundary == Boundary::walls ? 0.2 : 0.0;
       spec.steps = 1;
       spec.increments_per_step = 1;
       spec.strain_end = 0.005;

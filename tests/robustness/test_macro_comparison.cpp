@@ -142,6 +142,18 @@ TEST_F(MacroComparison, AnAbsentCardIsNamed) {
   EXPECT_NE(outcome.output.find("absent.toml"), std::string::npos) << outcome.output;
 }
 
+/// As of a card: a table of soft particles that hold other grains.
+TEST_F(MacroComparison, ATableOfOtherSoftParticlesIsSaid) {
+  std::string text = kTinyComparison;
+  text.replace(text.find("card = \"law.toml\""), 17,
+               "table = \"" SOFTGRAIN_SOURCE_DIR "/tests/reference/law/two_fractions.toml\"\nrange = \"clamp\"");
+  write_text_atomic(scene(), text.substr(0, text.rfind("[[scene]]")));
+  const ProgramOutcome outcome = run("out", "--set macro.resolved=false --set macro.steps=1");
+  ASSERT_TRUE(outcome.status == 0 || outcome.status == 3) << outcome.output;
+  EXPECT_NE(read_text(out() + "/summary.json").find("the law table was measured on soft particles of another packing"),
+            std::string::npos);
+}
+
 TEST_F(MacroComparison, WrongScenesAreRefused) {
   expect_refused("test = \"shear\"", "test = \"sheer\"", {"scene.toml:22", "shear"});
   expect_refused("test = \"shear\"", "samples = 1", {"another scene is called 'oedometric-35'"});

@@ -92,6 +92,8 @@ TEST_F(MacroLammps, OptionsThatMeanNothingAreRefusedBeforeAnyWork) {
   expect(macro("run", "--set macro.preparation=lammps"), 2, {"macro.preparation", "--engine lammps"});
   expect(macro("run", "--engine lammps --write-only --set macro.preparation=lammps --set macro.construction=voids"), 2,
          {"preparation", "mixed"});
+  expect(macro("run", "--engine lammps --write-only --set macro.noise_samples=1"), 2,
+         {"noise_samples", "LAMMPS runs each sample once"});
   expect(macro("run", "--set macro.preparation=lamps"), 2, {"lammps"});
   expect(run_the_program("microsim '" + file("scene.toml") + "'"), 2, {"softgrain run or macrosim, not with microsim"});
   write_text_atomic(file("pipeline.toml"), kTinyPipeline);
@@ -117,6 +119,11 @@ TEST_F(MacroLammps, WriteOnlyNeedsNoLammpsAndWritesTheSameTwice) {
     EXPECT_EQ(read_text(file("a/lammps-0/") + name), read_text(file("b/lammps-0/") + name));
   EXPECT_TRUE(fs::exists(file("a/macro_initial.h5")));
   EXPECT_FALSE(fs::exists(file("a/macro.h5")));
+  const std::string script = read_text(file("a/lammps-0/scene.in"));
+  EXPECT_NE(script.find("variable increments    index 2 "), std::string::npos) << script;
+  expect(macro("finer", "--engine lammps --write-only --set macro.law_increments=8"), 0, {});
+  const std::string finer = read_text(file("finer/lammps-0/scene.in"));
+  EXPECT_NE(finer.find("variable increments    index 16 "), std::string::npos) << finer;
   expect(macro("c", "--engine lammps --write-only --set macro.preparation=lammps --set macro.samples=2"), 0, {});
   EXPECT_TRUE(fs::exists(file("c/lammps-1/scene.in")));
   EXPECT_FALSE(fs::exists(file("c/macro_initial.h5"))) << "bodies that do not touch are no starting state";
@@ -320,6 +327,10 @@ TEST_F(Staged, GoesOnAfterAStop) {
         file("stopped/lammps-0"), points, beside_the_program());
     ASSERT_EQ(std::system(run.c_str()), 0) << run;
     ASSERT_EQ(lammps::count_points(file("stopped/lammps-0")), points + 1);
+    const std::string by_hand = fmt::format("cd '{}' && '{}' -in scene.in -var from {} > hand.log 2>&1",
+                                            file("stopped/lammps-0"), beside_the_program(), points);
+    EXPECT_NE(std::system(by_hand.c_str()), 0) << points;
+    EXPECT_NE(read_text(file("stopped/lammps-0/hand.log")).find("give -var begin"), std::string::npos) << points;
     expect(macro("stopped", more + "--resume"), 0, {});
     const MacroCurve resumed = curve("stopped");
     ASSERT_EQ(whole.strain.size(), resumed.strain.size());

@@ -67,6 +67,8 @@ TEST(FirstPoint, IsExplainedWhereItBearsFarLessThanThePreparation) {
   EXPECT_TRUE(says(said, "nothing before their threshold"));
   EXPECT_TRUE(says(first_point_remarks(spec, {curve("shelled", 3, 0.0)}), "behind their shells"));
   EXPECT_TRUE(says(first_point_remarks(spec, {curve("law", 0, 0.0)}), "preparation_tolerance"));
+  spec.protocol.friction = 2.0 * spec.friction;
+  EXPECT_TRUE(says(first_point_remarks(spec, {curve("law", 0, 0.0)}), "more friction than the test"));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "macrosim/test_protocol.h"
 #include "pipelines/kinds/kinds.h"
+#include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/macro_comparison/scene.h"
 #include "pipelines/kinds/material/scene.h"
 #include "tests/support/keyed_scenes.h"
@@ -30,6 +31,9 @@ class KeysThatCount : public ::testing::Test {
   void refused(const std::string& text, const std::string& words) const {
     const Scene s = scene(text);
     expect_refused<InputError>([&] { kind_of(s).read(s); }, words);
+  }
+  void refused_by_check(const std::string& text, const std::string& words) const {
+    expect_refused<InputError>([&] { (void)warnings(text); }, words);
   }
   [[nodiscard]] std::vector<std::string> warnings(const std::string& text) const {
     Findings out;
@@ -125,6 +129,52 @@ TEST_F(KeysThatCount, ASceneBelowACommonPackingMakesNoOther) {
     refused(comparison_packing() + key + "\n", "goes without the common packing");
   refused(comparison_packing() + "boundary = \"periodic\"\n", "is that of the common packing");
   refused(comparison_packing() + "samples = 2\n", "a packing is one sample");
+}
+
+/// Sizes of a kind of body of which there is none; a common table has them for whichever scene does.
+TEST_F(KeysThatCount, SizesOfBodiesThatAreNotThereAreRefused) {
+  const std::string macro = "kind = \"macro\"\n[macro]\nresolved = false\n";
+  for (const char* key : {"radius_max = 0.01", "polydispersity = 3.0"}) {
+    refused(macro + "soft_share = 0.0\nsoft_" + key + "\n", "goes with soft_share above 0");
+    refused(macro + "soft_share = 1.0\nsolid_" + key + "\n", "goes with soft_share below 1");
+    EXPECT_NO_THROW((void)read_macro_scene_alone(scene(macro + "soft_share = 0.0\nsolid_" + key + "\n")));
+    EXPECT_NO_THROW((void)read_macro_scene_alone(scene(macro + "soft_share = 1.0\nsoft_" + key + "\n")));
+  }
+  refused(macro + "soft_share = 0.0\nsoft_sizes = {form = \"list\", radii = [0.01, 0.012]}\n",
+          "goes with soft_share above 0");
+  const std::string tiny = kTinyComparison;  // its [macro] gives sizes of soft particles
+  EXPECT_NO_THROW((void)comparison(tiny, "[[scene]]\nname = \"none\"\nsoft_share = 0.0\n"));
+  refused(tiny + "[[scene]]\nname = \"none\"\nsoft_share = 0.0\nsoft_radius_max = 0.01\n",
+          "goes with soft_share above 0");
+  std::string no_soft = tiny;
+  no_soft.replace(no_soft.find("soft_share = 0.35"), 17, "soft_share = 0.0");
+  refused(no_soft, "goes with soft_share above 0");
+}
+
+TEST_F(KeysThatCount, ALawTableHasOneTangentialStiffness) {
+  const std::string table =
+      std::string("table = \"") + SOFTGRAIN_SOURCE_DIR + "/tests/reference/law/two_fractions.toml\"\n";
+  const std::string tiny = kTinyComparison;
+  const auto by = [&](const std::string& laws, const std::string& common) {
+    std::string text = tiny;
+    text.replace(text.find("card = \"law.toml\"\n"), 18, laws);
+    return text.insert(text.find("steps = 3"), common);
+  };
+  const std::string kt = "kt = \"initial\"\n";
+  refused(by(table, kt), "a law table has one tangential stiffness");
+  refused(by(table, "") + "[[scene]]\nname = \"c\"\n" + kt, "a law table has one tangential stiffness");
+  EXPECT_FALSE(comparison(by("card = \"law.toml\"\n", kt), "").scenes.at(0).setup.spec.kt_secant);
+  EXPECT_FALSE(comparison(by(table + "card = \"law.toml\"\n", kt), "").scenes.at(0).setup.spec.kt_secant);
+  const std::string own = "[[scene]]\nname = \"c\"\n" + kt + "law = {card = \"law.toml\"}\n";
+  EXPECT_FALSE(comparison(by(table, kt), own).scenes.at(2).setup.spec.kt_secant) << "one scene has a card";
+}
+
+/// Runs in LAMMPS are made once.
+TEST_F(KeysThatCount, NoiseOfRunsInLammpsIsRefused) {
+  const std::string text =
+      "kind = \"macro\"\nlaw = \"law.toml\"\n[macro]\nresolved = false\npreparation = \"lammps\"\n";
+  refused_by_check(text + "noise_samples = 1\n", "LAMMPS runs each sample once");
+  EXPECT_NO_THROW((void)warnings(text + "bodies = 60\n"));
 }
 
 TEST_F(KeysThatCount, KeysOfAnotherTestOrLawAreRefused) {

@@ -169,7 +169,11 @@ TEST(LammpsFiles, ScriptsOfMaterialsBeginWithSpringsAndRecordGrains) {
   MacroSpec spec = staged_spec();
   spec.splits = {0.5, 0.25};
   MacroPacking packing = small_packing();
-  packing.springs = {{0, 1, {{1e-6, 1.0 / 3.0, -2e-7}}}, {1, 3, {{1.0, 1.0, 1.0}}}};
+  // Between solid grains, of a soft particle, and of either with the third wall; bodies are numbers 0 to 3.
+  packing.springs = {{0, 1, {{1e-6, 1.0 / 3.0, -2e-7}}},
+                     {1, 3, {{1.0, 1.0, 1.0}}},
+                     {2, 6, {{0.5, 0.25, 0.0}}},
+                     {3, 6, {{1.0, 1.0, 1.0}}}};
   const auto script = [&] { return lammps::script_text({spec, packing, lammps::body_types(packing), "", "key", 0}); };
   for (const char* words : {"contacts all softgrain/contacts grains 2 0.008 0.004\n",
                             "if \"${from} < 0\" then &\n  \"pair_style   softgrain soft 3 springs springs.txt\"",
@@ -177,9 +181,14 @@ TEST(LammpsFiles, ScriptsOfMaterialsBeginWithSpringsAndRecordGrains) {
     EXPECT_NE(script().find(words), std::string::npos) << words << " not in\n" << script();
   EXPECT_EQ(script().find("c_contacts[25]"), std::string::npos);
   const test::TemporaryDirectory directory;
-  lammps::write_springs_file(directory.file("springs.txt"), packing);
-  EXPECT_EQ(read_text(directory.file("springs.txt")), "1 springs\n1 2 1e-06 0.3333333333333333 -2e-07\n")
-      << "those of soft bodies are forgotten";
+  const auto springs = [&] {
+    lammps::write_springs_file(directory.file("springs.txt"), spec, packing);
+    return read_text(directory.file("springs.txt"));
+  };
+  EXPECT_EQ(springs(), "1 springs\n1 2 1e-06 0.3333333333333333 -2e-07\n") << "those of soft bodies are forgotten";
+  spec.wall_friction = 0.2;
+  EXPECT_EQ(springs(), "2 springs\n1 2 1e-06 0.3333333333333333 -2e-07\n3 -3 0.5 0.25 0\n");
+  spec.wall_friction = 0.0;
   spec.friction = 0.0;
   EXPECT_EQ(script().find("springs.txt"), std::string::npos);
   EXPECT_NE(script().find("softgrain/contacts grains 4 "), std::string::npos);
@@ -494,6 +503,50 @@ TEST_F(Curves, RowsOfStagesSayWhatTheBoxDid) {
   EXPECT_FALSE(curve_.usable);
   EXPECT_NE(curve_.note.find("stage 'consolidation' ended at axial strain 0.1"), std::string::npos) << curve_.note;
   EXPECT_NE(curve_.note.find("z 300 Pa asked"), std::string::npos) << curve_.note;
+}
+
+/// A script that goes on within stages asks for the stresses at which they began, those that stages to come ask for
+/// too. A hold by strain asks for none.
+TEST(LammpsFiles, ScriptsGoOnWithinStagesOnlyWithTheirBegins) {
+  const std::string text = script_of(staged_spec());
+  for (const char* words : {"if \"${from} >= 0 && ${from} < 30 && &\n    $(is_defined(variable,begin1x)*",
+                            "if \"${from} >= 30 && ${from} < 60 && &\n    $(is_defined(variable,begin2x)*",
+                            "give -var begin2x SX -var begin2y SY -var begin2z SZ, &\n"})
+    EXPECT_NE(text.find(words), std::string::npos) << words << " not in\n" << text;
+  EXPECT_EQ(text.find("is_defined(variable,begin3x)"), std::string::npos);
+  EXPECT_EQ(text.find("variable begin1x       index"), std::string::npos) << "no value stands in for it";
+  EXPECT_LT(text.find("is_defined(variable,begin1x)"), text.find("variable point loop"));
+  EXPECT_EQ(script_of(spec_of(MacroTest::oedometric)).find("is_defined"), std::string::npos);
+}
+
+/// The tolerance of a test in stages is set by stages; -var changes it there alone.
+TEST(LammpsFiles, EveryStageHasATolerance) {
+  MacroSpec spec = staged_spec();
+  spec.stages[1].tolerance = 2e-3;
+  const std::string text = script_of(spec);
+  EXPECT_NE(text.find("variable tolerance2    index 0.002 "), std::string::npos) << text;
+  EXPECT_NE(text.find("variable rest equal v_tolerance2\n"), std::string::npos);
+  EXPECT_EQ(text.find("${tolerance}"), std::string::npos);
+}
+
+/// Rows of a run that went on without the stress at which its stage began.
+TEST_F(Curves, StressesThatDoNotFollowFromTheBeginAreRefused) {
+  MacroSpec spec = staged_spec();
+  spec.stages.resize(1);
+  spec.stages[0].steps = 2;
+  curve_.boundary = Boundary::periodic;
+  const PointRow first = point_row(0, 0.0);
+  const double volume = first[Point::lx] * first[Point::ly] * first[Point::lz];
+  const double began = first[Point::branch_zz] / volume;
+  const auto asking = [&](double x, double y, double z) {
+    return with(with(with(point_row(1, 0.0), Point::asked_x, x), Point::asked_y, y), Point::asked_z, z);
+  };
+  const double half_x = 0.5 * (first[Point::branch_xx] / volume + 300.0);
+  const double half_y = 0.5 * (first[Point::branch_yy] / volume + 300.0);
+  MacroCurve good = curve_;
+  EXPECT_NO_THROW(lammps::add_points({first, asking(half_x, half_y, 0.5 * (began + 300.0))}, spec, good));
+  EXPECT_GT(began, 1.0);
+  EXPECT_THROW(lammps::add_points({first, asking(half_x, half_y, 150.0)}, spec, curve_), IoError) << "as from 0";
 }
 
 TEST_F(Curves, AnotherTestIsRefused) {

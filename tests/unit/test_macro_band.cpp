@@ -49,6 +49,22 @@ TEST(MacroBand, PartsAddInQuadratureOnEitherSide) {
   EXPECT_EQ(together(stress, {{{0.0, -20.0}, {0.0, 10.0}}}).low[1], 0.0) << "compression of grains has no other sign";
 }
 
+/// A law card has no configurations that its fit did not see: nothing is known, which is not 0.
+TEST(MacroBand, AnUnknownDiscrepancyIsNoBandOfNoWidth) {
+  MacroCurve c = curve("law", 0, {0.0, 100.0});
+  const MacroBand law{{0.0, 97.0}, {0.0, 103.0}};
+  for (const BandOf of : {BandOf::axial, BandOf::lateral}) {
+    set_band(c, of, BandPart::law, law);
+    set_band(c, of, BandPart::all, together(c.stress_axial, {law}));
+  }
+  const auto ends = banded_ends({c});
+  ASSERT_EQ(ends.size(), 2U);
+  EXPECT_NEAR(ends[0].law, 3.0, 1e-12);
+  EXPECT_TRUE(std::isnan(ends[0].discrepancy));
+  EXPECT_NEAR(ends[0].high, 103.0, 1e-12);
+  EXPECT_NE(banded_text(ends[0]).find("discrepancy unknown"), std::string::npos) << banded_text(ends[0]);
+}
+
 TEST(MacroBand, TheMeanOverSamplesHasTheIntervalOfStudent) {
   std::vector<MacroCurve> curves{curve("law", 0, {0.0, 90.0}), curve("law", 1, {0.0, 110.0}),
                                  curve("shelled", 0, {0.0, 100.0})};

@@ -59,6 +59,14 @@ TEST(PlacedSpheres, PlacesAreThoseOfTestingAllBodies) {
   }
 }
 
+/// Every first fraction is tried, as small as may be.
+TEST(PlacedSpheres, ASmallFirstFractionIsTried) {
+  for (const double fraction : {0.05, 0.02}) {
+    const std::vector<MacroBody> bodies = some_bodies(20, 3.5, 2.0);
+    EXPECT_EQ(place_loosely(bodies, 3, 1, fraction).high[0], edge_of(bodies, fraction));
+  }
+}
+
 /// Questions at random, also for spheres larger than those that are there and near the faces.
 TEST(PlacedSpheres, AnswersAreThoseOfTestingAllBodies) {
   std::vector<MacroBody> bodies = some_bodies(400, 2.0, 20.0);

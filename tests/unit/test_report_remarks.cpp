@@ -50,6 +50,25 @@ TEST(PairLawRemark, GivesWhatWasMeasuredForTheCommittedTable) {
   EXPECT_TRUE(has_text(pair_law_remark(), "2.2 to 12 times")) << pair_law_remark();
 }
 
+/// Runs that ended early say nothing of the end, neither their stress nor their strain.
+TEST(MacroLine, IsOfUsableRuns) {
+  const auto line = [](const std::vector<bool>& usable) {
+    report::RunData run;
+    for (std::size_t k = 0; k < usable.size(); ++k) {
+      MacroCurve& c = run.macro.emplace_back();
+      c.engine = "law";
+      c.sample = static_cast<std::int64_t>(k);
+      c.usable = usable[k];
+      c.strain = {0.0, usable[k] ? 0.3 : 0.1};
+      c.stress_axial = {0.0, usable[k] ? 500.0 : 900.0};
+    }
+    return macro_results().lines(run).at(0).second;
+  };
+  EXPECT_EQ(line({false, true, false}), "Axial stress 500 Pa at strain 0.3 (oedometric; 1 sample; 2 not usable).");
+  EXPECT_TRUE(has_text(line({true, true}), "at strain 0.3 (oedometric; 2 samples, mean)"));
+  EXPECT_EQ(line({false}), "No usable run.");
+}
+
 TEST(MacroRemarks, ThePairLawIsRemarkedOnWhereItWasUsed) {
   EXPECT_TRUE(has_text(all_of(macro_remarks(curves_with(LawForm::pair))), pair_law_remark()));
   EXPECT_TRUE(has_text(all_of(macro_remarks(curves_with(LawForm::pair))), "is taken as the friction limit"));

@@ -86,6 +86,72 @@ TEST(Stages, UnloadingGoesTheWayBackAndReloadingForth) {
   EXPECT_EQ(recorded_points(spec), 1 + 7 + 7 + 1 + 7 + 7 + 7);
 }
 
+/// After a stage that lengthens the box, back is to shorten it.
+TEST(Stages, BackIsTheOtherWayThanTheStageBefore) {
+  for (const std::string kind : {"oedometric", "triaxial", "isotropic", "shear"}) {
+    const std::string load = "[[stage]]\nkind = \"" + kind + "\"\nstrain = -0.02\n";
+    const auto s = read(load + "[[stage]]\nkind = \"unload\"\nstrain = 0.01\n[[stage]]\nkind = \"reload\"\n" +
+                        "[[stage]]\nkind = \"reload\"\nstrain = 0.005\n")
+                       .stages;
+    EXPECT_DOUBLE_EQ(s.at(1).axis[2].value, 0.01) << kind;
+    EXPECT_LT(s.at(2).axis[2].value, 0.0) << kind;
+    EXPECT_DOUBLE_EQ(s.at(3).axis[2].value, -0.005) << kind;
+    const auto c = read(load + "[[stage]]\nkind = \"cycles\"\ncount = 2\nstrain = 0.01\n").stages;
+    for (std::size_t k = 1; k < 5; ++k) EXPECT_EQ(c.at(k).axis[2].value > 0.0, k % 2 == 1) << kind << k;
+  }
+}
+
+/// By stress too.
+TEST(Stages, BackByStressIsUpAfterAStageThatLengthens) {
+  const auto curve_of = [](double target) {
+    const MacroSpec spec = read(
+        "[[stage]]\nkind = \"oedometric\"\nstrain = -0.1\nsteps = 1\n[[stage]]\nsteps = 1\nkind = \"unload\"\n"
+        "stress = " +
+        std::to_string(target));
+    MacroCurve c;
+    c.strain = {0.0, -0.1, -0.09};
+    c.stress_x = c.stress_y = {50.0, 10.0, 10.0};
+    c.stress_axial = {50.0, 20.0, target};
+    note_stages(c, spec);
+    return c;
+  };
+  EXPECT_TRUE(curve_of(30.0).usable);
+  EXPECT_FALSE(curve_of(5.0).usable);
+}
+
+/// A stage that holds hardly more than what stresses are met to.
+TEST(Stages, SidesThatBeginWithNextToNoStressAreSaid) {
+  const auto note_at = [](double sides) {
+    const MacroSpec spec = read("[[stage]]\nkind = \"triaxial\"\nstrain = 0.1\nsteps = 1\n");
+    EXPECT_NEAR(stress_tolerance(spec.stages[0]) * least_stress(spec), 1e-2 / 3.0 * 5.0, 1e-12);
+    MacroCurve c;
+    c.strain = {0.0, 0.1};
+    c.stress_x = c.stress_y = {sides, sides};
+    c.stress_axial = {1.0, 20.0};
+    note_stages(c, spec);
+    return c.note;
+  };
+  EXPECT_NE(note_at(0.0).find("its sides are free"), std::string::npos) << note_at(0.0);
+  EXPECT_NE(note_at(0.08).find("began with 0.08 Pa along x, 0.08 Pa along y, which it holds to 0.0167 Pa at best"),
+            std::string::npos)
+      << note_at(0.08);
+  EXPECT_EQ(note_at(1.0), "");
+}
+
+/// A test that goes by stress alone is changed as one by strain is.
+TEST(Stages, ASlightChangeReachesStresses) {
+  const MacroSpec spec = read(
+      "[[stage]]\nkind = \"consolidation\"\nstress = [100, 200, 300]\n[[stage]]\nkind = \"triaxial\"\nstrain = 0.05\n");
+  const MacroSpec changed = slightly_changed(spec);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double value = spec.stages[0].axis[k].value;
+    EXPECT_NE(changed.stages[0].axis[k].value, value);
+    EXPECT_NEAR(changed.stages[0].axis[k].value, value, 1e-11 * value);
+  }
+  EXPECT_NE(changed.stages[1].axis[2].value, spec.stages[1].axis[2].value);
+  expect_axis(changed.stages[1].axis[0], true, 0.0, 1);
+}
+
 TEST(Stages, CyclesAreUnloadingsAndReloadings) {
   const MacroSpec spec = read(
       "[[stage]]\nkind = \"shear\"\nstrain = 0.05\n[[stage]]\nkind = \"cycles\"\ncount = 3\nstrain = 0.01\nsteps = 2");
@@ -127,7 +193,7 @@ TEST(Stages, AnUnloadingThatLoadsIsNotUsable) {
     c.strain = {0.0, 0.1, 0.11};
     c.stress_x = c.stress_y = {0.0, 10.0, 10.0};
     c.stress_axial = {0.0, 20.0, ends};
-    note_stages(c, spec.stages);
+    note_stages(c, spec);
     return c;
   };
   EXPECT_TRUE(curve_of("kind = \"unload\"\nstress = 5", 5.0).usable);

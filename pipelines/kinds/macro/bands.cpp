@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "calibrate/draws.h"
 #include "common/core/few_samples.h"
@@ -48,7 +49,7 @@ class DrawnBand {
     record_.estimator = setup.band_estimator;
     record_.draws = static_cast<std::int64_t>(draws.draws.size());
     record_.origin = draws.origin;
-    record_.discrepancy = draws.discrepancy;
+    record_.discrepancy = draws.off.empty() ? kNaN : draws.discrepancy;
     record_.discrepancy_origin = draws.discrepancy_origin;
     if (setup.band_estimator == BandEstimator::draws) {
       for (const std::vector<double>& numbers : draws.draws) variants_.push_back(draws.with(numbers));
@@ -79,13 +80,14 @@ class DrawnBand {
       const std::vector<double>& stress = banded_stress(curve, of);
       const std::vector<std::vector<double>> draws = drawn(ran, stress, of);
       if (of == BandOf::axial) curve.drawn_axial = draws;
-      std::vector<MacroBand> parts{law_part(draws, stress), discrepancy_part(ran, stress, of)};
-      set_band(curve, of, BandPart::law, parts[0]);
-      set_band(curve, of, BandPart::discrepancy, parts[1]);
-      if (noise > 0.0) {
-        parts.push_back(noise_part(stress, noise));
-        set_band(curve, of, BandPart::noise, parts[2]);
-      }
+      std::vector<MacroBand> parts;
+      const auto add_part = [&](BandPart part, MacroBand band) {
+        set_band(curve, of, part, band);
+        parts.push_back(std::move(band));
+      };
+      add_part(BandPart::law, law_part(draws, stress));
+      if (first_off_ < ran.size()) add_part(BandPart::discrepancy, discrepancy_part(ran, stress, of));
+      if (noise > 0.0) add_part(BandPart::noise, noise_part(stress, noise));
       set_band(curve, of, BandPart::all, together(stress, parts));
     }
   }
@@ -222,10 +224,11 @@ std::vector<BandedEnd> banded_ends(const std::vector<MacroCurve>& curves) {
       double low[2] = {0.0, 0.0};
       double high[2] = {0.0, 0.0};
       double noise_of = 0.0;
+      bool known = true;  // the discrepancy
       for (const MacroCurve& c : curves_of(curves, first.engine)) {
         const auto law = band_of(c, of, BandPart::law);
         const auto off = band_of(c, of, BandPart::discrepancy);
-        if (!c.usable || !law || !off) continue;
+        if (!c.usable || !law) continue;
         if (const auto part = band_of(c, of, BandPart::noise)) noise_of = 0.5 * (part->high.back() - part->low.back());
         const double own = banded_stress(c, of).back();
         stress.push_back(own);
@@ -234,14 +237,15 @@ std::vector<BandedEnd> banded_ends(const std::vector<MacroCurve>& curves) {
         if (!c.law_beyond.empty() && !c.law_evaluations.empty() && c.law_evaluations.back() > 0.0)
           end.beyond = std::max(end.beyond, c.law_beyond.back() / c.law_evaluations.back());
         low[0] += own - law->low.back(), high[0] += law->high.back() - own;
-        low[1] += own - off->low.back(), high[1] += off->high.back() - own;
+        if (off) low[1] += own - off->low.back(), high[1] += off->high.back() - own;
+        known = known && off.has_value();
       }
       if (stress.empty()) continue;
       const auto n = static_cast<double>(stress.size());
       const MeanError mean = mean_error(stress);
       end.stress = mean.mean;
       end.law = 0.5 * (low[0] + high[0]) / n;
-      end.discrepancy = 0.5 * (low[1] + high[1]) / n;
+      end.discrepancy = known ? 0.5 * (low[1] + high[1]) / n : kNaN;
       end.samples = students(stress.size()) * mean.error;
       const double spread = std::isfinite(end.samples) ? end.samples : 0.0;
       const double noise = stress.size() == 1 ? noise_of : 0.0;  // several samples show it by their spread
@@ -267,8 +271,9 @@ std::string banded_text(const BandedEnd& e) {
                                        "where no error is known",
                                        100.0 * e.beyond)
                                  : "";
-  return fmt::format("{}: {} stress at strain {:.4g}: {:.4g} Pa, {} (law {:.2g} %, discrepancy {:.2g} %, {}{})",
-                     e.engine, to_string(e.of), e.strain, e.stress, interval, share(e.law), share(e.discrepancy),
+  return fmt::format("{}: {} stress at strain {:.4g}: {:.4g} Pa, {} (law {:.2g} %, discrepancy {}, {}{})", e.engine,
+                     to_string(e.of), e.strain, e.stress, interval, share(e.law),
+                     std::isnan(e.discrepancy) ? "unknown" : fmt::format("{:.2g} %", share(e.discrepancy)),
                      std::isfinite(e.samples) ? fmt::format("{} samples {:.2g} %", e.count, share(e.samples))
                                               : "samples unknown: one alone",
                      beyond);

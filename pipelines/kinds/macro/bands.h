@@ -19,7 +19,7 @@ struct BandRecord {
   std::int64_t runs = 0;        ///< per sample, beside the run itself
   double explained = 1.0;       ///< share of the scatter of the law's forces that the components hold
   std::string origin;
-  double discrepancy = 0.0;  ///< error of the form of law: standard deviation of the logarithm of forces
+  double discrepancy = 0.0;  ///< error of the form of law: standard deviation of the logarithm of forces; NaN: unknown
   std::string discrepancy_origin;
   double noise = 0.0;  ///< relative standard deviation of one run; 0: not run again
 };
@@ -42,10 +42,10 @@ struct BandedEnd {
   double low = 0.0;
   double high = 0.0;
   double law = 0.0;
-  double discrepancy = 0.0;
-  double samples = 0.0;    ///< Student's, of the mean over samples; NaN with one
-  std::int64_t count = 0;  ///< number of samples
-  double beyond = 0.0;     ///< share of the uses of the law at this point beyond what was measured
+  double discrepancy = 0.0;  ///< NaN: unknown
+  double samples = 0.0;      ///< Student's, of the mean over samples; NaN with one
+  std::int64_t count = 0;    ///< number of samples
+  double beyond = 0.0;       ///< share of the uses of the law at this point beyond what was measured
   /// False where the interval would hold 0 too: nothing is known of a stress but that it is not larger. Ends are NaN.
   bool determined = true;
 };

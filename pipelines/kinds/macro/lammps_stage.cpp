@@ -21,6 +21,7 @@
 #include "macrosim/lammps_run/lammps_program.h"
 #include "macrosim/lammps_run/points_file.h"
 #include "macrosim/preparation.h"
+#include "macrosim/staged_test.h"
 #include "macrosim/test_protocol.h"
 
 namespace softgrain {
@@ -61,7 +62,7 @@ void write_sample(const LammpsRuns& runs, const MacroPacking& packing, std::int6
                             fmt::format("softgrain: {} bodies, sample {}", packing.bodies.size(), sample), packing,
                             types, spec.density, runs.inner_solid_fraction);
   if (missing(lammps::kSpringsFile) && lammps::has_springs(spec, packing))
-    lammps::write_springs_file(where + "/" + lammps::kSpringsFile, packing);
+    lammps::write_springs_file(where + "/" + lammps::kSpringsFile, spec, packing);
   if (missing(lammps::kScriptFile))
     write_text_atomic(
         where + "/" + lammps::kScriptFile,
@@ -79,6 +80,8 @@ class Sample {
         key_(key_of(runs, number)) {}
 
   void run(const LammpsEngine& engine, const std::function<void(double)>& progress) {
+    MacroCurve so_far = blank_curve(spec(), packing_, runs_.law.name, number_);
+    lammps::add_points(read_rows(), spec(), so_far);  // rows of another test are refused before LAMMPS goes on after them
     lammps::ResumePoint from =
         lammps::find_resume_point(where_, key_, recorded_points(spec()), spec().stages, lammps::grain_names(spec()));
     if (from.done) return;

@@ -23,7 +23,7 @@ std::optional<LammpsEngine> read_engine(const CommonOptions& options, std::int64
 
 /// What all samples share.
 struct LammpsRuns {
-  const MacroSetup& setup;
+  MacroSetup setup;  ///< with the increments of runs by laws, law_spec()
   const NamedLaws& law;
   double inner_solid_fraction = 1.0;
   std::string title;              ///< title of the scene, for people

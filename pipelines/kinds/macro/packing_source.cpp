@@ -10,6 +10,7 @@
 #include "common/core/text.h"
 #include "common/io/csv_file.h"
 #include "common/neighbours/hierarchical_grid.h"
+#include "macrosim/preparation.h"
 #include "pipelines/kinds/macro/twin_cache.h"
 
 namespace softgrain {
@@ -153,8 +154,8 @@ void make_periodic(const CsvFile& csv, MacroPacking& packing) {
 /// other member is part of the key. (A test of the keys prepares packings with each of these changed.)
 MacroSpec as_prepared(MacroSpec spec) {
   const MacroSpec none;
-  spec.friction = none.friction;  // of the test; that of the preparation is in its protocol
-  spec.wall_friction = none.wall_friction;
+  spec.friction = none.friction;  // of the test; that of the preparation among bodies is in its protocol
+  spec.wall_friction = preparation_wall_friction(spec);
   spec.test = none.test;
   spec.splits = none.splits;
   spec.stages = none.stages;

@@ -276,17 +276,24 @@ void check_macro_file(const std::string& path, Findings& out) {
   }
 }
 
-/// Where runs of one engine ended, when there is nothing to compare with.
+/// Where usable runs of one engine ended, when there is nothing to compare with. Strains of tests in stages may differ
+/// between samples.
 std::string end_line(const std::vector<MacroCurve>& curves) {
   std::vector<double> stress;
-  for (const MacroCurve& c : curves)
-    if (!c.stress_axial.empty()) stress.push_back(c.stress_axial.back());
-  if (stress.empty()) return "";
+  std::vector<double> strain;
+  for (const MacroCurve& c : curves) {
+    if (!c.usable || c.stress_axial.empty()) continue;
+    stress.push_back(c.stress_axial.back());
+    strain.push_back(c.strain.back());
+  }
+  const std::size_t left_out = curves.size() - stress.size();
+  if (stress.empty()) return left_out > 0 ? "No usable run." : "";
   const MeanError mean = mean_error(stress);
-  return fmt::format("Axial stress {} Pa at strain {} ({}; {} {}).",
+  return fmt::format("Axial stress {} Pa at strain {} ({}; {} {}{}).",
                      stress.size() > 1 ? format_with_error(mean.mean, mean.error) : format_number(mean.mean, 4),
-                     format_number(curves.front().strain.back(), 3), to_string(curves.front().test), stress.size(),
-                     stress.size() > 1 ? "samples, mean" : "sample");
+                     format_number(mean_error(strain).mean, 3), to_string(curves.front().test), stress.size(),
+                     stress.size() > 1 ? "samples, mean" : "sample",
+                     left_out > 0 ? fmt::format("; {} not usable", left_out) : "");
 }
 
 /// What law and twin differ by, of tests in stages in what these do not impose.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "common/core/few_samples.h"
 #include "common/core/text.h"
@@ -92,7 +93,10 @@ MacroRunSummary summarise(const MacroScene& scene, const LawIdentity& law, const
 
 LammpsRuns lammps_runs(const MacroScene& scene, const NamedLaws& law, const std::vector<ShellPacking>& contents,
                        const Provenance& provenance) {
-  return {scene.setup, law, mean_solid_fraction(contents), scene.title, lammps_identity(provenance, scene.law.text())};
+  MacroSetup setup = scene.setup;
+  setup.spec = law_spec(scene.setup);
+  return {std::move(setup), law, mean_solid_fraction(contents), scene.title,
+          lammps_identity(provenance, scene.law.text())};
 }
 
 constexpr const char* kInitialFile = "macro_initial.h5";
@@ -163,6 +167,14 @@ void require_draws(const MacroScene& scene, bool lammps) {
   (void)draws_of(scene, cells ? engine_of_cells() : scene_law(scene.law, scene.setup.spec, 0.0, "law"), {});
 }
 
+/// Runs in LAMMPS are not run again. Throws InputError.
+void require_noise(const Scene& scene, const MacroSetup& setup, bool lammps) {
+  if (lammps && setup.noise_samples > 0 && setup.twins.empty())
+    scene.root().table("macro").throw_error(
+        "noise_samples",
+        "LAMMPS runs each sample once: goes with a resolved twin, or without --engine lammps; must be 0");
+}
+
 /// The scene with its law, and what runs it; all that can be refused is, before anything is made.
 struct ReadyMacro {
   MacroScene macro;
@@ -190,6 +202,7 @@ ReadyMacro ready_macro(const Scene& scene, const CommonOptions& options) {
     throw InputError("key macro.preparation = \"lammps\" needs --engine lammps");
   if (macro.law.cells() != nullptr && lammps) throw InputError("--engine lammps: LAMMPS knows no cells; leave it out");
   if (macro.setup.bands > 0) require_draws(macro, lammps.has_value());
+  require_noise(scene, macro.setup, lammps.has_value());
   return ready;
 }
 
@@ -231,6 +244,7 @@ void check_with_options(const Scene& scene, const CommonOptions& options, Findin
   const MacroScene macro = read_with_options(scene, options);
   if (macro.setup.bands > 0 && !macro.law_file.empty())
     require_draws(macro, macro.setup.spec.preparation == Preparation::lammps);
+  require_noise(scene, macro.setup, macro.setup.spec.preparation == Preparation::lammps);
   check_macro_scene(macro, out);
 }
 

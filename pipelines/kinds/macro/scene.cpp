@@ -93,8 +93,6 @@ void read_cells(const SceneTable& root, const SceneTable& macro, const CellCard&
   macro.refuse({"band_estimator"}, "cells run every draw");
   setup.band_estimator = BandEstimator::draws;
   macro.refuse({"force_floor"}, "cells have no contact forces: their residual is over the mean load of a face");
-  if (!setup.given && !(spec.soft_share > 0.0))
-    macro.refuse({"soft_radius_max", "soft_polydispersity", "soft_sizes"}, "goes with soft_share above 0");
   CellMatter matter = read_fines(root);
   matter.card = card;
   if (setup.given && matter.solid_fraction > 0.0)
@@ -144,6 +142,7 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   if (!root.has_errors()) require_macro_memory(macro, out.setup, out.spec);
   if (!root.has_errors()) require_room_for_images(macro, "bodies", out.setup, out.seed);
   refuse_idle_keys(macro, !out.setup.twins.empty(), true);  // --bands may give some
+  refuse_idle_sizes(macro, {&out.setup});
   if (out.law.table() != nullptr)
     macro.refuse({"kt"}, "goes with a law card; a law table has one tangential stiffness");
   if (const LawCard* card = out.law.card(); card != nullptr && std::ranges::none_of(card->pairs, has_tangential))

@@ -66,6 +66,9 @@ void require_known_contents(const SceneTable& macro, const MacroSetup& setup, co
 /// Refuses keys of the motion of twins where there are none, and of bands likewise.
 void refuse_idle_keys(const SceneTable& macro, bool twins, bool bands);
 
+/// Refuses keys in `macro` of the sizes of a kind of body of which none of these scenes has any.
+void refuse_idle_sizes(const SceneTable& macro, const std::vector<const MacroSetup*>& scenes);
+
 /// What was assumed because the law does not say it, as a sentence; empty when nothing was.
 std::string assumed_text(const MacroSetup& setup);
 
@@ -111,7 +114,7 @@ std::string stage_parts(const std::vector<MacroCurve>& curves, MacroTest test);
 
 /// Raised whenever the same key would give another packing: when random numbers, preparations or what a packing holds
 /// change. The test of cached results holds the packings of this number.
-inline constexpr int kPackingSchema = 3;
+inline constexpr int kPackingSchema = 4;
 
 /// Everything that determines a prepared packing, as text.
 std::string packing_key(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample);

@@ -50,7 +50,7 @@ void read_preparation(const SceneTable& t, MacroSetup& setup) {
         "strain rate of the box times d sqrt(density/pressure), with the mean diameter d; 0: no motion",
         "0; `\"fast\"`: 0.1, `\"slow\"`: 1e-3"},
        &Protocol::inertial_number, Range::closed(0.0, 1.0));
-  read(t, {"compaction_mu", "friction during the preparation", "0; `\"fast\"`, `\"slow\"`: `mu`"}, &Protocol::friction,
+  read(t, {"compaction_mu", "friction between particles during the preparation; above 0, walls have `wall_mu`", "0; `\"fast\"`, `\"slow\"`: `mu`"}, &Protocol::friction,
        Range::not_negative());
   read(t, {"compaction_restitution", "coefficient of restitution during motion"}, &Protocol::restitution,
        Range::closed(0.05, 1.0));
@@ -383,8 +383,8 @@ MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
                                      1, 1000, setup.law_increments);
   setup.noise_samples =
       macro.count({"noise_samples",
-                   "number of samples that run twice, the second time with strains changed in the twelfth digit; the "
-                   "difference is the noise of one run (`noise` in results). No law can be more accurate"},
+                   "number of samples that run twice, the second time with strains and target stresses changed in the twelfth "
+                   "digit; the difference is the noise of one run (`noise` in results). No law can be more accurate"},
                   0, 10000, setup.noise_samples);
   setup.twins = read_twins(macro, setup.twins);
   read_twin_motion(macro, spec.twin);
@@ -396,6 +396,19 @@ void refuse_idle_keys(const SceneTable& macro, bool twins, bool bands) {
   if (!twins)
     macro.refuse({"twin_relaxation", "twin_speed", "twin_step_factor", "twin_settle_time"},
                  "goes with a resolved twin: resolved = true");
+}
+
+void refuse_idle_sizes(const SceneTable& macro, const std::vector<const MacroSetup*>& scenes) {
+  // Beside a file of bodies these keys are refused where it is read.
+  const auto none = [&](auto&& has) {
+    return std::ranges::none_of(scenes, [&](const MacroSetup* s) { return s->given || has(s->spec.soft_share); });
+  };
+  if (none([](double soft_share) { return soft_share > 0.0; }))
+    macro.refuse({"soft_radius_max", "soft_polydispersity", "soft_sizes"},
+                 "goes with soft_share above 0: there are no soft particles");
+  if (none([](double soft_share) { return soft_share < 1.0; }))
+    macro.refuse({"solid_radius_max", "solid_polydispersity", "solid_sizes"},
+                 "goes with soft_share below 1: there are no solid grains");
 }
 
 }  // namespace softgrain

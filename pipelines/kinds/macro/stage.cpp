@@ -182,17 +182,10 @@ PointRecord places_record(const MacroPacking& packing, const Engine& engine) {
   return [&](const MacroSystem& twin, MacroCurve& curve) { record_places(twin, packing, curve); };
 }
 
-/// A law run relaxes in a moment: where its increments are coarse, the way is.
 MacroSpec spec_for(const Stage& stage, const Engine& engine) {
-  MacroSpec spec = stage.runs.setup.spec;
-  if (engine.laws == nullptr) return spec;
-  if (engine.cells) {
-    spec.cells->card = *engine.laws->cells;
-    return spec;
-  }
-  const std::int64_t times = stage.runs.setup.law_increments;
-  spec.increments_per_step *= times;
-  for (MacroStage& s : spec.stages) s.increments_per_step *= times;
+  if (engine.laws == nullptr) return stage.runs.setup.spec;
+  MacroSpec spec = law_spec(stage.runs.setup);
+  if (engine.cells) spec.cells->card = *engine.laws->cells;
   return spec;
 }
 
@@ -201,7 +194,7 @@ std::string task_name(const Stage& stage, std::int64_t sample, const Engine& eng
   return stage.runs.name + "-" + engine.name + law + "-" + std::to_string(sample);
 }
 
-/// Runs the test of the first samples of a scene again, with strains that differ in their twelfth digit. Differences of
+/// Runs the test of the first samples of a scene again, slightly_changed(). Differences of
 /// the results come from the paths of grains.
 void run_again(const Stage& stage, std::int64_t sample, const Engine& engine, MacroCurve& curve, Progress& progress) {
   if (sample >= stage.runs.setup.noise_samples || engine.cells) return;
@@ -303,6 +296,13 @@ void ask_laws(const Stage& stage, const std::vector<NamedLaws>& laws, std::vecto
 }
 
 }  // namespace
+
+MacroSpec law_spec(const MacroSetup& setup) {
+  MacroSpec spec = setup.spec;
+  spec.increments_per_step *= setup.law_increments;
+  for (MacroStage& s : spec.stages) s.increments_per_step *= setup.law_increments;
+  return spec;
+}
 
 Snapshot named_state(const MacroSystem& macro, const MacroPacking& packing, const MacroCurve& c,
                      const std::string& runs) {

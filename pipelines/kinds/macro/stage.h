@@ -40,6 +40,9 @@ std::vector<DrawnSizes> drawn_sizes(const MacroSetup& setup, std::uint64_t seed,
 /// Solid fraction of the contents, their mean; 1 without any.
 double mean_solid_fraction(const std::vector<ShellPacking>& contents);
 
+/// The spec of runs by laws, in any engine. They relax in a moment: where their increments are coarse, the way is.
+MacroSpec law_spec(const MacroSetup& setup);
+
 /// One scene with all its engines.
 struct MacroRuns {
   const MacroSetup& setup;

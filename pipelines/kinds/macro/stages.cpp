@@ -152,7 +152,7 @@ class StageReader {
     return stress;
   }
 
-  /// Sets the axes of the last stage for a way; `sign` -1: back.
+  /// Sets the axes of the last stage for a way; `sign` -1: its strain, an amount, is taken the other way round.
   void drive(const SceneTable& t, StageKind way, double sign) {
     MacroStage& stage = stages_.back();
     if (way == StageKind::axes) return read_axes(t, stage);
@@ -175,7 +175,7 @@ class StageReader {
       const double value = t.number(kStressKey, Unit::pressure, Range::positive());
       by_stress(stage, way, {{value, value, value}});
     } else {
-      by_strain(stage, way, sign * read_strain(t, sign < 0.0 || stage.record.kind != stage.record.way));
+      by_strain(stage, way, sign * read_strain(t, stage.record.kind != stage.record.way));
     }
     if (way == StageKind::triaxial) hold_sides(t, stage);
   }
@@ -234,12 +234,13 @@ class StageReader {
 
   void unload(const SceneTable& t) {
     if (refuse_axes(t)) return;
-    drive(t, stages_.back().record.way, -1.0);
-    require_way(t, -1.0);
+    const double back = -way_sign(stages_, here());
+    drive(t, stages_.back().record.way, back);
+    require_way(t, back);
   }
 
-  /// A stress to unload to lies below that of the stage before, one to reload to above it. Where that stage goes by
-  /// strain, this is known in the run alone (note_stages).
+  /// A stress to unload to lies below that of the stage before, one to reload to above it; `sign` -1: below. Where that
+  /// stage goes by strain, this is known in the run alone (note_stages).
   void require_way(const SceneTable& t, double sign) const {
     const std::optional<double> target = stages_.back().target_stress();
     std::int64_t before = here() - 1;
@@ -248,9 +249,9 @@ class StageReader {
     const MacroStage& from = stages_[static_cast<std::size_t>(before)];
     const std::optional<double> there = from.target_stress();
     if (!there || from.goes_to_mean() != stages_.back().goes_to_mean() || sign * (*target - *there) > 0.0) return;
-    t.add_error("stress",
-                fmt::format("must be {} the {:.6g} Pa of stage '{}', from which it {}", sign < 0.0 ? "below" : "above",
-                            *there, from.record.name, sign < 0.0 ? "unloads" : "reloads"));
+    t.add_error("stress", fmt::format("must be {} the {:.6g} Pa of stage '{}', from which it {}",
+                                      sign < 0.0 ? "below" : "above", *there, from.record.name,
+                                      stages_.back().record.kind == StageKind::unload ? "unloads" : "reloads"));
   }
 
   /// Back to where the unloading before it began, unless it says how far.
@@ -258,8 +259,9 @@ class StageReader {
     if (refuse_axes(t)) return;
     MacroStage& stage = stages_.back();
     if (t.has("strain") || t.has("stress")) {
-      drive(t, stage.record.way, 1.0);
-      return require_way(t, 1.0);
+      const double forth = way_sign(stages_, here());
+      drive(t, stage.record.way, forth);
+      return require_way(t, forth);
     }
     std::int64_t from = here() - 1;
     while (from >= 0 && stages_[static_cast<std::size_t>(from)].record.kind == StageKind::hold) --from;

@@ -61,7 +61,10 @@ double first_mean_stress(const MacroCurve& c) {
   return (c.stress_x.front() + c.stress_y.front() + c.stress_axial.front()) / 3.0;
 }
 
-const char* why(const MacroCurve& c) {
+const char* why(const MacroSpec& spec, const MacroCurve& c) {
+  if (c.soft == 0 && spec.protocol.friction > spec.friction)
+    return "the preparation had more friction than the test, which the packing does not hold without: a compaction_mu "
+           "of mu at most";
   if (c.soft == 0)
     return "the preparation stops at preparation_tolerance, and contacts open when the test relaxes the packing to its "
            "own tolerance: a smaller preparation_tolerance or a larger start_pressure";
@@ -145,7 +148,7 @@ std::vector<std::string> first_point_remarks(const MacroSpec& spec, const std::v
     const double asked = spec.start_pressure * c.start.youngs_modulus;
     const double mean = stress.mean();
     if (!(mean < kFarBelow * asked)) continue;
-    const std::string reason = why(c);
+    const std::string reason = why(spec, c);
     auto at = std::ranges::find(below, reason, &Below::reason);
     if (at == below.end()) at = below.insert(below.end(), {reason, asked, "", ""});
     append_part(at->engines, "'" + c.engine + "'", ", ");

@@ -138,31 +138,35 @@ std::string console_summary(const std::vector<SceneResult>& results, const Run& 
   return text + "table: " + run.path("table.md") + "\n";
 }
 
-/// The packings of a comparison should be those that the law was measured on.
-std::vector<std::string> law_remarks(const SoftParticleSpec& mine, const LawSources& laws) {
-  if (const LawTable* table = laws.table())
-    for (const LawTableEntry& e : table->entries)
-      if ((e.spec.sizes || mine.sizes) && !same_sizes(e.spec, mine))
-        return {"the law table was measured on soft particles whose grains have other sizes than those of the twins"};
-  if (laws.card() == nullptr) return {};
-  const SoftParticleSpec& law = laws.card()->spec;
-  if (!packing_known(law))
-    return {
-        "the law card does not say what is inside the soft particle that was measured; the twins are filled as this "
-        "scene says"};
-  const bool same = same_sizes(law, mine) && law.beta == mine.beta && law.friction == mine.friction &&
-                    law.poisson_ratio == mine.poisson_ratio;
-  if (same) return {};
-  return {"the law was measured on soft particles of another packing or material than those of the twins"};
+/// The packings of a comparison should be those that the laws were measured on; of a table the entry that is taken for
+/// contents of this solid fraction.
+std::vector<std::string> law_remarks(const SoftParticleSpec& mine, const LawSources& laws, double contents_fraction) {
+  std::vector<std::string> out;
+  const auto compare = [&](const SoftParticleSpec& law, const char* what) {
+    const bool same = same_sizes(law, mine) && law.beta == mine.beta && law.friction == mine.friction &&
+                      law.poisson_ratio == mine.poisson_ratio;
+    if (!packing_known(law))
+      out.push_back(fmt::format(
+          "the {} does not say what is inside the soft particle that was measured; the twins are filled as this scene "
+          "says",
+          what));
+    else if (!same)
+      out.push_back(fmt::format(
+          "the {} was measured on soft particles of another packing or material than those of the twins", what));
+  };
+  std::string said_with_its_law;
+  if (laws.table() != nullptr) compare(law_entry(laws, contents_fraction, said_with_its_law).spec, "law table");
+  if (laws.card() != nullptr) compare(laws.card()->spec, "law card");
+  return out;
 }
 
-MacroComparisonSummary summarise(const MacroComparisonSetup& setup, const std::vector<SceneResult>& results,
-                                 const Run& run) {
+MacroComparisonSummary summarise(const MacroComparisonSetup& setup, const std::vector<ShellPacking>& contents,
+                                 const std::vector<SceneResult>& results, const Run& run) {
   MacroComparisonSummary s;
   s.head.title = setup.title;
   for (const ComparisonScene& scene : setup.scenes)
     if (!scene.by_own_law())
-      for (const std::string& one : law_remarks(setup.spec, setup.laws_of(scene)))
+      for (const std::string& one : law_remarks(setup.spec, setup.laws_of(scene), inside_fraction(scene, contents)))
         if (std::find(s.head.remarks.begin(), s.head.remarks.end(), one) == s.head.remarks.end())
           s.head.remarks.push_back(one);
   for (const SceneResult& r : results) {
@@ -203,7 +207,7 @@ Outcome run_macro_comparison(const MacroComparisonSetup& setup, const Run& run) 
   run.guard([&] {
     for (const ComparisonScene& s : setup.scenes) results.push_back(run_scene(s, setup, contents, run));
   });
-  const MacroComparisonSummary summary = summarise(setup, results, run);
+  const MacroComparisonSummary summary = summarise(setup, contents, results, run);
   write_text_atomic(run.path("comparison.json"),
                     json_of(summary.compared).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   write_tables(whole_table(results), run);

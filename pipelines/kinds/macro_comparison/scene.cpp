@@ -37,6 +37,7 @@ ComparisonScene read_scene(const SceneTable& root, const SceneTable& t, const Ma
   read_part_stages(root, t, scene.setup.spec);
   refuse_idle_test_keys(t, t.has("stage") ? t : root, {&scene.setup.spec});
   refuse_idle_keys(t, !scene.setup.twins.empty(), scene.setup.bands > 0);
+  refuse_idle_sizes(t, {&scene.setup});
   require_own_preparation(t, scene.setup);
   if (valid) require_macro_memory(t, scene.setup, content);
   if (valid && !t.has_errors()) require_room_for_images(t, "bodies", scene.setup, seed);
@@ -49,6 +50,20 @@ ComparisonScene read_scene(const SceneTable& root, const SceneTable& t, const Ma
     if (s.name == scene.name)
       t.add_error("name", "another scene is called '" + s.name + "' already; give this one a name");
   return scene;
+}
+
+/// Refuses the choice of a tangential stiffness where no law has two of them.
+void refuse_idle_slopes(const MacroComparisonSetup& setup, const SceneTable& macro,
+                        const std::vector<SceneTable>& parts) {
+  constexpr const char* kWhy = "goes with a law card; a law table has one tangential stiffness";
+  bool any = setup.scenes.empty();
+  for (std::size_t k = 0; k < setup.scenes.size(); ++k) {
+    const LawSources& laws = setup.laws_of(setup.scenes[k]);
+    const bool chooses = laws.laws.empty() || laws.card() != nullptr;  // laws that were refused say nothing
+    if (!chooses) parts[k].refuse({"kt"}, kWhy);
+    any = any || chooses;
+  }
+  if (!any) macro.refuse({"kt"}, kWhy);
 }
 
 }  // namespace
@@ -74,9 +89,14 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
       setup.scenes.push_back(read_scene(root, t, base, setup.spec, setup.scenes, setup.seed, !root.has_errors()));
     refuse_idle_stages(root, "scene", root.tables("scene"));
     std::vector<const MacroSpec*> tests;
-    for (const ComparisonScene& s : setup.scenes) tests.push_back(&s.setup.spec);
+    std::vector<const MacroSetup*> setups;
+    for (const ComparisonScene& s : setup.scenes) {
+      tests.push_back(&s.setup.spec);
+      setups.push_back(&s.setup);
+    }
     if (!tests.empty()) {
       refuse_idle_test_keys(macro, root, tests);
+      refuse_idle_sizes(macro, setups);
       const auto any = [&](auto&& has) { return std::any_of(setup.scenes.begin(), setup.scenes.end(), has); };
       refuse_idle_keys(macro, any([](const ComparisonScene& s) { return !s.setup.twins.empty(); }),
                        any([](const ComparisonScene& s) { return s.setup.bands > 0; }));
@@ -101,6 +121,7 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
     else if (!all_own)
       root.table({"law", "laws to compare: `table`, `card` or both; refused if every scene has its own law"})
           .section([&] { setup.laws = read_law_sources(scene, root.table("law")); });
+    refuse_idle_slopes(setup, macro, parts);
     return setup;
   });
 }

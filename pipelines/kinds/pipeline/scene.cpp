@@ -65,6 +65,7 @@ PipelineSetup read_pipeline_setup(const Scene& scene) {
     read_stages(root, macro, setup.macro->spec);
     refuse_idle_test_keys(macro, root, {&setup.macro->spec});
     refuse_idle_keys(macro, !setup.macro->twins.empty(), setup.macro->bands > 0);
+    refuse_idle_sizes(macro, {&*setup.macro});
     if (macro.has("kt") && !setup.measure.rotates())
       macro.add_error("kt", "goes with angles_deg: no tangential stiffness is measured in this scene");
     setup.macro->kept_states = setup.measure.kept_states;
