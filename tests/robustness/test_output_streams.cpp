@@ -131,7 +131,7 @@ TEST(OutputStreams, ExportSaysWhatCannotBeWritten) {
   const KindRuns runs({"particles", "microsim", tiny_particles("0.2"), 0});
   ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("run"))), 0));
   const std::string errors = runs.out("errors.txt");
-  for (const std::string form : {"csv", "vtp", "lammps-dump"}) {
+  for (const std::string form : {"csv", "vtp", "lammps-dump", "lammps-data"}) {
     const int status = wait_for(start_program({"export", runs.out("run"), "--to", form}, [&] {
       errors_to(errors)();
       const rlimit limit{300, RLIM_INFINITY};

@@ -36,6 +36,6 @@ void visit_particles(const std::string& path, SnapshotChoice choice, const Visit
 namespace report {
 std::string energies_section(const RunData& run);   ///< energies of the recorded frames over time
 std::string particles_section(const RunData& run);  ///< final states and contacts
-}
+}  // namespace report
 
 }  // namespace softgrain
