@@ -156,7 +156,8 @@ std::vector<KeyEffect> sensitivity_of(const SetSummary& summary) {
 
 std::string effect_text(const std::optional<EffectSize>& effect) {
   if (!effect) return "not determined";
-  return fmt::format("{:.2f} [{:.2f}, {:.2f}]", effect->value, effect->low, effect->high);
+  const auto rounded = [](double x) { return std::round(100.0 * x) / 100.0 + 0.0; };  // no -0.00
+  return fmt::format("{:.2f} [{:.2f}, {:.2f}]", rounded(effect->value), rounded(effect->low), rounded(effect->high));
 }
 
 std::string sensitivity_text(const SetSummary& summary) {

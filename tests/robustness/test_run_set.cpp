@@ -317,6 +317,35 @@ TEST_F(RunSet, AnInterruptedSweepOfSeveralAtOnceGoesOn) {
   EXPECT_EQ(numbers_of_runs(file("parts")), numbers_of_runs(file("whole")));
 }
 
+/// One process is killed: its run is marked, the other one stands, and the set goes on.
+TEST_F(RunSet, AMemberThatCrashesLeavesTheOthers) {
+  const auto start = [&](bool resume) {
+    std::vector<std::string> all{"sweep",    file("macro.toml"), "--over",  "macro.bodies=6,60",
+                                 "--set",    "macro.steps=20",   "--quiet", "--threads",
+                                 "2",        "--jobs",           "2",       "--out",
+                                 file("out")};
+    if (resume) all.emplace_back("--resume");
+    return start_program(all);
+  };
+  const pid_t set = start(false);
+  const std::string lock = file("out") + "/bodies=60/.lock";
+  const auto end = std::chrono::steady_clock::now() + kLongestWait;
+  pid_t member = 0;
+  while (member <= 0 && std::chrono::steady_clock::now() < end) {
+    if (fs::exists(file("out") + "/bodies=60/.run")) member = std::atoi(read_text(lock).c_str());
+    ::usleep(1000);
+  }
+  ASSERT_GT(member, 0);
+  ::kill(member, SIGKILL);
+  EXPECT_TRUE(ended_with(wait_for(set), 3));
+  const json summary = summary_of(file("out"));
+  EXPECT_EQ(summary["runs"][0]["status"], "good");
+  EXPECT_EQ(summary["runs"][1]["status"], "not usable");
+  EXPECT_EQ(summary["runs"][1]["reason"], "its process was ended by signal 9");
+  EXPECT_TRUE(ended_with(wait_for(start(true)), 0));
+  EXPECT_EQ(summary_of(file("out"))["status"], "good");
+}
+
 /// What a job array starts, without a cluster: every command of the file, then the set collects.
 TEST_F(RunSet, AJobArrayIsWrittenRunAndCollected) {
   const std::string sweep = "--over macro.bodies=6..9 --sample lhs:2 --seed 3 --set macro.steps=1 ";
