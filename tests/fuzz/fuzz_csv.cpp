@@ -1,5 +1,5 @@
-// Any text as a sieve analysis, and as a table of an experiment; what is read goes on to what calibrate does before it
-// fits, and (second byte 0) to the fit.
+// Any text as a sieve analysis, and as a table of an experiment; what is read of that goes on to what calibrate does
+// before it fits, and (second byte 0) to the fit.
 #include <cstddef>
 #include <cstdint>
 
