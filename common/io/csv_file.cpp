@@ -238,7 +238,8 @@ void CsvFile::read_row(const std::string& line, int number) {
   if (is_header_ && read_more_titles(line, number)) return;
   CsvRow row{is_header_ ? split_with_inches(line, separator_) : split(line, separator_), number};
   if (is_header_) {
-    const bool text = row.cells.front().find_first_of("0123456789") == std::string::npos;  // below the table
+    const std::string& first = row.cells.front();
+    const bool text = !first.empty() && first.find_first_of("0123456789") == std::string::npos;  // below the table
     row.cells.resize(text ? columns_.size() : std::max(row.cells.size(), columns_.size()));
   }
   while (row.cells.size() > columns_.size() && row.cells.back().empty()) row.cells.pop_back();

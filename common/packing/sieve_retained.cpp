@@ -77,7 +77,7 @@ class RetainedReader {
 
   void decide_direction() {
     const bool falls = std::is_sorted(values_.rbegin(), values_.rend());
-    if (falls == rises_) refuse("rises or falls with the size, to be what passes or what is retained", "passing");
+    if (falls == rises_) refuse("is what passes, or what is retained in all", "passing");
     meaning_ = falls ? SieveColumn::passing : SieveColumn::cumulative;
     if (has_pan() && falls && values_.size() > table_.rows.size()) values_.pop_back();
   }

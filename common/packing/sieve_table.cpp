@@ -86,7 +86,9 @@ class SieveReader {
       below = below || (!lines_.empty() && row.line > before + 1);
       before = row.line;
       const std::string& cell = row.cells[choice_.size];
-      const std::string& label = *std::ranges::find_if(row.cells, [](const std::string& c) { return !c.empty(); });
+      const auto first = std::ranges::find_if(row.cells, [](const std::string& c) { return !c.empty(); });
+      if (first == row.cells.end()) continue;
+      const std::string& label = *first;
       SieveLine line{sieve_size(plain(row, choice_.size, sizes)), "", row.cells[choice_.value], row.line};
       if (!csv::is_missing(line.cell)) line.value = plain(row, choice_.value, values);
       if (cell.empty() && sieve_size(label).kind == SieveSize::Kind::pan) line.size.kind = SieveSize::Kind::pan;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "calibrate/experiment_fit.h"
 #include "common/core/error.h"
@@ -119,8 +120,14 @@ void check_table(const std::string& path, const std::vector<std::string>& overri
   std::error_code ignored;
   const bool sieves = std::filesystem::is_regular_file(path, ignored) && is_sieve_file(path);
   if (!overrides.empty() && !sieves) throw InputError("--set: " + path + " is no scene");
-  if (sieves) return check_sieves(path, overrides, out);
-  const CsvFile table = CsvFile::read(path);
+  std::optional<CsvFile> read;
+  try {
+    read = CsvFile::read(path);
+  } catch (const InputError&) {  // tables of laboratories have lines of text
+    if (!sieves) throw;
+  }
+  if (!read) return check_sieves(path, overrides, out);
+  const CsvFile& table = *read;
   const auto has = [&](const char* name) {
     return std::any_of(table.columns().begin(), table.columns().end(),
                        [&](const CsvColumn& c) { return c.name == name; });
@@ -135,7 +142,7 @@ void check_table(const std::string& path, const std::vector<std::string>& overri
     check_force_curves(table, out);
   else if (has("x") && has("y") && has("z"))
     check_packing(table, out);
-  else if (names({"passing", "finer", "retained"}))
+  else if (sieves || names({"passing", "finer", "retained"}))
     check_sieves(path, overrides, out);
   else if (has_column(table, {"radius", "diameter"}) || has("r") || has("d"))
     check_radii(read_radii(path), out);

@@ -1,11 +1,12 @@
-// Any text as a table of an experiment; what is read goes on to what calibrate does before it fits, and (second byte 0)
-// to the fit.
+// Any text as a sieve analysis, and as a table of an experiment; what is read of that goes on to what calibrate does
+// before it fits, and (second byte 0) to the fit.
 #include <cstddef>
 #include <cstdint>
 
 #include "calibrate/experiment_fit.h"
 #include "common/core/error.h"
 #include "common/data/force_curves.h"
+#include "common/packing/sieve_table.h"
 #include "tests/fuzz/input_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -19,6 +20,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   options.unloading = data[0] % 4 > 1 ? Unloading::drop : Unloading::refuse;
   const fuzz::InputFile file(data + 2, size - 2, "input.csv");
+  try {
+    (void)read_sieve_file(file.path());
+  } catch (const Error&) {
+  }
   try {
     const std::vector<ForceCurves> curves = read_force_curve_files({file.path()}, options);
     for (const ForceCurves& one : curves) (void)mean_curve(one);
