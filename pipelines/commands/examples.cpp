@@ -14,6 +14,7 @@
 #include "common/core/text.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
+#include "macrosim/lammps_run/lammps_program.h"
 #include "pipelines/commands/commands.h"
 #include "pipelines/law/terminal_plot.h"
 
@@ -137,8 +138,7 @@ std::string with_full_paths_in_line(const std::string& line, const fs::path& fol
 
 std::string shipped_scenes() {
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  for (fs::path at = program.parent_path(); at.has_relative_path(); at = at.parent_path())
+  for (fs::path at = own_directory(); at.has_relative_path(); at = at.parent_path())
     for (const char* place : {"share/softgrain/pipelines", "pipelines"})
       if (fs::exists(at / place / kFirstExample, error)) return (at / place).string();
   return "";
