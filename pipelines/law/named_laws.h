@@ -20,13 +20,13 @@ struct NamedLaws {
   LawForm form = LawForm::pair;
   SoftLaws laws;
   LawIdentity identity{};
-  std::optional<CellCard> cells{};  ///< a cell law with other numbers than that of the scene, in place of `laws`
   std::string tag;  ///< changes with the numbers of the law: part of the name of checkpoints; empty: none
   /// Text about the end of a run: contacts that no measurement covers. Empty when there is nothing to say; the function
   /// may be empty.
   std::function<std::string(const System3&)> note;
   /// Text about what may make the result wrong: contacts deeper than any that was measured.
   std::function<std::string(const System3&)> warning{};
+  std::optional<CellCard> cells{};  ///< a cell law with other numbers than that of the scene, in place of `laws`
 };
 
 /// The pair law of a card; `beyond` instead of what the card says. Throws InputError when the card has no usable law.

@@ -126,6 +126,7 @@ MacroSpec full_spec() {
   spec.soft_sizes = Grading::power_law(2.5, 1e-3, 3e-3);
   spec.cells = CellMatter{};
   spec.cells->card.memory = CellMemory{};
+  spec.cells->card.correlation = {{"K"}, {1.0}};
   spec.packing_text = "x,y,z";
   spec.splits = {0.25};
   spec.test = MacroTest::stages;

@@ -126,7 +126,7 @@ std::string stage_parts(const std::vector<MacroCurve>& curves, MacroTest test) {
   if (test == MacroTest::stages)
     out += figure_row(
         {over_strain(curves, "macro-stages-ratio", "Stress ratio, stages", "q/p",
-                     "q/p, the strength that is mobilised.", stress_ratios),
+                     "q/p, the strength that is mobilised.", [](const MacroCurve& c) { return stress_ratios(c); }),
          over_strain(curves, "macro-stages-volume", "Volume, stages", "volume lost [%]",
                      "Loss of volume since the start; where it falls, the packing dilates.", volumetric_strains)});
   return out + tables_of_stages(curves);
