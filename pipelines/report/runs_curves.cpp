@@ -62,13 +62,19 @@ struct CurvePlot {
   std::vector<CurveOfRun> curves;
 };
 
+/// Whether there is nothing of a run that can be shown: it crashed, or was refused on its way.
+bool left_nothing(const RunEntry& run, const std::filesystem::path& directory) {
+  std::error_code ignored;
+  return run.status != RunStatus::good && !std::filesystem::exists(directory / "summary.json", ignored);
+}
+
 /// Curves of all runs whose directories exist, grouped by the plot that they belong to.
 std::vector<CurvePlot> plots_of(const RunData& run, const SetSummary& set) {
   std::vector<CurvePlot> plots;
   for (std::size_t k = 0; k < set.runs.size(); ++k) {
     const std::filesystem::path directory = std::filesystem::path(run.directory) / set.runs[k].directory;
     std::error_code ignored;
-    if (!std::filesystem::is_directory(directory, ignored)) continue;
+    if (!std::filesystem::is_directory(directory, ignored) || left_nothing(set.runs[k], directory)) continue;
     for (RunCurve& curve : curves_of(directory.string())) {
       const std::string title = curve.plot + (curve.name.empty() ? "" : ", " + curve.name);
       auto at = std::find_if(plots.begin(), plots.end(), [&](const CurvePlot& p) { return p.title == title; });
