@@ -54,8 +54,8 @@ TEST_P(NewScene, PassesCheckAndExplainsItsKeys) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, NewScene, ::testing::ValuesIn(names_of_kinds()),
-                         [](const ::testing::TestParamInfo<std::string>& info) {
-                           std::string name = info.param;
+                         [](const ::testing::TestParamInfo<std::string>& tested) {
+                           std::string name = tested.param;
                            std::ranges::replace(name, '-', '_');
                            return name;
                          });
