@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <span>
 
 #include "common/core/text.h"
@@ -42,9 +43,11 @@ bool is_long(const std::string& cell) {
 /// "Table of stage, engine, modulus and 3 more columns, 6 rows".
 std::string summary_of(const std::vector<std::string>& header, std::size_t rows) {
   constexpr std::size_t kNamed = 3;
-  const std::size_t named = std::min(header.size(), kNamed);
-  std::string text = "Table of " + join_text(std::span(header).first(named));
-  const std::size_t more = header.size() - named;
+  std::vector<std::string> titled;
+  std::ranges::copy_if(header, std::back_inserter(titled), [](const std::string& t) { return !t.empty(); });
+  const std::size_t named = std::min(titled.size(), kNamed);
+  std::string text = "Table of " + join_text(std::span(titled).first(named));
+  const std::size_t more = titled.size() - named;
   if (more > 0) text += " and " + std::to_string(more) + " more column" + (more == 1 ? "" : "s");
   return text + ", " + std::to_string(rows) + (rows == 1 ? " row" : " rows");
 }

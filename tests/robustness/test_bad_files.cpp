@@ -439,7 +439,7 @@ end = 1e-3
   bad("\xef\xbb\xbf"
       "1 1 1 1\n0 0 1 0.01\n",
       2, ":1: must be four finite numbers, N Lx Ly Lz");
-  bad("1,1,1,1\n0,0,1,0.01\n", 2, ":1: must be four finite numbers");
+  bad("1,1,1,1\n0,0,1,0.01\n", 2, ":1: must be four numbers with blanks or tabs between them");
   bad(std::string("1 1 1 1\n0 0\0 1 0.01\n", 20), 2, ":2: must be four");
   bad("1 1 1 1\n0 0 1 0x1p-3\n", 2, ":2: ");
   bad("1 1 1 1\n0 0 1 0\n", 2, ":2: r = 0.000000: must be above 0");

@@ -80,7 +80,7 @@ TEST_F(Check, TheLawOfTheCommandLineReplacesThatOfTheScene) {
   EXPECT_GT(table["law_volume"]["measured"].get<double>(), 0.1);
   write_text_atomic(directory_.file("scene.toml"), macro("absent.toml", ""));
   EXPECT_EQ(run_the_program("check '" + directory_.file("scene.toml") + "'").status, 4);
-  EXPECT_EQ(run_the_program("check '" + kCard + "' --law '" + kTable + "'").status, 0);
+  EXPECT_EQ(run_the_program("check '" + kCard + "' --law '" + kTable + "'").status, 2) << "a card is no scene";
 }
 
 TEST_F(Check, ATableIsHeldAgainstTheSizesOfTheScene) {
@@ -240,7 +240,8 @@ TEST_F(Check, OptionsOfTheCommandLineAreThoseOfTheRunOrRefused) {
   for (const char* option : {"--law law.toml", "--bands 50"}) {
     const test::ProgramOutcome refused = said(option);
     EXPECT_EQ(refused.status, 2) << refused.output;
-    EXPECT_NE(refused.output.find("goes with scenes of kind \"macro\""), std::string::npos) << refused.output;
+    EXPECT_NE(refused.output.find("take no law from the command line; those of \"macro\" do"), std::string::npos)
+        << refused.output;
   }
 }
 

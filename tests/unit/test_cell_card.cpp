@@ -113,10 +113,10 @@ TEST(CellCardFile, MayHaveNoMemory) {
 
 TEST(CellCardFile, CorrelationsAreThoseOfNumbersOfTheCard) {
   const TemporaryDirectory directory;
-  const auto complaint = [&](const CellCorrelation& wrong) -> std::string {
-    CellCard card = sample_card();
-    card.correlation = wrong;
-    write_cell_card(card, directory.file("card.toml"));
+  const auto complaint = [&](const std::string& numbers, const std::string& matrix) -> std::string {
+    const std::string table = "[correlation]\nnumbers = " + numbers + "\nmatrix = " + matrix + "\n";
+    write_cell_card(sample_card(), directory.file("card.toml"));
+    write_text_atomic(directory.file("card.toml"), read_text(directory.file("card.toml")) + table);
     try {
       (void)read_cell_card(directory.file("card.toml"));
     } catch (const InputError& e) {
@@ -124,16 +124,17 @@ TEST(CellCardFile, CorrelationsAreThoseOfNumbersOfTheCard) {
     }
     return "";
   };
-  const auto expect_words = [&](const CellCorrelation& wrong, const std::string& words) {
-    EXPECT_NE(complaint(wrong).find(words), std::string::npos) << complaint(wrong);
+  const auto expect_words = [&](const char* numbers, const char* matrix, const char* words) {
+    EXPECT_NE(complaint(numbers, matrix).find(words), std::string::npos) << complaint(numbers, matrix);
   };
-  EXPECT_EQ(complaint({{"K", "n"}, {1.0, 0.5, 0.5, 1.0}}), "");
-  expect_words({{"K", "A"}, {1.0, 0.5, 0.5, 1.0}}, "\"A\" is no number of this card");  // it has no [memory]
-  expect_words({{"K", "K"}, {1.0, 0.5, 0.5, 1.0}}, "twice");
-  expect_words({{"K", "n"}, {1.0, 0.5, 0.5}}, "must be 4 numbers");
-  expect_words({{"K", "n"}, {1.0, 0.5, 0.4, 1.0}}, "the same across it");
-  expect_words({{"K", "n"}, {0.9, 0.5, 0.5, 1.0}}, "1 on its diagonal");
-  expect_words({{"K", "n"}, {1.0, 1.5, 1.5, 1.0}}, "matrix");
+  const char* const two = R"(["K", "n"])";
+  EXPECT_EQ(complaint(two, "[1, 0.5, 0.5, 1]"), "");
+  expect_words(R"(["K", "A"])", "[1, 0.5, 0.5, 1]", "\"A\" is no number of this card");  // it has no [memory]
+  expect_words(R"(["K", "K"])", "[1, 0.5, 0.5, 1]", "twice");
+  expect_words(two, "[1, 0.5, 0.5]", "must be 4 numbers");
+  expect_words(two, "[1, 0.5, 0.4, 1]", "the same across it");
+  expect_words(two, "[0.9, 0.5, 0.5, 1]", "1 on its diagonal");
+  expect_words(two, "[1, 1.5, 1.5, 1]", "matrix");
 }
 
 TEST(CellCardFile, NumbersAreSetByTheirKeysWithinTheirRanges) {

@@ -311,7 +311,7 @@ class MaterialLawFit {
       share.push_back(error > 0.0 ? std::min(1.0, mean_error(values).deviation_or_zero() / error) : 0.0);
     }
     for (std::size_t k = 0; k < size * size; ++k)
-      state.matrix[k] = k / size == k % size ? 1.0 : state.matrix[k] * share[k / size] * share[k % size];
+      state.matrix[k] = k / size == k % size ? 1.0 : state.matrix[k] * (share[k / size] * share[k % size]);
     out_.card.correlation = of_known(side_by_side(state, faces_), numbers);
   }
 
