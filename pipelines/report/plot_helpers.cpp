@@ -149,6 +149,12 @@ std::string engine_name(const std::string& engine) {
   return known != nullptr ? known->name : engine;
 }
 
+bool is_of_cells(const MacroCurve& curve) { return !curve.law.form && !curve.law.hash.empty(); }
+
+std::string engine_name(const MacroCurve& curve) {
+  return is_of_cells(curve) ? "cells of fines" : engine_name(curve.engine);
+}
+
 SeriesStyle engine_style(const std::string& engine) {
   const Known* known = find(engine);
   if (known == nullptr) return {.color = palette::green, .width = 1.5, .marker = Marker::triangle, .marker_size = 2.6};
@@ -158,7 +164,7 @@ SeriesStyle engine_style(const std::string& engine) {
 std::string law_paragraph(const std::vector<MacroCurve>& curves) {
   std::set<std::string> lines;
   for (const MacroCurve& c : curves)
-    if (!c.twin()) lines.insert(engine_name(c.engine) + ": " + identity_text(c.law));
+    if (!c.twin()) lines.insert(engine_name(c) + ": " + identity_text(c.law));
   std::set<std::string> pictures;
   for (const MacroCurve& c : curves)
     if (c.soft > 0 || !c.law.form) pictures.insert(picture_of(c.law));
@@ -187,13 +193,13 @@ void add_curves(Plot& plot, const std::vector<MacroCurve>& curves, Stress member
   std::set<std::string> named;
   for (const MacroCurve& c : curves) {
     if ((c.*member).size() != c.strain.size() || c.strain.empty()) continue;
-    Series s{.label = named.insert(c.engine).second ? engine_name(c.engine) : "", .hover = "", .x = {}, .y = {}};
-    s.hover = fmt::format("{}, sample {}{}", engine_name(c.engine), c.sample, c.usable ? "" : " (not usable)");
+    Series s{.label = named.insert(c.engine).second ? engine_name(c) : "", .hover = "", .x = {}, .y = {}};
+    s.hover = fmt::format("{}, sample {}{}", engine_name(c), c.sample, c.usable ? "" : " (not usable)");
     for (const double e : c.strain) s.x.push_back(100.0 * e);
     for (const double v : c.*member) s.y.push_back(v / unit);
     s.style = engine_style(c.engine);
     if (!c.usable) s.style.opacity = 0.4;
-    s.group = engine_name(c.engine);
+    s.group = engine_name(c);
     add_band(c, member, unit, s);
     plot.add(std::move(s));
   }

@@ -41,6 +41,10 @@ double last_delta(const ValuesByDelta& values);
 
 /// "soft particles with their law" for "law" ...; the name itself when it is not known.
 std::string engine_name(const std::string& engine);
+/// Whether a curve was made by the law of cells.
+bool is_of_cells(const MacroCurve& curve);
+/// The same of a curve: "cells of fines" where its law is that of cells.
+std::string engine_name(const MacroCurve& curve);
 
 SeriesStyle engine_style(const std::string& engine);
 

@@ -150,6 +150,7 @@ Plot difference_plot(const std::vector<MacroCurve>& curves, MacroTest test, bool
 
 std::string stress_source(const std::vector<MacroCurve>& curves) {
   const bool periodic = !curves.empty() && curves.front().boundary == Boundary::periodic;
+  if (!curves.empty() && is_of_cells(curves.front())) return "Stress of the cells";
   return periodic ? "Stress from the contacts of a periodic cell" : "Stress from the wall forces";
 }
 
@@ -222,7 +223,7 @@ std::string bodies_table(const std::vector<MacroCurve>& curves) {
   HtmlTable table({"engine", "sample", "bodies", "soft particles", "volume share of soft", "grains inside",
                    "solid fraction", "usable", "note"});
   for (const MacroCurve& c : curves) {
-    table.row({engine_name(c.engine), std::to_string(c.sample), format_count(c.bodies), format_count(c.soft),
+    table.row({engine_name(c), std::to_string(c.sample), format_count(c.bodies), format_count(c.soft),
                format_number(c.soft_volume_share, 3), c.grains > 0 ? format_count(c.grains) : "–",
                format_number(c.solid_fraction, 3), c.usable ? "yes" : "no", c.note});
   }
