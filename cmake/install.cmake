@@ -59,7 +59,8 @@ install(FILES pipelines/grainlearning_example/soft_particle.toml
   DESTINATION ${softgrain_scenes}/pipelines/grainlearning_example)
 file(GLOB examples CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/pipelines/python/*.py)
 install(FILES ${examples} DESTINATION ${softgrain_scenes}/pipelines/python)
-foreach(law published/law.toml law_table/law_table.toml law_table/law_table.h5 hierarchy/law_table.toml hierarchy/law_table.h5)
+foreach(law published/law.toml law_table/law_table.toml law_table/law_table.h5 hierarchy/law_table.toml hierarchy/law_table.h5
+    material_law/cell_law.toml material_law/cell_law_12.toml)
   get_filename_component(folder ${law} DIRECTORY)
   install(FILES results/${law} DESTINATION ${softgrain_scenes}/results/${folder})
 endforeach()

@@ -99,11 +99,11 @@ std::string spaced(const std::vector<TitleWord>& words) {
 }
 
 bool is_of_no_part(const std::string& words) {
-  return has_any(words, {" empty ",      " tare ",          " leer",     "sieve mass", "mass of sieve",
-                         "sieve weight", "weight of sieve", "siebmasse", "brutto",     " gross ",
-                         "with sample",  "mit probe",       "+",         " limit",     " grenz",
-                         " soll",        " spec",           " loss",     "verlust",    " error",
-                         " deviation",   "einwaage",        " module "});
+  const bool of_sieve = has_any(words, {"sieve mass", "mass of sieve", "sieve weight", "weight of sieve", "siebmasse"});
+  if (of_sieve && !has_any(words, {"retain", "retenu", "rueckst", "ruckst", "refus"})) return true;
+  return has_any(words, {" empty ", " tare ",  " leer",  "brutto",     " gross ",  "with sample",    "mit probe",
+                         "+",       " limit",  " grenz", " soll",      " spec ",   " specification", " specified",
+                         " loss",   "verlust", " error", " deviation", "einwaage", " module "});
 }
 
 SieveColumn value_column(const std::string& words, SieveMeasure measure) {

@@ -107,6 +107,8 @@ class RetainedReader {
   }
 
   std::vector<double> from_each() {
+    if (has_pan() && !std::isfinite(table_.pan->value))
+      throw InputError(table_.pan->where + ": what is retained is missing");
     double all = sum_;
     const std::string total = whole_ ? rounded_text(percent_ && *whole_ == 1.0 ? 100.0 : *whole_, {6}) : "";
     if (whole_ && !near_all(sum_, *whole_, tolerance())) {

@@ -194,7 +194,8 @@ SieveSize sieve_size(const std::string& cell) {
   if (size.number.empty()) return {};
   std::string unit;
   const bool class_of_sizes = size.unit.empty();
-  if (!text.starts_with('-') && !take_unit(text, unit)) return {};
+  const bool brackets = text.starts_with('(') || text.starts_with('[');  // "No. 4 (4.75 mm)"
+  if (!brackets && !text.starts_with('-') && !take_unit(text, unit)) return {};
   if (class_of_sizes && take_word(text, std::array{"-", "bis", "to", "a"})) {
     size.upper = take_number(text);
     if (size.upper.empty() || !take_unit(text, unit)) return {};
@@ -208,6 +209,7 @@ double sieve_diameter(const std::string& number, const std::string& unit, bool n
   const bool fraction = number.find('/') != std::string::npos;
   if (unit == sieve_unit("astm") || unit == sieve_unit("mesh")) {
     const auto found = astm_numbers().find(number);
+    if (found == astm_numbers().end() && fraction) return sieve_diameter(number, sieve_unit("in"), true);  // 3/8
     if (found == astm_numbers().end())
       throw InputError(fmt::format("No. {} is no sieve of ASTM E11: numbers are 3 1/2, 4 to 8, 10 to 635", number));
     return parse_quantity(fmt::format("{} um", found->second), Unit::length);

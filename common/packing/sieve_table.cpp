@@ -80,7 +80,8 @@ class SieveReader {
   void read_lines() {
     const csv::DecimalMarks sizes = marks_of(choice_.size);
     const csv::DecimalMarks values = marks_of(choice_.value);
-    bool below = false;  // the table has ended
+    bool below = false;              // the table seems to have ended
+    const CsvRow* unread = nullptr;  // a row below that end which is no size: only where sizes go on, it had not ended
     int before = csv_.header_line();
     for (const CsvRow& row : csv_.rows()) {
       below = below || (!lines_.empty() && row.line > before + 1);
@@ -95,12 +96,15 @@ class SieveReader {
       if (line.value.empty() && &label != &cell && is_footer(label)) {
         below = true;
       } else if (line.size.kind != SieveSize::Kind::none) {
+        if (unread != nullptr) refuse_size(*unread);
         lines_.push_back(std::move(line));
       } else if (is_total(label) || (cell.empty() && !passes())) {
+        if (cell.empty() && !is_total(label) && !is_footer(label) && unread == nullptr) unread = &row;
         if (!line.value.empty()) total_ = std::move(line);
         below = true;
-      } else if (!below && !is_footer(label) && has_number(line.value)) {
-        refuse_size(row);
+      } else if (!is_footer(label) && has_number(line.value)) {
+        if (!below) refuse_size(row);
+        if (unread == nullptr) unread = &row;
       }
     }
   }
@@ -144,11 +148,7 @@ class SieveReader {
                       std::ranges::any_of(lines_, [](const SieveLine& l) { return l.size.unit == sieve_unit("mesh"); });
     if (mesh) return unit_of_mesh(bare);
     if (!options_.unit.empty()) {
-      if (!title.unit.empty() || bare.empty())
-        throw InputError(
-            fmt::format("{}column \"{}\" says the unit of its sizes: unit = \"{}\" has no effect; leave "
-                        "it out",
-                        head(), title_of(choice_.size), options_.unit));
+      if (!title.unit.empty() || bare.empty()) refuse_unit();
       return options_.unit;
     }
     if (!title.unit.empty() || bare.empty()) return title.unit;
@@ -163,10 +163,18 @@ class SieveReader {
                     head(), title_of(choice_.size), kInScene));
   }
 
+  [[noreturn]] void refuse_unit() const {
+    throw InputError(
+        fmt::format("{}column \"{}\" says the unit of its sizes: unit = \"{}\" has no effect; leave it out", head(),
+                    title_of(choice_.size), options_.unit));
+  }
+
   [[nodiscard]] std::string unit_of_mesh(std::vector<std::string> numbers) const {
     for (const SieveLine& l : lines_)
       if (l.size.unit == sieve_unit("mesh")) numbers.push_back(l.size.number);
-    if (options_.unit == sieve_unit("astm") || are_astm_numbers(numbers)) return sieve_unit("astm");
+    const bool sure = are_astm_numbers(numbers);
+    if (!options_.unit.empty() && (sure || options_.unit != sieve_unit("astm"))) refuse_unit();
+    if (sure || !options_.unit.empty()) return sieve_unit("astm");
     throw InputError(
         fmt::format("{}column \"{}\": mesh of ASTM E11 or of Tyler? Give unit = \"astm\" {}, or openings "
                     "in mm",

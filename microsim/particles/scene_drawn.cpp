@@ -96,7 +96,8 @@ class PlacedParticles {
     });
     return room;
   }
-  /// With all images that something in the region may touch; cells of less than two diameters are refused elsewhere.
+  /// With all images that something in the region may touch; cells too narrow for neighbour lists are refused
+  /// elsewhere.
   void add(const Vec<D>& x, double r) { add_images(x, r, 0); }
 
  private:
@@ -205,7 +206,7 @@ void require_room(const SceneTable& t, const Region<D>& region, const std::vecto
       t.throw_error("sizes",
                     fmt::format("the largest particle, of radius {:g} m, is wider than the box of places", largest));
   for (int k = 0; k < D; ++k)
-    if (region.period[k] > 0.0 && region.high[k] - region.low[k] > region.period[k])
+    if (region.period[k] > 0.0 && region.high[k] - region.low[k] > region.period[k] * (1.0 + 1e-9))
       t.throw_error("high",
                     fmt::format("the box of places is wider than the cell, which is periodic along {}; allowed: "
                                 "at most {:g} m above low",

@@ -6,6 +6,7 @@
 #include <functional>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -136,6 +137,10 @@ class Exporter {
 
   /// Throws InputError, and takes back what was written, where a file of this name is there that no export listed.
   void write(const std::string& name, const std::string& text) const {
+    if (!written_.insert(name).second) {
+      list_.remove_listed();
+      throw InputError(fmt::format("{}: two series of states would both be the file {}", directory_, name));
+    }
     if (list_.holds(name)) {
       list_.remove_listed();
       throw InputError(fmt::format(
@@ -164,6 +169,7 @@ class Exporter {
   ExportFormat format_;
   std::string directory_;
   ExportList list_;
+  mutable std::set<std::string> written_;
   bool unlisted_;  ///< an export of an earlier version, which kept no list, may have left files here
   std::vector<Series> all_;
 };

@@ -37,14 +37,15 @@ std::string commands_text(const CommonOptions& options, const RunPlan& plan, con
   return text;
 }
 
-/// The command line that collects: the same one with --resume in the place of --slurm.
-std::string collecting(std::string command_line) {
-  const std::string option = " --slurm";
-  if (const std::size_t at = command_line.find(option); at != std::string::npos) command_line.erase(at, option.size());
-  return command_line.find(" --resume") == std::string::npos ? command_line + " --resume" : command_line;
+/// The command line that collects: that of a task for all of them.
+std::string collecting(CommonOptions options, const std::string& directory) {
+  options.resume = true;
+  options.threads = 0;
+  return join_text(member_command(options, directory, ""), " ", shell_word);
 }
 
-std::string script_text(const CommonOptions& options, const RunPlan& plan, const std::string& folder) {
+std::string script_text(const CommonOptions& options, const RunPlan& plan, const std::string& folder,
+                        const std::string& collect) {
   return fmt::format(
       "#!/bin/bash\n"
       "# One task for each line of commands.txt. Add what the cluster asks for: --time, --mem, --partition, "
@@ -54,11 +55,12 @@ std::string script_text(const CommonOptions& options, const RunPlan& plan, const
       "#SBATCH --cpus-per-task={}\n"
       "#SBATCH --output=\"{}/%a.txt\"\n"
       "#SBATCH --signal=B:TERM@60\n"
-      "# Collect, when all tasks have ended: {}\n"
+      "# Collect, when all tasks have ended:\n"
+      "# {}\n"
       "cd {} || exit 4\n"
       "exec bash -c \"$(sed -n \"${{SLURM_ARRAY_TASK_ID}}p\" {})\"\n",
-      plan.runs.size(), options.threads, folder, collecting(options.command_line),
-      shell_word(std::filesystem::current_path().string()), shell_word(folder + "/commands.txt"));
+      plan.runs.size(), options.threads, folder, collect, shell_word(std::filesystem::current_path().string()),
+      shell_word(folder + "/commands.txt"));
 }
 
 }  // namespace
@@ -70,13 +72,13 @@ std::string write_job_array(const CommonOptions& options, const RunPlan& plan, c
   const std::string commands = commands_text(own, plan, context.directory());
   require_writable_directory(folder);
   write_text_atomic(folder + "/commands.txt", commands);
-  write_text_atomic(folder + "/job.sh", script_text(own, plan, folder));
+  write_text_atomic(folder + "/job.sh", script_text(own, plan, folder, collecting(options, context.directory())));
   std::string text =
       fmt::format("{} commands, one per run, and a job array; nothing was submitted\n", plan.runs.size());
   if (plan.runs.size() > kUsualArray)
     text += fmt::format("many clusters take at most {} tasks in one array: split it\n", kUsualArray);
   return text + "submit: sbatch " + shell_word(context.path("slurm/job.sh")) +
-         "\ncollect, when all tasks have ended: " + collecting(options.command_line) + "\n";
+         "\ncollect, when all tasks have ended: the command in the head of this script\n";
 }
 
 }  // namespace softgrain

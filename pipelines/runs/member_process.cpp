@@ -146,10 +146,11 @@ class SideBySide {
 
 std::vector<std::string> member_command(const CommonOptions& options, const std::string& directory,
                                         const std::string& name) {
-  std::vector<std::string> words{own_program(), "sweep", options.inputs.front(), "--out", directory, "--only", name};
+  std::vector<std::string> words{own_program(), "sweep", options.inputs.front(), "--out", directory};
   const auto add = [&](const char* option, const std::string& value) {
     if (!value.empty()) words.insert(words.end(), {option, value});
   };
+  add("--only", name);
   const auto number = [](std::int64_t value) { return value > 0 ? std::to_string(value) : std::string(); };
   for (const std::string& one : options.over) add("--over", one);
   add("--sample", options.sample);

@@ -9,7 +9,8 @@
 
 namespace softgrain {
 
-/// The command that makes one run of the set in `directory` alone (--only): this program, then its arguments.
+/// The command that makes one run of the set in `directory` alone (--only), or all of them for an empty name: this
+/// program, then its arguments.
 std::vector<std::string> member_command(const CommonOptions& options, const std::string& directory,
                                         const std::string& name);
 

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <set>
 #include <sstream>
 #include <utility>
 
 #include "common/core/text.h"
+#include "common/io/file_safety.h"
 #include "common/io/interrupt.h"
 #include "common/io/key_record.h"
 #include "common/io/text_file.h"
@@ -133,7 +135,15 @@ bool is_housekeeping(const fs::path& file) {
 }
 
 /// Runs of an earlier set that the new one does not have: their results go, and the directory if nothing else is there.
+/// Throws IoError, and removes nothing, while one of them is at work: tasks of a cluster do not hold the set.
 void remove_earlier_members(const std::string& directory, const std::vector<std::string>& before) {
+  std::vector<std::unique_ptr<DirectoryLock>> held;
+  for (const std::string& name : before) {
+    const fs::path member = fs::path(directory) / name;
+    std::error_code error;
+    if (name.find('/') == std::string::npos && fs::is_directory(member, error))
+      held.push_back(std::make_unique<DirectoryLock>(member.string()));
+  }
   for (const std::string& name : before) {
     const fs::path member = fs::path(directory) / name;
     std::error_code error;

@@ -351,9 +351,9 @@ TEST_F(RunSet, AJobArrayIsWrittenRunAndCollected) {
   const std::string sweep = "--over macro.bodies=6..9 --sample lhs:2 --seed 3 --set macro.steps=1 ";
   expect(program("sweep", sweep + "--out " + quoted("one")), 0);
   expect(program("sweep", sweep + "--slurm --out " + quoted("array")), 0,
-         {"2 commands, one per run", "nothing was submitted", "submit: sbatch", "collect", "--resume"});
+         {"2 commands, one per run", "nothing was submitted", "submit: sbatch", "collect"});
   const std::string script = read_text(file("array") + "/slurm/job.sh");
-  for (const char* words : {"#SBATCH --array=1-2", "#SBATCH --cpus-per-task=1", "SLURM_ARRAY_TASK_ID"})
+  for (const char* words : {"#SBATCH --array=1-2", "#SBATCH --cpus-per-task=1", "SLURM_ARRAY_TASK_ID", "'--resume'"})
     EXPECT_NE(script.find(words), std::string::npos) << words;
   EXPECT_FALSE(fs::exists(file("array") + "/sample_001"));
   for (const char* task : {"1", "2"}) {
@@ -362,6 +362,11 @@ TEST_F(RunSet, AJobArrayIsWrittenRunAndCollected) {
     EXPECT_EQ(std::system(line.c_str()), 0) << line;
   }
   EXPECT_TRUE(fs::exists(file("array") + "/sample_002/macro.h5"));
+  {
+    const DirectoryLock at_work(file("array") + "/sample_001");
+    expect(program("sweep", sweep + "--slurm --out " + quoted("array")), 4, {"sample_001"});
+    EXPECT_TRUE(fs::exists(file("array") + "/sample_002/macro.h5")) << "nothing is removed beside a task at work";
+  }
   const auto first = fs::last_write_time(file("array") + "/sample_002/macro.h5");
   expect(program("sweep", sweep + "--resume --out " + quoted("array")), 0);
   EXPECT_EQ(fs::last_write_time(file("array") + "/sample_002/macro.h5"), first);

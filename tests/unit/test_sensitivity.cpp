@@ -104,7 +104,7 @@ TEST(Sensitivity, MonotoneFunctionsHaveTheRankCorrelationOne) {
 }
 
 /// Equal values share ranks: x = 1 1 2 2 ..., y in the same order within pairs; ranks 1.5 1.5 3.5 3.5 ... against 1 to
-/// 8 give r = sqrt(1 - 6/63): the squared ranks of a pair lose 1/2 of their 42 in all.
+/// 8 give r = sqrt(1 - 2/42): the squared ranks of a pair lose 1/2 of their 42 in all.
 TEST(Sensitivity, EqualValuesShareTheirRanks) {
   const std::vector<double> x{1, 1, 2, 2, 3, 3, 4, 4};
   const std::vector<double> y{1, 2, 3, 4, 5, 6, 7, 8};

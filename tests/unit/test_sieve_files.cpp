@@ -28,6 +28,12 @@ const std::string kSieveFolder = std::string(SOFTGRAIN_SOURCE_DIR) + "/tests/dat
 // The diameters were computed by hand from the numbers of the files: straight over the logarithm between sieves.
 const std::vector<SieveSample> kSieveSamples{
     {"astm_percent_passing.csv", "", {0.203753235, 0.755210223, 2.59903971}, ""},
+    {"astm_numbers_with_openings.csv", "", {0.203753235, 0.755210223, 2.59903971}, ""},
+    {"astm_fractions_among_numbers.csv", "", {0.150104022, 1.00479719, 4.39078702}, ""},
+    {"bad_size_behind_a_note.csv", "", {}, "\"2 mmm\" is no size of a sieve"},
+    {"pan_without_value.csv", "", {}, "what is retained is missing"},
+    {"pan_with_two_cells.csv", "", {}, "3 cells"},
+    {"size_left_out.csv", "", {}, "the opening is missing"},
     {"astm_names_retained.csv", "", {0.257152843, 0.874403251, 3.62859122}, ""},
     {"astm_pan.csv", "", {}, "or give smallest = \"... mm\" in the table of sizes"},
     {"astm_pan.csv", "smallest = \"0.02 mm\"", {0.146762259, 0.488812957, 1.16864153}, ""},
@@ -115,6 +121,7 @@ TEST(SieveFiles, EveryFileIsInTheTable) {
 TEST(SieveFiles, KeysWithoutEffectAreRefused) {
   for (const char* keys : {"smallest = \"0.01 mm\"", "largest = \"20 mm\"", "unit = \"mm\"", "column = \"weight\""})
     EXPECT_THROW((void)grading_of({"iso_passing_ascending.csv", keys, {}, ""}), InputError) << keys;
+  EXPECT_THROW((void)grading_of({"mesh_us.csv", "unit = \"mm\"", {}, ""}), InputError);
   EXPECT_THROW((void)grading_of({"astm_pan.csv", "unit = \"mm\"\nsmallest = \"0.02 mm\"", {}, ""}), InputError);
 }
 
