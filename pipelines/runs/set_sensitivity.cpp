@@ -116,6 +116,12 @@ void add_correlations(const SetSummary& summary, const std::vector<PointValue>& 
     effects[keys[c]].coefficient = fit->coefficients[c];
     effects[keys[c]].determination = fit->determination;
   }
+  if (fit || keys.empty()) return;
+  const std::size_t needed = std::max(kLeastRegressed, 3 * (keys.size() + 1));
+  const std::string why = points.size() < needed
+                              ? fmt::format("{} points, at least {} are needed for a regression", points.size(), needed)
+                              : std::string("no regression: keys depend on each other");
+  for (const std::size_t k : keys) append_part(effects[k].reason, why, "; ");
 }
 
 void add_indices(const SobolSample& sample, std::uint64_t seed, std::uint64_t stream, std::vector<KeyEffect>& effects) {
