@@ -63,7 +63,7 @@ std::vector<double> correlations(const std::vector<std::vector<double>>& draws, 
   for (std::size_t a = 0; a < size; ++a)
     for (std::size_t b = 0; b < size; ++b) {
       const double norm = std::sqrt(product[a * size + a] * product[b * size + b]);
-      out[a * size + b] = norm > 0.0 ? product[a * size + b] / norm : 0.0;
+      out[a * size + b] = norm > 0.0 ? std::clamp(product[a * size + b] / norm, -1.0, 1.0) : 0.0;
     }
   return out;
 }

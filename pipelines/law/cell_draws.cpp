@@ -49,7 +49,7 @@ LawDraws cell_draws(const CellCard& card, const std::string& name, std::int64_t 
   std::vector<std::string> held;
   for (const CellCardNumber& n : numbers_of(card)) {
     if (std::ranges::find(c.numbers, n.key) == c.numbers.end()) {
-      if (n.key != "K0") held.push_back(n.key);  // no run takes it
+      if (n.key != "K0" && n.key != "x_r") held.push_back(n.key);  // no run takes K0; x_r is of the solution
       continue;
     }
     drawn.push_back(n);

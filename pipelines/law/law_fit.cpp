@@ -34,9 +34,10 @@ FitOptions read_fit_settings(const SceneTable& t) {
       read_angle(t, {"initial_angle_deg", "largest angle of the initial slope of the tangential force", "0.05"},
                  "initial_angle")
           .value_or(o.initial_angle_deg);
-  o.secant_angle_deg = read_angle(
-      t, {"secant_angle_deg", "angle of the secant of the tangential force", "1; soft-soft: 0.5 if measured"},
-      "secant_angle");
+  o.secant_angle_deg = read_angle(t,
+                                  {"secant_angle_deg", "angle of the secant of the tangential force",
+                                   "1; soft-soft: 0.5 if measured (of an experiment 1)"},
+                                  "secant_angle");
   o.noise_floor = t.number({"noise_floor", "a mean force below this value, over E Rs^2, counts as zero"}, Unit::none,
                            Range::not_negative(), o.noise_floor);
   o.scatter_floor =

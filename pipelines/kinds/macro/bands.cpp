@@ -73,8 +73,10 @@ class DrawnBand {
   void add(const std::vector<const MacroCurve*>& ran, double noise, MacroCurve& curve) {
     record_.noise = noise;
     for (const BandOf of : {BandOf::axial, BandOf::lateral}) {
-      if (!std::ranges::all_of(ran, [&](const MacroCurve* c) { return like(*c, curve, of); })) {
-        append_part(curve.note, "no band: with some draw of the law the test ended early");
+      const auto bad = std::ranges::find_if(ran, [&](const MacroCurve* c) { return !like(*c, curve, of); });
+      if (bad != ran.end()) {
+        append_part(curve.note, "no band: with some draw of the law the test did not come to its end" +
+                                    ((*bad)->note.empty() ? std::string() : " (" + (*bad)->note + ")"));
         return;
       }
       const std::vector<double>& stress = banded_stress(curve, of);

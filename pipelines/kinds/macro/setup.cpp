@@ -50,8 +50,10 @@ void read_preparation(const SceneTable& t, MacroSetup& setup) {
         "strain rate of the box times d sqrt(density/pressure), with the mean diameter d; 0: no motion",
         "0; `\"fast\"`: 0.1, `\"slow\"`: 1e-3"},
        &Protocol::inertial_number, Range::closed(0.0, 1.0));
-  read(t, {"compaction_mu", "friction between particles during the preparation; above 0, walls have `wall_mu`", "0; `\"fast\"`, `\"slow\"`: `mu`"}, &Protocol::friction,
-       Range::not_negative());
+  read(t,
+       {"compaction_mu", "friction between particles during the preparation; above 0, walls have `wall_mu`",
+        "0; `\"fast\"`, `\"slow\"`: `mu`"},
+       &Protocol::friction, Range::not_negative());
   read(t, {"compaction_restitution", "coefficient of restitution during motion"}, &Protocol::restitution,
        Range::closed(0.05, 1.0));
   read(t, {"coarse_share", "volume share of the largest particles, which jam first", "1; `\"dense\"`: 0.75"},
@@ -381,11 +383,11 @@ MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
                                       "number of increments of a law run for each increment of a twin; coarse "
                                       "increments change the loading path of law runs, which relax quickly"},
                                      1, 1000, setup.law_increments);
-  setup.noise_samples =
-      macro.count({"noise_samples",
-                   "number of samples that run twice, the second time with strains and target stresses changed in the twelfth "
-                   "digit; the difference is the noise of one run (`noise` in results). No law can be more accurate"},
-                  0, 10000, setup.noise_samples);
+  setup.noise_samples = macro.count(
+      {"noise_samples",
+       "number of samples that run twice, the second time with strains and target stresses changed in the twelfth "
+       "digit; the difference is the noise of one run (`noise` in results). No law can be more accurate"},
+      0, 10000, setup.noise_samples);
   setup.twins = read_twins(macro, setup.twins);
   read_twin_motion(macro, spec.twin);
   return setup;

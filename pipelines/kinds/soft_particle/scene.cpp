@@ -412,17 +412,16 @@ std::string settings_text(const MeasureSetup& setup, Relaxation relaxation) {
   }
   if (relaxation == Relaxation::damped) {
     const DampedProtocolOptions& o = setup.damped;
-    return fmt::format(
-        "increment = {}, tolerance = {}, tolerance_between = {}, tolerance_rotated = {}, max_passes = {}", o.increment,
-        o.tolerance, o.tolerance_between, o.tolerance_rotated, o.max_passes);
+    return fmt::format("increment = {}, tolerance = {}, tolerance_between = {}, tolerance_rotated = {}", o.increment,
+                       o.tolerance, o.tolerance_between, o.tolerance_rotated);
   }
   const LeastWorkProtocolOptions o = least_work_options(setup, relaxation);
   return fmt::format(
       "increment = {}, increment_passes = {}, approach_speed = {} m/s, step_factor = {}, settle_time = {}, "
       "path_settle_time = {}, settle_time_rotated = {}, step_factor_rotated = {}, tolerance = {}, tolerance_between = "
-      "{}, max_passes = {}",
+      "{}",
       o.increment, o.increment_passes, speed(o.approach_speed), o.step_factor, o.settle_time, o.path_settle_time,
-      o.settle_time_rotated, o.step_factor_rotated, o.tolerance, o.tolerance_between, o.max_passes);
+      o.settle_time_rotated, o.step_factor_rotated, o.tolerance, o.tolerance_between);
 }
 
 }  // namespace softgrain
