@@ -51,6 +51,19 @@ EffectComponents effect_components(const std::vector<std::vector<double>>& param
   return out;
 }
 
+std::vector<double> correlations_of(const std::vector<double>& covariance, std::size_t size) {
+  std::vector<double> out(size * size, 0.0);
+  for (std::size_t a = 0; a < size; ++a)
+    for (std::size_t b = 0; b < size; ++b) {
+      const double norm = std::sqrt(covariance[a * size + a] * covariance[b * size + b]);
+      const bool known = norm > 0.0 && std::isfinite(norm);
+      out[a * size + b] = a == b  ? 1.0
+                          : known ? std::clamp(covariance[std::min(a, b) * size + std::max(a, b)] / norm, -1.0, 1.0)
+                                  : 0.0;
+    }
+  return out;
+}
+
 std::vector<double> correlations(const std::vector<std::vector<double>>& draws, std::size_t size) {
   std::vector<double> mean(size, 0.0);
   std::vector<double> product(size * size, 0.0);
@@ -59,13 +72,7 @@ std::vector<double> correlations(const std::vector<std::vector<double>>& draws, 
   for (const auto& u : draws)
     for (std::size_t a = 0; a < size; ++a)
       for (std::size_t b = 0; b < size; ++b) product[a * size + b] += (u[a] - mean[a]) * (u[b] - mean[b]);
-  std::vector<double> out(size * size, 0.0);
-  for (std::size_t a = 0; a < size; ++a)
-    for (std::size_t b = 0; b < size; ++b) {
-      const double norm = std::sqrt(product[a * size + a] * product[b * size + b]);
-      out[a * size + b] = norm > 0.0 ? std::clamp(product[a * size + b] / norm, -1.0, 1.0) : 0.0;
-    }
-  return out;
+  return correlations_of(product, size);
 }
 
 std::vector<std::vector<double>> normal_draws(const std::vector<double>& mean, const std::vector<double>& covariance,

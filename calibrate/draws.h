@@ -47,7 +47,11 @@ struct EffectComponents {
 EffectComponents effect_components(const std::vector<std::vector<double>>& parameters,
                                    const std::vector<std::vector<double>>& effects, std::size_t most, double share);
 
-/// Correlations of `size` numbers (size x size, row-major) from their draws, one a row; 0 for what does not scatter.
+/// Correlations of `size` numbers from their covariance, or from any multiple of it, both size x size and row-major: 1
+/// on the diagonal, 0 where a number does not scatter or its scatter is not known.
+std::vector<double> correlations_of(const std::vector<double>& covariance, std::size_t size);
+
+/// The same from draws of the numbers, one a row.
 std::vector<double> correlations(const std::vector<std::vector<double>>& draws, std::size_t size);
 
 /// Draws from the normal distribution with this mean and covariance (n x n, row-major); parameters of variance zero

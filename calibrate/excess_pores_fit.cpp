@@ -187,9 +187,9 @@ ExcessPoresFit fit_excess_pores(const StateFit& states, const MixtureGroups& gro
   if (states.degrees >= 1) out.widening = std::sqrt(std::max(1.0, fit.residual_sum_of_squares / freedom));
   for (const Pores& one : all) {
     const LeastSquaresFit refit = problem.solve(one, error, {fit.parameters}, false);
-    out.replicates.push_back({kNaN, kNaN});
+    out.replicates.push_back({one.fines, one.coarse, kNaN, kNaN});
     if (!refit.usable() || refit.at_bound[1]) continue;
-    out.replicates.back() = {refit.parameters[0], refit.parameters[1]};
+    out.replicates.back() = {one.fines, one.coarse, refit.parameters[0], refit.parameters[1]};
     drawn.fitted_alone.push_back(one.coarse);
     drawn.many.push_back(refit.parameters[0]);
     drawn.log_decay.push_back(refit.parameters[1]);

@@ -47,8 +47,8 @@ struct ExcessPoresFit {
   std::vector<MixturePores> mixtures;
   std::vector<ExcessPoresBand> band;  ///< the form from 0 to beyond the largest ratio
   double deviation = 0.0;             ///< root mean square of W/V_c about the form
-  /// w_inf and ln xi of refits to StateFit::replicates, in their order; not a number where there is no refit.
-  std::vector<std::array<double, 2>> replicates;
+  /// e_J, e_c, w_inf and ln xi of StateFit::replicates, in their order; the last two are not a number without a refit.
+  std::vector<std::array<double, 4>> replicates;
   double widening = 1.0;  ///< factor on intervals of w_inf and xi: sqrt(chi^2 over degrees of freedom) where above 1
 };
 

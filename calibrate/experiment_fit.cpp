@@ -251,15 +251,12 @@ void add_mirror(ExperimentFit& out) {
   if (out.reports.size() != 1) return;
   const FitReport& only = out.reports.front();
   if (only.law.normal.b.value <= 0.0) return;
-  constexpr double kLargestThreshold = 1.0;  // of a law card, and below
-  constexpr double kLargestDelta = 2.0;
   FitReport other = mirrored(only);
-  if (!(other.law.normal.delta.value < kLargestThreshold) || other.law.delta_max > kLargestDelta) {
+  if (!(other.law.normal.delta.value < kThresholdsBelow) || other.law.delta_max > kLargestDelta) {
     out.remarks.push_back(fmt::format(
         "no {} law by symmetry: its threshold would lie at Delta = {:.3g} and its range end at {:.3g}; a law of two "
         "bodies has a threshold below {:g} and ends by {:g}",
-        to_string(other.law.kind), other.law.normal.delta.value, other.law.delta_max, kLargestThreshold,
-        kLargestDelta));
+        to_string(other.law.kind), other.law.normal.delta.value, other.law.delta_max, kThresholdsBelow, kLargestDelta));
     return;
   }
   out.remarks.push_back(to_string(other.law.kind) + ": " + other.law.reason);
@@ -300,7 +297,8 @@ TurnsVerdict judge_turns(const PreparedCurves& prepared, const FitOptions& optio
     append_part(why,
                 fmt::format("{} have no reading before the turn (ht = 0) nor one at either sign", t.lost - t.short_of));
   return {t.lost == t.turns,
-          fmt::format("Ft of {} of {} turns (a sample at one overlap) says no stiffness: {}", t.lost, t.turns, why)};
+          fmt::format("no tangential stiffness from {} of {} rotations (one sample at one overlap each): {}", t.lost,
+                      t.turns, why)};
 }
 
 }  // namespace

@@ -38,7 +38,8 @@ void record_bodies(const MacroSystem& macro, MacroCurve& c) {
 LawUse watch_bodies(CompressionState& state) {
   MacroCurve& c = state.curve;
   const ContactWatch<3> seen = watch_contacts(state.macro.system);
-  if (!seen.behind_planes.empty()) throw UnusableResult(behind_wall_text(c.engine, seen.behind, c.strain.back()));
+  if (!seen.behind_planes.empty())
+    throw UnusableResult(behind_wall_text(c.engine, seen.behind_planes.front(), c.strain.back()));
   record_law_use(c, seen.laws);
   return c.grains > 0 || c.soft == 0 ? LawUse{} : seen.laws;
 }

@@ -14,13 +14,15 @@
 
 namespace softgrain {
 
-namespace {
-
-using Column = std::vector<double>;
-
 bool varies(std::span<const double> values) {
   return !values.empty() && std::ranges::any_of(values, [&](double v) { return v != values.front(); });
 }
+
+std::size_t least_regressed(std::size_t columns) { return std::max(kLeastRegressed, 3 * (columns + 1)); }
+
+namespace {
+
+using Column = std::vector<double>;
 
 /// (x - mean)/deviation.
 Column standardised(std::span<const double> values) {
@@ -117,7 +119,7 @@ std::optional<Regression> standardised_regression(const std::vector<std::vector<
                                                   std::span<const double> y) {
   const std::size_t n = y.size();
   const std::size_t k = columns.size();
-  if (k == 0 || n < std::max(kLeastRegressed, 3 * (k + 1)) || !varies(y)) return std::nullopt;
+  if (k == 0 || n < least_regressed(k) || !varies(y)) return std::nullopt;
   std::vector<Column> x;
   for (const Column& column : columns) {
     if (!varies(column)) return std::nullopt;

@@ -24,6 +24,12 @@ inline constexpr std::size_t kLeastRegressed = 10;    ///< points for a regressi
 inline constexpr std::size_t kLeastBasePoints = 16;   ///< base points for Sobol indices
 inline constexpr std::size_t kMostSobolColumns = 40;  ///< columns of a Sobol sequence
 
+/// Whether not all values are equal.
+bool varies(std::span<const double> values);
+
+/// Points that a regression on so many columns needs.
+std::size_t least_regressed(std::size_t columns);
+
 /// Spearman's rank correlation; equal values share the mean of their ranks. Interval by Fisher's transformation
 /// z = atanh r with the standard error sqrt((1 + r^2/2)/(n - 3)) (Bonett and Wright 2000, doi:10.1007/BF02294183); an
 /// r of 1 or -1 is known to half of its smallest step, 6/(n^3 - n), at best. None for fewer than kLeastRanked points,

@@ -36,6 +36,9 @@ requires std::invocable<TextOf&, std::ranges::range_reference_t<const Range>> st
 /// first leaves a separator at the end.
 void append_part(std::string& text, std::string_view part, std::string_view separator = "; ");
 
+/// A word as a shell reads it back: in quotes where it needs them.
+std::string shell_word(const std::string& word);
+
 /// "0.25" of "0.250000", "1" of "1.00"; a text without a decimal point stays.
 std::string without_trailing_zeros(std::string text);
 

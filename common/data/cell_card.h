@@ -37,6 +37,9 @@ struct CellCorrelation {
   std::vector<double> matrix;        ///< row by row; of logarithms, where CellCardNumber::logarithm says so
 };
 
+/// Largest A of shear memory with this c, (1 + c)/c: beyond, slip of the strongest faces would give energy back.
+constexpr double most_dilatancy(double strength_range) { return (1.0 + strength_range) / strength_range; }
+
 /// Numbers of the cell law (macrosim/cell_matter), dimensionless, and what they were measured on.
 struct CellCard {
   StateForm form = StateForm::porosity;
@@ -76,6 +79,7 @@ struct CellCardNumber {
   Estimate estimate;
   std::string meaning;
   bool logarithm = false;  ///< whether its errors are of its logarithm
+  bool is_drawn = true;    ///< whether runs take it and the material has it: x_r is of the solution, no run takes K0
 };
 
 /// All numbers of a card in the order of the file; those of the memory, if it has one, at the end.

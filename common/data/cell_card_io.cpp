@@ -26,6 +26,7 @@ struct CardEntry {
   Range range;
   const char* meaning;
   bool logarithm = true;
+  bool is_drawn = true;
 };
 
 const std::array<CardEntry<CellCard>, 9>& cell_numbers() {
@@ -39,7 +40,8 @@ const std::array<CardEntry<CellCard>, 9>& cell_numbers() {
        {"xi", &C::excess_decay, Range::positive(), "ratio of fines over which they fall to that"},
        {"mu_f", &C::friction, Range::not_negative(), "friction of faces"},
        {"chi", &C::stiffness, Range::positive(), "stiffness of their springs"},
-       {"K0", &C::lateral_ratio, Range{0.0, 1.0, true, false}, "lateral over axial stress of the fines alone", false}}};
+       {"K0", &C::lateral_ratio, Range{0.0, 1.0, true, false}, "lateral over axial stress of the fines alone", false,
+        false}}};
   return numbers;
 }
 
@@ -53,7 +55,7 @@ const std::array<CardEntry<CellMemory>, 6>& memory_numbers() {
        {"lambda", &M::density_slope, Range{-kLargestExponent, kLargestExponent, false, false},
         "change of the critical solid fraction with phi - phi_J", false},
        {"x_r", &M::least_state, Range{0.0, 1.0, true, true},
-        "a cell below this x counts as unloaded; not of the material"}}};
+        "a cell below this x counts as unloaded; not of the material", true, false}}};
   return numbers;
 }
 
@@ -132,9 +134,9 @@ CellMemory read_memory(const SceneTable& t) {
   CellMemory memory;
   for (const auto& n : memory_numbers()) memory.*n.estimate = read_estimate(t.table(n.key), n.range);
   const double c = memory.strength_range.value;
-  if (memory.dilatancy.value * c > 1.0 + c)
+  if (memory.dilatancy.value > most_dilatancy(c))
     t.throw_error("A",
-                  fmt::format("must be at most (1 + c)/c = {:.4g}, or slip would give energy back", (1.0 + c) / c));
+                  fmt::format("must be at most (1 + c)/c = {:.4g}, or slip would give energy back", most_dilatancy(c)));
   return memory;
 }
 
@@ -196,9 +198,10 @@ void read_measured(const SceneTable& t, CellCard& card) {
 
 std::vector<CellCardNumber> numbers_of(const CellCard& card) {
   std::vector<CellCardNumber> out;
-  for (const auto& n : cell_numbers()) out.push_back({n.key, card.*n.estimate, n.meaning, n.logarithm});
+  for (const auto& n : cell_numbers()) out.push_back({n.key, card.*n.estimate, n.meaning, n.logarithm, n.is_drawn});
   if (card.memory)
-    for (const auto& n : memory_numbers()) out.push_back({n.key, *card.memory.*n.estimate, n.meaning, n.logarithm});
+    for (const auto& n : memory_numbers())
+      out.push_back({n.key, *card.memory.*n.estimate, n.meaning, n.logarithm, n.is_drawn});
   return out;
 }
 

@@ -67,6 +67,10 @@ template <>
 inline constexpr auto enum_names<TangentialSlope> =
     enum_name_list<TangentialSlope>({{TangentialSlope::initial, "initial"}, {TangentialSlope::secant, "secant"}});
 
+inline constexpr double kThresholdsBelow = 1.0;  ///< limit of the thresholds of pair laws, in Delta
+inline constexpr double kLargestDelta =
+    2.0;  ///< largest Delta of a pair law: beyond, two bodies have passed each other
+
 /// What was found for one pair kind.
 struct PairLaw {
   PairKind kind = PairKind::soft_solid;

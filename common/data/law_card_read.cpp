@@ -15,8 +15,6 @@ namespace {
 
 /// c may differ from -a delta^b by rounding only.
 constexpr double kContinuityTolerance = 1e-6;
-/// Delta: beyond, two bodies have passed each other.
-constexpr double kLargestDelta = 2.0;
 
 Estimate read_estimate(const SceneTable& table, const Range& range, bool must_be_known) {
   Estimate e;
@@ -36,7 +34,7 @@ ThresholdPowerLaw read_law(const SceneTable& table, bool must_be_known) {
   law.a = read_estimate(table.table("a"), Range::positive(), must_be_known);
   law.b = read_estimate(table.table("b"), Range{0.0, kLargestExponent, true, false}, must_be_known);
   law.c = read_estimate(table.table("c"), Range::any(), must_be_known);
-  law.delta = read_estimate(table.table("delta"), Range{0.0, 1.0, false, true}, must_be_known);
+  law.delta = read_estimate(table.table("delta"), Range{0.0, kThresholdsBelow, false, true}, must_be_known);
   if (!must_be_known) return law;
   const double expected = -law.a.value * std::pow(law.delta.value, law.b.value);
   if (std::abs(law.c.value - expected) > kContinuityTolerance * std::abs(expected))

@@ -46,10 +46,7 @@ class Watcher {
     const double ri = sphere[static_cast<std::size_t>(s_.contacts.i[c])].r;
     const double rj = sphere[static_cast<std::size_t>(s_.contacts.j[c])].r;
     const double smaller = geometry == Geometry::sphere_sphere ? std::min(ri, rj) : ri;
-    if (geometry == Geometry::sphere_plane && g.overlap > ri) {
-      out_.behind_planes.push_back(s_.contacts.i[c]);
-      out_.behind = s_.contacts.i[c];
-    }
+    if (geometry == Geometry::sphere_plane && g.overlap > ri) out_.behind_planes.push_back(s_.contacts.i[c]);
     const double depth = g.overlap / smaller;
     if (depth <= out_.overlap || std::isnan(out_.overlap)) return;
     out_.overlap = depth;

@@ -21,7 +21,6 @@ struct ContactWatch {
   Slot i = -1;                      ///< first body of the contact with the largest overlap
   Slot j = -1;                      ///< second body of that contact
   std::vector<Slot> behind_planes;  ///< grains whose centre is behind a plane, ascending, each once
-  Slot behind = -1;                 ///< one of them
   double stored = 0.0;              ///< elastic energy of all contacts, tangential springs included [J]
   bool energy_known = true;         ///< false when a law in use has no energy of its own contact (multi-contact laws)
   LawUse laws;

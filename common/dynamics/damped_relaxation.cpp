@@ -137,9 +137,9 @@ void DampedRelaxation<D>::move_all(System<D>& s, const Fire::Steering& steering,
   watch_.moved(fire_.step * std::sqrt(used2));
 }
 
-/// Whether it is looked after so many passes how far the relaxation is.
+/// Whether convergence is checked after this many passes.
 template <int D>
-bool DampedRelaxation<D>::is_judged(std::int64_t passes) const {
+bool DampedRelaxation<D>::checks_convergence(std::int64_t passes) const {
   return passes % kMassInterval == 0 || passes >= options_.max_passes;
 }
 
@@ -156,7 +156,7 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* fram
   watch_.forget();
   add_gravity(s);
   for (;;) {
-    if (is_judged(result.passes)) {
+    if (checks_convergence(result.passes)) {
       const double scale = std::max(stiffness_.mean_force(), options_.force_floor);
       const double worst = worst_net_force(s.particles, options_.unbalanced_fraction);
       result.residual = scale > 0.0 ? worst / scale : 0.0;
@@ -177,7 +177,7 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* fram
     if (frame != nullptr) frame->carry(s, fire_.step);
     if (frame != nullptr || flows) watch_.forget();
     watch_.require_list(s);
-    if (is_judged(result.passes + 1))
+    if (checks_convergence(result.passes + 1))
       add_contact_forces(s, fire_.step, stiffness_, History::advance);
     else
       add_contact_forces(s, fire_.step, History::advance);

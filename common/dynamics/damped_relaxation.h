@@ -98,7 +98,7 @@ class DampedRelaxation {
   /// the largest share of its margin in the neighbour list that a body uses up per time.
   double move(System<D>& system, const Fire::Steering& steering, double longest, std::size_t begin, std::size_t end);
   void turn(Particles<D>& p, const Fire::Steering& steering, std::size_t begin, std::size_t end) const;
-  [[nodiscard]] bool is_judged(std::int64_t passes) const;
+  [[nodiscard]] bool checks_convergence(std::int64_t passes) const;
   void move_all(System<D>& system, const Fire::Steering& steering, std::int64_t pass);
 
   DampedOptions options_;

@@ -157,10 +157,6 @@ SieveOptions read_sieve_options(const SceneTable& t) {
   return options;
 }
 
-Grading read_sieve_curve(const std::string& path, int dimension) {
-  return read_sieve_file(path, {}, dimension).grading;
-}
-
 Grading read_radii(const std::string& path, int dimension) {
   const CsvFile csv = CsvFile::read(path);
   csv.require_known_comments({}, "a list of sizes");

@@ -29,9 +29,6 @@ std::optional<Grading> read_sizes(const SceneTable& table, const Key& key, std::
 /// The keys that go with the file of a sieve curve: column, unit, smallest, largest.
 SieveOptions read_sieve_options(const SceneTable& table);
 
-/// A sieve analysis as CSV that needs no key beside it, see read_sieve_file(). Throws InputError, IoError.
-Grading read_sieve_curve(const std::string& path, int dimension = 3);
-
 /// Radii as CSV: a column "radius [mm]" or "diameter [mm]", and "count" (number, frequency, n) of grains of each, one
 /// where it is absent. Throws InputError, IoError.
 Grading read_radii(const std::string& path, int dimension = 3);

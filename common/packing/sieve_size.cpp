@@ -207,20 +207,20 @@ SieveSize sieve_size(const std::string& cell) {
 
 double sieve_diameter(const std::string& number, const std::string& unit, bool nominal) {
   const bool fraction = number.find('/') != std::string::npos;
-  if (unit == sieve_unit("astm") || unit == sieve_unit("mesh")) {
+  if (unit == kAstmNumbers || unit == kMesh) {
     const auto found = astm_numbers().find(number);
-    if (found == astm_numbers().end() && fraction) return sieve_diameter(number, sieve_unit("in"), true);  // 3/8
+    if (found == astm_numbers().end() && fraction) return sieve_diameter(number, kInches, true);  // 3/8
     if (found == astm_numbers().end())
       throw InputError(fmt::format("No. {} is no sieve of ASTM E11: numbers are 3 1/2, 4 to 8, 10 to 635", number));
     return parse_quantity(fmt::format("{} um", found->second), Unit::length);
   }
-  if (unit == sieve_unit("in")) {
+  if (unit == kInches) {
     const auto found = astm_inches().find(number);
     if ((fraction || nominal) && found != astm_inches().end())
       return parse_quantity(fmt::format("{} mm", found->second), Unit::length);
     return value_of_fraction(number) * kInch;
   }
-  if (unit == sieve_unit("phi")) return 1e-3 * std::exp2(-decimal_of(number));
+  if (unit == kPhi) return 1e-3 * std::exp2(-decimal_of(number));
   if (fraction) throw InputError(fmt::format("{} is a fraction; only inches are given as fractions", number));
   return parse_quantity(number + " " + unit, Unit::length);
 }

@@ -19,6 +19,10 @@ struct SieveSize {
 /// The unit of length of this word: "mm", "um", "in", "phi", "astm" (numbers of ASTM E11), "mesh", or any other that
 /// scenes know, as they write it. Empty: it is none.
 std::string sieve_unit(const std::string& word);
+inline constexpr const char* kAstmNumbers = "astm";  ///< numbers of sieves of ASTM E11
+inline constexpr const char* kMesh = "mesh";         ///< of ASTM E11 or of Tyler
+inline constexpr const char* kInches = "in";
+inline constexpr const char* kPhi = "phi";  ///< -log2 of millimetres
 
 /// Reads a cell with plain numbers (csv::plain_numbers). Kind::none for what is no size: a line below the table.
 SieveSize sieve_size(const std::string& cell);

@@ -144,15 +144,15 @@ class SieveReader {
   [[nodiscard]] std::string unit_of_sizes() {
     const std::vector<std::string> bare = bare_sizes();
     const SieveTitle& title = size_title();
-    const bool mesh = title.unit == sieve_unit("mesh") ||
-                      std::ranges::any_of(lines_, [](const SieveLine& l) { return l.size.unit == sieve_unit("mesh"); });
+    const bool mesh =
+        title.unit == kMesh || std::ranges::any_of(lines_, [](const SieveLine& l) { return l.size.unit == kMesh; });
     if (mesh) return unit_of_mesh(bare);
     if (!options_.unit.empty()) {
       if (!title.unit.empty() || bare.empty()) refuse_unit();
       return options_.unit;
     }
     if (!title.unit.empty() || bare.empty()) return title.unit;
-    if (choice_.titles[choice_.size].column == SieveColumn::name) return sieve_unit("astm");
+    if (choice_.titles[choice_.size].column == SieveColumn::name) return kAstmNumbers;
     if (const auto unit = unit_of_numbers(bare)) {
       remarks_.push_back(fmt::format("sizes have no unit; as openings of ISO 565 they can only be in {}", *unit));
       return *unit;
@@ -171,10 +171,10 @@ class SieveReader {
 
   [[nodiscard]] std::string unit_of_mesh(std::vector<std::string> numbers) const {
     for (const SieveLine& l : lines_)
-      if (l.size.unit == sieve_unit("mesh")) numbers.push_back(l.size.number);
+      if (l.size.unit == kMesh) numbers.push_back(l.size.number);
     const bool sure = are_astm_numbers(numbers);
-    if (!options_.unit.empty() && (sure || options_.unit != sieve_unit("astm"))) refuse_unit();
-    if (sure || !options_.unit.empty()) return sieve_unit("astm");
+    if (!options_.unit.empty() && (sure || options_.unit != kAstmNumbers)) refuse_unit();
+    if (sure || !options_.unit.empty()) return kAstmNumbers;
     throw InputError(
         fmt::format("{}column \"{}\": mesh of ASTM E11 or of Tyler? Give unit = \"astm\" {}, or openings "
                     "in mm",
@@ -184,7 +184,7 @@ class SieveReader {
   [[nodiscard]] double diameter(const SieveLine& l, const std::string& number) const {
     const std::string& unit = l.size.unit.empty() ? unit_ : l.size.unit;
     const bool fractions = std::ranges::any_of(lines_, [](const SieveLine& other) {
-      return other.size.number.find('/') != std::string::npos || other.size.unit == sieve_unit("astm");
+      return other.size.number.find('/') != std::string::npos || other.size.unit == kAstmNumbers;
     });
     const bool nominal = number.find('.') == std::string::npos && (fractions || !l.size.unit.empty());
     try {
@@ -201,7 +201,7 @@ class SieveReader {
     const bool classes = std::ranges::any_of(lines_, [](const SieveLine& other) { return !other.size.upper.empty(); });
     const bool below = classes && l.size.number.starts_with('-');
     return l.size.kind == SieveSize::Kind::pan ||
-           ((zero || below) && unit != sieve_unit("phi") && unit != sieve_unit("astm") && unit != sieve_unit("mesh"));
+           ((zero || below) && unit != kPhi && unit != kAstmNumbers && unit != kMesh);
   }
 
   /// Brings values into one form, sieves from the coarsest to the finest; true when there is a pan.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/data/cell_card.h"
 
 namespace softgrain {
 
@@ -125,11 +126,11 @@ void require_valid(const ShearMemory& m) {
     refuse(fmt::format("r_c = {}; it must be above 0", m.critical_pores));
   if (!(m.strength_range > 0.0 && m.strength_range < 1.0))
     refuse(fmt::format("c = {}; it must be within (0, 1)", m.strength_range));
-  if (m.dilatancy * m.strength_range > 1.0 + m.strength_range)
+  if (m.dilatancy > most_dilatancy(m.strength_range))
     refuse(
         fmt::format("A = {} with c = {}: slip of the strongest faces would give energy back; A may be at most "
                     "(1 + c)/c = {:.4g}",
-                    m.dilatancy, m.strength_range, (1.0 + m.strength_range) / m.strength_range));
+                    m.dilatancy, m.strength_range, most_dilatancy(m.strength_range)));
 }
 
 }  // namespace softgrain

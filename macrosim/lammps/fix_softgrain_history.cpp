@@ -94,7 +94,7 @@ void FixSoftgrainHistory::take_springs(const std::vector<double>& rows, const st
   }
   double all = 0.0;
   MPI_Allreduce(&taken, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  if (all < ends) error->all(FLERR, "springs of contacts: '" + file + "' names atoms that are not there");
+  if (all < ends) error->all(FLERR, "springs of contacts: '" + file + "' contains atom IDs that do not exist");
 }
 
 /// The first rank reads, in blocks; every rank keeps what its atoms need.

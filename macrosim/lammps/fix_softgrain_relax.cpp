@@ -326,8 +326,8 @@ void FixSoftgrainRelax::move() {
   }
 }
 
-/// Whether it is looked after so many passes how far the relaxation is.
-bool FixSoftgrainRelax::is_judged(double passes) const {
+/// Whether convergence is checked after this many passes.
+bool FixSoftgrainRelax::checks_convergence(double passes) const {
   return static_cast<std::int64_t>(passes) % PseudoMasses::kInterval == 0 || passes >= max_passes_;
 }
 
@@ -339,7 +339,7 @@ void FixSoftgrainRelax::initial_integrate(int) {
   if (pressed()) carry();
   if (log_lists_) watch_lists();
   pair_->spring_dt = fire_.step;
-  pair_->gathered.wanted = is_judged(passes_ + 1.0);
+  pair_->gathered.wanted = checks_convergence(passes_ + 1.0);
 }
 
 void FixSoftgrainRelax::end_of_step() {
@@ -350,7 +350,7 @@ void FixSoftgrainRelax::end_of_step() {
     for (int i = 0; i < atom->nlocal; ++i)
       if (norm2(atom->f[i]) == 0.0) std::fill(atom->v[i], atom->v[i] + 3, 0.0);
   }
-  if (is_judged(passes_)) judge();
+  if (checks_convergence(passes_)) judge();
 }
 
 void FixSoftgrainRelax::post_run() {

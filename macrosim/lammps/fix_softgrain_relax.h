@@ -87,7 +87,7 @@ class FixSoftgrainRelax : public Fix {
   [[nodiscard]] FixSoftgrainWall* box_walls() const;
   void stop_motion();
   void note_box();
-  [[nodiscard]] bool is_judged(double passes) const;
+  [[nodiscard]] bool checks_convergence(double passes) const;
   void judge();
   void finish();
   void scale_masses();

@@ -131,7 +131,7 @@ void FixSoftgrainWall::follow_box() {
 }
 
 /// Where the time step changes, planes go on from where they are.
-void FixSoftgrainWall::go_on_from_here() {
+void FixSoftgrainWall::restart_motion() {
   if (followed_ >= 0) {
     for (std::size_t k = 0; k < planes.size(); ++k) from_[k] = planes[k].point;
     start_ = followed_;
@@ -144,7 +144,7 @@ void FixSoftgrainWall::follow() {
   if (box_) {
     follow_box();
   } else if (moving_) {
-    if (dt_ != update->dt) go_on_from_here();
+    if (dt_ != update->dt) restart_motion();
     const double time = static_cast<double>(update->ntimestep - start_) * dt_;
     for (std::size_t k = 0; k < planes.size(); ++k) planes[k].point = from_[k] + planes[k].velocity * time;
   }

@@ -51,7 +51,7 @@ class FixSoftgrainWall : public Fix {
   void read_plane(char** words, int count, int& at);
   void read_law(char** words, int count, int& at);
   void follow_box();
-  void go_on_from_here();
+  void restart_motion();
   void ask_for_list();
 
   bool box_ = false;

@@ -47,7 +47,8 @@ std::string require_begins(const std::vector<MacroStage>& stages) {
     text += fmt::format(
         "if \"${{from}} >= {0} && ${{from}} < {1} && &\n"
         "    $(is_defined(variable,{2})*is_defined(variable,{3})*is_defined(variable,{4})) == 0\" then &\n"
-        "  'print \"ERROR: after point ${{from}} the test goes by the stresses at which stage {5} began: &\n"
+        "  'print \"ERROR: after point ${{from}} the target stresses depend on the stresses at the start of stage {5}: "
+        "&\n"
         "give -var {2} SX -var {3} SY -var {4} SZ, &\n"
         "the columns stress_x, stress_y and stress_z of point {0} in {6}\"' &\n"
         "  \"quit 1\"\n",

@@ -199,7 +199,7 @@ void Guards<D>::look_at_grains(const System<D>& s, const ContactWatch<D>& watch)
   if (spec_.escape.action == GuardAction::ignore) return;
   const std::vector<Slot>& behind = watch.behind_planes;
   auto outside = std::ssize(behind);
-  Slot first = watch.behind;
+  Slot first = behind.empty() ? -1 : behind.back();
   for (Slot i = 0; (spec_.low || spec_.high) && i < p.grains; ++i) {
     const Vec<D>& x = p.sphere[at(i)].x;
     bool in = true;
@@ -212,7 +212,8 @@ void Guards<D>::look_at_grains(const System<D>& s, const ContactWatch<D>& watch)
   note(spec_.escape, static_cast<double>(outside), s.time, report_.escape,
        first < 0 ? ""
                  : body(s, first) + " has escaped: " +
-                       (first == watch.behind ? "its centre is behind a wall" : "it is outside guards.escape"));
+                       (std::binary_search(behind.begin(), behind.end(), first) ? "its centre is behind a wall"
+                                                                                : "it is outside guards.escape"));
 }
 
 template <int D>

@@ -160,20 +160,16 @@ std::int64_t ParticlesRun<D>::next_event(std::int64_t end) const {
                    next(scene_.checkpoint_steps), system_.step + patience});
 }
 
-/// No number is lost and nothing moves its own radius in a step: it would pass through others unseen.
 template <int D>
 void ParticlesRun<D>::require_valid() const {
   const auto& p = system_.particles;
-  for (Slot i = 0; i < p.grains; ++i) {
-    const auto u = static_cast<std::size_t>(i);
-    const double move = norm(p.velocity[u]) * scene_.time.step;
-    if (std::isfinite(move) && std::isfinite(norm2(p.sphere[u].x)) && std::isfinite(norm2(p.spin[u])) &&
-        move < p.sphere[u].r)
-      continue;
-    throw UnusableResult(
-        "particle " + std::to_string(p.id.empty() ? i : p.id[u]) + " is lost: " +
-        (std::isfinite(move) ? "it moves more than its radius in one step" : "its motion is not finite"));
-  }
+  const Slot lost = lost_particle(system_, scene_.time.step);
+  if (lost < 0) return;
+  const auto u = static_cast<std::size_t>(lost);
+  const double move = norm(p.velocity[u]) * scene_.time.step;
+  throw UnusableResult("particle " + std::to_string(p.id.empty() ? lost : p.id[u]) + " is lost: " +
+                       (std::isfinite(move) && move >= p.sphere[u].r ? "it moves more than its radius in one step"
+                                                                     : "its motion is not finite"));
 }
 
 template <int D>
@@ -273,6 +269,18 @@ ParticlesResultOf<D> ParticlesRun<D>::run() {
 }
 
 }  // namespace
+
+template <int D>
+Slot lost_particle(const System<D>& system, double step) {
+  const auto& p = system.particles;
+  for (Slot i = 0; i < p.grains; ++i) {
+    const auto u = static_cast<std::size_t>(i);
+    const double move = norm(p.velocity[u]) * step;
+    const bool finite = std::isfinite(move) && std::isfinite(norm2(p.sphere[u].x)) && std::isfinite(norm2(p.spin[u]));
+    if (!finite || !(move < p.sphere[u].r)) return i;
+  }
+  return -1;
+}
 
 template <int D>
 std::string content_of(const ParticlesSceneOf<D>& scene, const System<D>& start) {
@@ -383,6 +391,8 @@ template ParticlesResultOf<2> run_particles<2>(const ParticlesSceneOf<2>&, Syste
 template ParticlesResultOf<3> run_particles<3>(const ParticlesSceneOf<3>&, System<3>, const ParticlesControl&);
 template ParticlesResultOf<2> run_particles<2>(const ParticlesSceneOf<2>&, const ParticlesControl&);
 template ParticlesResultOf<3> run_particles<3>(const ParticlesSceneOf<3>&, const ParticlesControl&);
+template Slot lost_particle<2>(const System<2>&, double);
+template Slot lost_particle<3>(const System<3>&, double);
 template std::string content_of<2>(const ParticlesSceneOf<2>&, const System<2>&);
 template std::string content_of<3>(const ParticlesSceneOf<3>&, const System<3>&);
 template void save_particles_run<2>(const std::string&, const ParticlesSceneOf<2>&, const ParticlesResultOf<2>&,

@@ -55,6 +55,11 @@ using ParticlesResult = ParticlesResultOf<3>;
 template <int D>
 std::string content_of(const ParticlesSceneOf<D>& scene, const System<D>& start);
 
+/// A particle that counts as lost: a number of its motion is not finite, or it moves its own radius or more in a step
+/// and would pass through others unseen. -1: none.
+template <int D>
+Slot lost_particle(const System<D>& system, double step);
+
 /// Runs to the end of the scene's time. The trajectory does not depend on output, checkpoints, threads or
 /// interruptions. Throws Interrupted after writing the checkpoint when a signal came; InputError, IoError for the
 /// checkpoint.

@@ -11,6 +11,7 @@
 #include "common/core/random.h"
 #include "common/io/interrupt.h"
 #include "common/io/scene.h"
+#include "common/neighbours/skin.h"
 #include "common/packing/grading_scene.h"
 #include "microsim/particles/scene_memory.h"
 #include "microsim/particles/scene_walls.h"
@@ -104,7 +105,7 @@ class PlacedParticles {
   void add_images(const Vec<D>& x, double r, int axis) {
     if (axis == D) return add_one(x, r);
     const double period = region_.period[axis];
-    if (!(period >= 4.0 * largest_)) return add_images(x, r, axis + 1);
+    if (!(period * kShareOfPeriod >= largest_)) return add_images(x, r, axis + 1);
     const double reach = r + largest_;
     const double last = std::floor((region_.high[axis] + reach - x[axis]) / period);
     for (double n = std::ceil((region_.low[axis] - reach - x[axis]) / period); n <= last; ++n) {

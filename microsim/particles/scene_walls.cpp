@@ -171,9 +171,9 @@ void require_wide_cell(const SceneTable& root, const System<D>& s) {
     const double width = cell.edges[k][k];
     if (width > least) continue;
     root.table("cell").add_error(
-        "size", fmt::format("the periodic axis {} is {:.6g} m wide; allowed: above {:.6g} m, 4.02 radii of the largest "
-                            "particle{}",
-                            "xyz"[k], width, least, half > 0.0 ? " with half its reach" : ""));
+        "size", fmt::format("the periodic axis {} is {:.6g} m wide; allowed: above {:.6g} m, {:.3g} radii of the "
+                            "largest particle{}",
+                            "xyz"[k], width, least, 1.0 / kShareOfPeriod, half > 0.0 ? " with half its reach" : ""));
   }
 }
 

@@ -48,6 +48,10 @@ ExitStatus calibrate_multi_contact(const CommonOptions& options);
 
 // softgrain check of tables that people bring: measurements of an experiment, sieve curves, radii.
 
+// What check says of tables that are no scenes.
+inline constexpr const char* kNoScene = "data, no scene: ";
+inline constexpr const char* kTakenBySizes = "the key `file` of a table `sizes` of a scene takes it";
+
 /// Says which data a text of columns holds, how many, and what takes them; `overrides` are keys that go with the file
 /// of a sieve curve. Throws InputError where it holds none of these or they are not sound, IoError.
 void check_table(const std::string& path, const std::vector<std::string>& overrides, Findings& out);

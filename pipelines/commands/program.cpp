@@ -11,15 +11,18 @@
 #include <cstdio>
 #include <limits>
 #include <new>
+#include <span>
 #include <sstream>
 #include <system_error>
 
+#include "common/core/enum_names.h"
 #include "common/core/text.h"
 #include "common/io/interrupt.h"
 #include "common/io/text_file.h"
 #include "pipelines/commands/commands.h"
 #include "pipelines/commands/complaints.h"
 #include "pipelines/commands/law_options.h"
+#include "pipelines/export/export.h"
 #include "pipelines/run/run_context.h"
 
 namespace softgrain {
@@ -75,13 +78,8 @@ constexpr const char* kFooter =
 
 /// The command line as one text that a shell would read back.
 std::string joined_command_line(int argc, char** argv) {
-  std::string text;
-  for (int k = 0; k < argc; ++k) {
-    const std::string word = argv[k];
-    const bool plain = !word.empty() && word.find_first_of(" \t\n\"'\\$`*?[]{}()<>|&;#~!") == std::string::npos;
-    append_part(text, plain ? word : "'" + word + "'", " ");
-  }
-  return text;
+  return join_text(std::span(argv, static_cast<std::size_t>(argc)), " ",
+                   [](const char* word) { return shell_word(word); });
 }
 
 CLI::Validator whole_number(const char* option, std::int64_t low, std::int64_t high) {
@@ -183,7 +181,8 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
     app.add_flag("--different", o.different,
                  "Error norms also of runs that differ in bodies, materials, tests or packings");
   if (command.function == command_export)
-    app.add_option("--to", o.to, "Form of the files: vtp, lammps-dump, lammps-data or csv")->option_text("FORM");
+    app.add_option("--to", o.to, "Form of the files: " + join_text(all_enum_names<ExportFormat>()))
+        ->option_text("FORM");
   if (command.function == command_run || command.function == command_microsim || command.function == command_macrosim)
     app.add_option("--observables", observables,
                    "Writes what was observed to PREFIX_sim.txt and the numbers set by --set to PREFIX_param.txt, as "
@@ -337,8 +336,10 @@ int end_of_parsing(const CLI::App& app, const CLI::ParseError& e, bool as_json) 
   std::string message = e.what();
   if (const std::string unknown = unknown_word_text(app); !unknown.empty()) message = unknown;
   // CLI11 puts "--threads: " before the message of a validator, which names the option itself.
-  for (const std::string option : {"--threads", "--seed", "--ranks", "--jobs"})
-    if (message.starts_with(option + ": " + option)) message.erase(0, option.size() + 2);
+  if (const std::size_t colon = message.find(": ");
+      message.starts_with("--") && colon != std::string::npos &&
+      message.substr(colon + 2).starts_with(message.substr(0, colon) + " "))
+    message.erase(0, colon + 2);
   return complain(ExitStatus::bad_input, message + " (see softgrain " + command + "--help)", as_json);
 }
 

@@ -6,7 +6,6 @@
 #include <cstdio>
 
 #include "common/core/error.h"
-#include "common/core/text.h"
 #include "common/io/progress.h"
 #include "pipelines/kinds/kinds.h"
 #include "pipelines/run/run_context.h"
@@ -55,7 +54,7 @@ ExitStatus command_macrosim(const CommonOptions& options) { return run_scene(opt
 ExitStatus command_sweep(const CommonOptions& options) {
   if (options.seed_given && !options.seeds.empty()) throw InputError("--seeds: goes without --seed");
   if (options.jobs > 1 && (options.slurm || !options.only.empty()))
-    throw InputError("--jobs: runs members of a set here: it goes without --slurm and --only");
+    throw InputError("--jobs: cannot be combined with --slurm or --only");
   if (options.slurm && !options.only.empty()) throw InputError("--slurm: goes without --only");
   const auto plan = [&] {
     if (options.sample.empty()) return make_plan(options.over, options.seeds, options.overrides, options.seed_given);

@@ -32,10 +32,11 @@ std::string grains_text(double grains) {
 std::string scenes_for(const Grading& sizes) {
   const double grains = grains_needed(sizes);
   if (grains <= kManyGrains)
-    return fmt::format("serves grain-box, particles, macro, material: {} grains follow it within 2 %",
+    return fmt::format("a sample of {} grains follows it within 2 %: use it in grain-box, particles, macro, material",
                        grains_text(grains));
-  return fmt::format("serves recipe (pipelines/graded_sand.toml): {} grains would follow it within 2 %",
-                     grains_text(grains));
+  return fmt::format(
+      "a sample of {} grains would follow it within 2 %: use it in a recipe (pipelines/graded_sand.toml)",
+      grains_text(grains));
 }
 
 std::string fuller_text(const GradingIndices& i) {
@@ -72,8 +73,7 @@ void check_sieves(const std::string& path, const std::vector<std::string>& overr
   const SieveCurve curve = read_sieve_file(path, options);
   const Grading& sizes = curve.grading;
   const GradingIndices i = grading_indices(sizes);
-  out.add("kind", "a sieve curve",
-          "data, no scene: a sieve curve; the key `file` of a table `sizes` of a scene takes it");
+  out.add("kind", "a sieve curve", fmt::format("{}a sieve curve; {}", kNoScene, kTakenBySizes));
   out.add("columns", curve.columns, "read: " + curve.columns);
   out.add("radius", {sizes.smallest(), sizes.largest()},
           fmt::format("radii {:.4g} to {:.4g} m", sizes.smallest(), sizes.largest()));

@@ -17,8 +17,6 @@ namespace softgrain {
 
 namespace {
 
-constexpr const char* kNoScene = "data, no scene: ";
-
 bool has_column(const CsvFile& table, std::initializer_list<const char*> begins) {
   return std::any_of(table.columns().begin(), table.columns().end(), [&](const CsvColumn& c) {
     return std::any_of(begins.begin(), begins.end(), [&](const char* word) { return c.name.starts_with(word); });
@@ -81,8 +79,7 @@ void check_force_curves(const CsvFile& table, Findings& out) {
 }
 
 void check_radii(const Grading& sizes, Findings& out) {
-  out.add("kind", "radii of grains",
-          fmt::format("{}radii of grains; the key `file` of a table `sizes` of a scene takes it", kNoScene));
+  out.add("kind", "radii of grains", fmt::format("{}radii of grains; {}", kNoScene, kTakenBySizes));
   out.add("radius", {sizes.smallest(), sizes.largest()},
           fmt::format("radii {:.4g} to {:.4g} m", sizes.smallest(), sizes.largest()));
 }
@@ -118,13 +115,13 @@ void check_packing(const CsvFile& table, Findings& out) {
 
 void check_table(const std::string& path, const std::vector<std::string>& overrides, Findings& out) {
   std::error_code ignored;
-  const bool sieves = std::filesystem::is_regular_file(path, ignored) && is_sieve_file(path);
-  if (!overrides.empty() && !sieves) throw InputError("--set: " + path + " is no scene");
+  const auto sieves = [&] { return std::filesystem::is_regular_file(path, ignored) && is_sieve_file(path); };
+  if (!overrides.empty() && !sieves()) throw InputError("--set: " + path + " is no scene");
   std::optional<CsvFile> read;
   try {
     read = CsvFile::read(path);
   } catch (const InputError&) {  // tables of laboratories have lines of text
-    if (!sieves) throw;
+    if (!sieves()) throw;
   }
   if (!read) return check_sieves(path, overrides, out);
   const CsvFile& table = *read;
@@ -142,7 +139,7 @@ void check_table(const std::string& path, const std::vector<std::string>& overri
     check_force_curves(table, out);
   else if (has("x") && has("y") && has("z"))
     check_packing(table, out);
-  else if (sieves || names({"passing", "finer", "retained"}))
+  else if (names({"passing", "finer", "retained"}) || sieves())
     check_sieves(path, overrides, out);
   else if (has_column(table, {"radius", "diameter"}) || has("r") || has("d"))
     check_radii(read_radii(path), out);

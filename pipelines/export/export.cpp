@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
 #include "pipelines/export/export_files.h"
@@ -136,7 +137,7 @@ class Exporter {
   }
 
   /// Throws InputError, and takes back what was written, where a file of this name is there that no export listed.
-  void write(const std::string& name, const std::string& text) const {
+  void write(const std::string& name, const std::string& text) {
     if (!written_.insert(name).second) {
       list_.remove_listed();
       throw InputError(fmt::format("{}: two series of states would both be the file {}", directory_, name));
@@ -150,7 +151,7 @@ class Exporter {
     write_text_atomic(directory_ + "/" + name, text);
   }
 
-  void write_index(Series& s) const {
+  void write_index(Series& s) {
     const std::vector<std::string> names = index_files(s);
     if (format_ == ExportFormat::vtp) {
       s.facts.files = {names[0]};
@@ -169,7 +170,7 @@ class Exporter {
   ExportFormat format_;
   std::string directory_;
   ExportList list_;
-  mutable std::set<std::string> written_;
+  std::set<std::string> written_;
   bool unlisted_;  ///< an export of an earlier version, which kept no list, may have left files here
   std::vector<Series> all_;
 };
@@ -185,11 +186,11 @@ std::vector<double> times_of(std::vector<double> moments) {
 
 ExportFormat export_format(const std::string& name) {
   if (const auto format = parse_enum<ExportFormat>(name)) return *format;
-  if (name.empty())
-    throw InputError("export: which form? give --to vtp, --to lammps-dump, --to lammps-data or --to csv");
-  const std::string near = nearest_word(name, {"vtp", "lammps-dump", "lammps-data", "csv"});
-  throw InputError(fmt::format("export: --to {}: unknown form; {}allowed are vtp, lammps-dump, lammps-data, csv", name,
-                               near.empty() ? "" : "nearest is " + near + "; "));
+  const std::vector<const char*> known = all_enum_names<ExportFormat>();
+  if (name.empty()) throw InputError("export: which form? give --to, one of " + join_text(known));
+  const std::string near = nearest_word(name, {known.begin(), known.end()});
+  throw InputError(fmt::format("export: --to {}: unknown form; {}allowed are {}", name,
+                               near.empty() ? "" : "nearest is " + near + "; ", join_text(known)));
 }
 
 std::string file_name_of(const std::string& series) {

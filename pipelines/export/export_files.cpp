@@ -23,9 +23,10 @@ std::string extension_of(ExportFormat format) {
       return "dump";
     case ExportFormat::lammps_data:
       return "data";
-    default:
+    case ExportFormat::csv:
       return "csv";
   }
+  return "";
 }
 
 std::string quoted_for_regex(const std::string& text) {
@@ -49,9 +50,6 @@ std::vector<std::string> names_in(const std::string& directory) {
     if (entry.is_regular_file(error)) out.push_back(entry.path().filename().string());
   return out;
 }
-
-constexpr std::array kFormats{ExportFormat::vtp, ExportFormat::lammps_dump, ExportFormat::lammps_data,
-                              ExportFormat::csv};
 
 }  // namespace
 
@@ -115,7 +113,7 @@ void ExportList::add(const std::string& name) const {
 std::string export_folder(ExportFormat format) { return "export-" + to_string(format); }
 
 void remove_exports_of(const std::string& run_directory) {
-  for (const ExportFormat format : kFormats) {
+  for (const auto& [format, name] : enum_names<ExportFormat>) {
     const std::string directory = run_directory + "/" + export_folder(format);
     std::error_code error;
     if (!fs::is_directory(directory, error)) continue;

@@ -57,12 +57,12 @@ std::string given_of(std::initializer_list<std::pair<const char*, bool>> options
 
 /// Throws InputError for options that are given (`options` names them) where `takes` does not hold for the kind.
 template <class Takes>
-void refuse_options(const SceneKind& kind, const std::string& options, const char* why, const Takes& takes) {
+void refuse_options(const SceneKind& kind, const std::string& options, const Takes& takes) {
   if (options.empty() || takes(kind)) return;
   std::string kinds;
   for (const SceneKind& one : scene_kinds())
     if (takes(one)) append_part(kinds, fmt::format("\"{}\"", one.name), ", ");
-  throw InputError(fmt::format("{}: scenes of kind \"{}\" {}; those of {} do", options, kind.name, why, kinds));
+  throw InputError(fmt::format("{}: not for scenes of kind \"{}\"; goes with {}", options, kind.name, kinds));
 }
 
 }  // namespace
@@ -105,18 +105,17 @@ std::string commands_of(const SceneKind& kind, const char* separator) {
 }
 
 void refuse_idle_options(const SceneKind& kind, const CommonOptions& o) {
-  constexpr const char* kNothing = "have nothing to keep there";
-  refuse_options(kind, given_of({{"--law-cache", !o.law_cache.empty()}}), kNothing,
+  refuse_options(kind, given_of({{"--law-cache", !o.law_cache.empty()}}),
                  [](const SceneKind& k) { return k.keeps.measurements; });
-  refuse_options(kind, given_of({{"--packing-cache", !o.packing_cache.empty()}}), kNothing,
+  refuse_options(kind, given_of({{"--packing-cache", !o.packing_cache.empty()}}),
                  [](const SceneKind& k) { return k.keeps.packings; });
-  refuse_options(kind, given_of({{"--twin-cache", !o.twin_cache.empty()}}), kNothing,
+  refuse_options(kind, given_of({{"--twin-cache", !o.twin_cache.empty()}}),
                  [](const SceneKind& k) { return k.keeps.twins; });
   refuse_options(kind, given_of({{"--law", !o.law.empty()}, {"--bands", o.bands > 0}}),
-                 "take no law from the command line", [](const SceneKind& k) { return k.takes_law; });
-  refuse_options(
-      kind, given_of({{"--engine", !o.engine.empty()}, {"--ranks", o.ranks > 0}, {"--write-only", o.write_only}}),
-      "run in our own engine alone and take none of LAMMPS", [](const SceneKind& k) { return k.takes_engine; });
+                 [](const SceneKind& k) { return k.takes_law; });
+  refuse_options(kind,
+                 given_of({{"--engine", !o.engine.empty()}, {"--ranks", o.ranks > 0}, {"--write-only", o.write_only}}),
+                 [](const SceneKind& k) { return k.takes_engine; });
 }
 
 }  // namespace softgrain

@@ -30,9 +30,9 @@ double deviation_of(const CellCardNumber& n) {
 CellCard card_with(CellCard card, const std::vector<CellCardNumber>& drawn, const std::vector<double>& numbers) {
   for (std::size_t k = 0; k < drawn.size(); ++k)
     set_number(card, drawn[k].key, drawn[k].logarithm ? std::exp(numbers[k]) : numbers[k]);
-  if (card.memory) {  // more would make slip give energy back
-    const double c = card.memory->strength_range.value;
-    if (c > 0.0) card.memory->dilatancy.value = std::min(card.memory->dilatancy.value, (1.0 + c) / c);
+  if (card.memory) {
+    double& a = card.memory->dilatancy.value;
+    a = std::min(a, most_dilatancy(card.memory->strength_range.value));
   }
   return card;
 }
@@ -49,7 +49,7 @@ LawDraws cell_draws(const CellCard& card, const std::string& name, std::int64_t 
   std::vector<std::string> held;
   for (const CellCardNumber& n : numbers_of(card)) {
     if (std::ranges::find(c.numbers, n.key) == c.numbers.end()) {
-      if (n.key != "K0" && n.key != "x_r") held.push_back(n.key);  // no run takes K0; x_r is of the solution
+      if (n.is_drawn) held.push_back(n.key);
       continue;
     }
     drawn.push_back(n);

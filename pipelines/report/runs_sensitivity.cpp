@@ -11,12 +11,6 @@ namespace softgrain::report {
 
 namespace {
 
-std::string effect_cell(const std::optional<EffectSize>& effect) {
-  if (!effect) return "not determined";
-  return format_number(effect->value, 2) + " [" + format_number(effect->low, 2) + ", " +
-         format_number(effect->high, 2) + "]";
-}
-
 bool has_indices(const SetSummary& set) {
   return std::ranges::any_of(set.sensitivity, [](const KeyEffect& e) { return e.total.has_value(); });
 }
@@ -45,9 +39,9 @@ std::string sensitivity_part(const SetSummary& set) {
   header.insert(header.end(), {"points", "not determined, because"});
   HtmlTable table(header, 2);
   for (const KeyEffect& e : set.sensitivity) {
-    std::vector<std::string> row{e.number, e.key, effect_cell(e.rank), effect_cell(e.coefficient),
+    std::vector<std::string> row{e.number, e.key, effect_text(e.rank), effect_text(e.coefficient),
                                  e.coefficient ? format_number(e.determination, 2) : "–"};
-    if (indices) row.insert(row.end(), {effect_cell(e.first), effect_cell(e.total)});
+    if (indices) row.insert(row.end(), {effect_text(e.first), effect_text(e.total)});
     row.insert(row.end(), {std::to_string(e.points), e.reason});
     table.row(row);
   }

@@ -53,6 +53,12 @@ std::string short_key(const std::vector<SweptKey>& over, const std::string& key)
   return same > 1 ? key : last_part(key);
 }
 
+std::string effect_text(const std::optional<EffectSize>& effect) {
+  if (!effect) return "not determined";
+  const auto rounded = [](double x) { return std::round(100.0 * x) / 100.0 + 0.0; };  // no -0.00
+  return fmt::format("{:.2f} [{:.2f}, {:.2f}]", rounded(effect->value), rounded(effect->low), rounded(effect->high));
+}
+
 std::string values_text(const SweptKey& key) {
   if (key.range.empty()) return join_text(key.values);
   const std::size_t dots = key.range.find("..");

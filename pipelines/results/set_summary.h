@@ -183,6 +183,9 @@ std::string point_name(const std::vector<SweptKey>& over, const std::map<std::st
 /// "20, 40, 60", or the range of a key that was sampled: "0.1 to 0.8", "1e6 to 1e8, logarithmic".
 std::string values_text(const SweptKey& key);
 
+/// "0.83 [0.70, 0.91]"; "not determined".
+std::string effect_text(const std::optional<EffectSize>& effect);
+
 /// A key by its last part where no other of the keys ends with it.
 std::string short_key(const std::vector<SweptKey>& over, const std::string& key);
 

@@ -14,13 +14,11 @@ namespace softgrain {
 
 namespace {
 
-/// A word as a shell reads it back.
-std::string shell_word(const std::string& word) {
+/// Each command is one line of a file.
+std::string line_word(const std::string& word) {
   if (word.find('\n') != std::string::npos)
     throw InputError("--slurm: " + word + ": must be one line; put it into the scene");
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
+  return shell_word(word);
 }
 
 /// Each run goes on where it was when the cluster starts it again.
@@ -33,7 +31,7 @@ CommonOptions job_options(CommonOptions options) {
 std::string commands_text(const CommonOptions& options, const RunPlan& plan, const std::string& directory) {
   std::string text;
   for (const PlannedRun& run : plan.runs)
-    text += join_text(member_command(options, directory, run.name), " ", shell_word) + "\n";
+    text += join_text(member_command(options, directory, run.name), " ", line_word) + "\n";
   return text;
 }
 
@@ -41,7 +39,7 @@ std::string commands_text(const CommonOptions& options, const RunPlan& plan, con
 std::string collecting(CommonOptions options, const std::string& directory) {
   options.resume = true;
   options.threads = 0;
-  return join_text(member_command(options, directory, ""), " ", shell_word);
+  return join_text(member_command(options, directory, ""), " ", line_word);
 }
 
 std::string script_text(const CommonOptions& options, const RunPlan& plan, const std::string& folder,

@@ -83,10 +83,6 @@ SobolSample sobol_sample(const std::vector<PointValue>& points, std::size_t keys
   return out;
 }
 
-bool is_constant(const std::vector<double>& values) {
-  return std::ranges::all_of(values, [&](double v) { return v == values.front(); });
-}
-
 /// Adds rank correlations and the regression to the effects of one number, one per key.
 void add_correlations(const SetSummary& summary, const std::vector<PointValue>& points,
                       std::vector<KeyEffect>& effects) {
@@ -100,11 +96,11 @@ void add_correlations(const SetSummary& summary, const std::vector<PointValue>& 
     std::vector<double> column = column_of(summary.over[k], points);
     if (points.size() < kLeastRanked)
       effect.reason = fmt::format("{} points, at least {} are needed", points.size(), kLeastRanked);
-    else if (is_constant(y))
+    else if (!varies(y))
       effect.reason = "the number does not vary";
     else if (column.empty())
-      effect.reason = "values that are no numbers have no order";
-    else if (is_constant(column))
+      effect.reason = "the values of the key are not numbers";
+    else if (!varies(column))
       effect.reason = "the key does not vary";
     if (!effect.reason.empty()) continue;
     effect.rank = rank_correlation(column, y);
@@ -117,7 +113,7 @@ void add_correlations(const SetSummary& summary, const std::vector<PointValue>& 
     effects[keys[c]].determination = fit->determination;
   }
   if (fit || keys.empty()) return;
-  const std::size_t needed = std::max(kLeastRegressed, 3 * (keys.size() + 1));
+  const std::size_t needed = least_regressed(keys.size());
   const std::string why = points.size() < needed
                               ? fmt::format("{} points, at least {} are needed for a regression", points.size(), needed)
                               : std::string("no regression: keys depend on each other");
@@ -158,12 +154,6 @@ std::vector<KeyEffect> sensitivity_of(const SetSummary& summary) {
     out.insert(out.end(), effects.begin(), effects.end());
   }
   return out;
-}
-
-std::string effect_text(const std::optional<EffectSize>& effect) {
-  if (!effect) return "not determined";
-  const auto rounded = [](double x) { return std::round(100.0 * x) / 100.0 + 0.0; };  // no -0.00
-  return fmt::format("{:.2f} [{:.2f}, {:.2f}]", rounded(effect->value), rounded(effect->low), rounded(effect->high));
 }
 
 std::string sensitivity_text(const SetSummary& summary) {

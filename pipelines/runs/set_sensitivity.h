@@ -17,7 +17,4 @@ std::vector<KeyEffect> sensitivity_of(const SetSummary& summary);
 /// The first few numbers of that for the terminal; one line where nothing is determined.
 std::string sensitivity_text(const SetSummary& summary);
 
-/// "0.83 [0.70, 0.91]"; "not determined".
-std::string effect_text(const std::optional<EffectSize>& effect);
-
 }  // namespace softgrain

@@ -6,7 +6,7 @@
 #include "calibrate/face_friction_fit.h"
 #include "macrosim/cell_matter/cell_packing.h"
 #include "macrosim/cell_matter/face_springs.h"
-#include "pipelines/kinds/material_law/fit.h"
+#include "pipelines/kinds/material_law/fines_in_cells.h"
 
 namespace softgrain {
 namespace {

@@ -240,7 +240,7 @@ TEST_F(Check, OptionsOfTheCommandLineAreThoseOfTheRunOrRefused) {
   for (const char* option : {"--law law.toml", "--bands 50"}) {
     const test::ProgramOutcome refused = said(option);
     EXPECT_EQ(refused.status, 2) << refused.output;
-    EXPECT_NE(refused.output.find("take no law from the command line; those of \"macro\" do"), std::string::npos)
+    EXPECT_NE(refused.output.find("not for scenes of kind \"particles\"; goes with \"macro\""), std::string::npos)
         << refused.output;
   }
 }

@@ -98,7 +98,7 @@ TEST_F(MacroLammps, OptionsThatMeanNothingAreRefusedBeforeAnyWork) {
   expect(run_the_program("microsim '" + file("scene.toml") + "'"), 2, {"softgrain run or macrosim, not with microsim"});
   write_text_atomic(file("pipeline.toml"), kTinyPipeline);
   expect(run_the_program("run '" + file("pipeline.toml") + "' --engine lammps --out '" + file("run") + "'"), 2,
-         {"--engine: scenes of kind \"pipeline\" run in our own engine alone", "\"macro\", \"material\""});
+         {"--engine: not for scenes of kind \"pipeline\"", "\"macro\", \"material\""});
   ::setenv("SOFTGRAIN_LAMMPS", "/nowhere/softgrain-lammps", 1);
   expect(macro("run", "--engine lammps"), 2, {"SOFTGRAIN_LAMMPS", "no program there"});
   EXPECT_FALSE(fs::exists(file("run") + "/log.txt"));

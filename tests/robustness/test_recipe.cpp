@@ -35,7 +35,7 @@ std::size_t files_named(const std::string& directory, const std::string& prefix)
 
 TEST(RecipeRun, HoldsForAllItsGrainsAndRunsAgainOutOfTheCaches) {
   const TemporaryDirectory directory;
-  write_text_atomic(directory.file("scene.toml"), kTinyRecipe);
+  write_text_atomic(directory.file("scene.toml"), starter_scene("recipe"));
   const std::string caches =
       "--packing-cache '" + directory.file("packings") + "' --law-cache '" + directory.file("tests") + "' ";
   const std::string first = run_tiny(directory, "first", caches);

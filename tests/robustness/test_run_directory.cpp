@@ -208,7 +208,7 @@ TEST_F(RunDirectory, RunAndTheCommandOfTheKindGoOnWithEachOther) {
   expect(macro(), 0);
   expect(by_run("macro.toml", "--resume"), 0);
   expect(by_run("particles.toml", "--law '" + file("law.toml") + "' --bands 20"), 2,
-         {"--law, --bands: scenes of kind \"particles\" take no law", "\"macro\""});
+         {"--law, --bands: not for scenes of kind \"particles\"", "\"macro\""});
   expect(by_run("particles.toml", ""), 0);
   EXPECT_EQ(summary_of(file("out"))["command"], "microsim");
   expect(particles("--resume"), 0);

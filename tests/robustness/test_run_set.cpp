@@ -161,7 +161,7 @@ TEST_F(RunSet, CachesThatAKindHasNothingForAreRefused) {
     const auto outcome = run_the_program("run '" SOFTGRAIN_SOURCE_DIR "/pipelines/" + scene + "' " + option + " '" +
                                          file("kept") + "' --out " + quoted("out"));
     EXPECT_EQ(outcome.status, 2) << scene;
-    EXPECT_NE(outcome.output.find(option + ": scenes of kind"), std::string::npos) << outcome.output;
+    EXPECT_NE(outcome.output.find(option + ": not for scenes of kind"), std::string::npos) << outcome.output;
     EXPECT_FALSE(fs::exists(file("out")));
   }
 }
@@ -353,7 +353,7 @@ TEST_F(RunSet, AJobArrayIsWrittenRunAndCollected) {
   expect(program("sweep", sweep + "--slurm --out " + quoted("array")), 0,
          {"2 commands, one per run", "nothing was submitted", "submit: sbatch", "collect"});
   const std::string script = read_text(file("array") + "/slurm/job.sh");
-  for (const char* words : {"#SBATCH --array=1-2", "#SBATCH --cpus-per-task=1", "SLURM_ARRAY_TASK_ID", "'--resume'"})
+  for (const char* words : {"#SBATCH --array=1-2", "#SBATCH --cpus-per-task=1", "SLURM_ARRAY_TASK_ID", " --resume"})
     EXPECT_NE(script.find(words), std::string::npos) << words;
   EXPECT_FALSE(fs::exists(file("array") + "/sample_001"));
   for (const char* task : {"1", "2"}) {

@@ -56,32 +56,6 @@ increments_per_step = 3
 resolved = ["shelled"]
 )";
 
-inline constexpr const char* kTinyInverse = R"(kind = "inverse"
-seed = 1
-[packing]
-trials = 100
-polydispersity = 4.0
-beta = 8.0
-count = 2
-[measure]
-relaxation = "damped"
-[measure.damped]
-increment = 0.02
-tolerance = 1e-2
-[target]
-delta = [0.2, 0.3, 0.4]
-force = ["0.1 N", "0.5 N", "1.4 N"]
-error = ["0.01 N", "0.05 N", "0.14 N"]
-discrepancy = 0.05
-[search]
-mu = [0.05, 0.9]
-budget = 8
-design = 4
-batch = 2
-confirm = 2
-replicates = 20
-)";
-
 inline constexpr const char* kTinyPowder = R"(kind = "cohesive-powder"
 seed = 1
 samples = 2
@@ -276,58 +250,19 @@ strain = 0.05
 preload_steps = 1
 )";
 
-inline constexpr const char* kTinyRecipe = R"(kind = "recipe"
-seed = 1
-[grains]
-count = 150
-ratio = 2.2
-[levels]
-ratio = 1.6
-mixtures = [0.25, 0.5, 0.75]
-[law]
-cells = 40
-shear_strain = 0.04
-[packing]
-preparation = "fast"
-[test]
-steps = 4
-increments_per_step = 2
-strain = 0.05
-preload_steps = 1
-[check]
-grains = 300
-[macro]
-grains = 40
-samples = 1
-)";
-
-inline constexpr const char* kTinyMaterialModels = R"(kind = "material-models"
-seed = 1
-samples = 2
-[grains]
-count = 120
-ratio = 2
-[packing]
-preparation = "fast"
-[test]
-steps = 3
-strain = 0.05
-[[model]]
-name = "substitute"
-kind = "substitute"
-split = 0.8
-smallest = 0.6
-[[model]]
-name = "coarse"
-kind = "coarse"
-split = 0.8
-)";
+/// The small scene of a kind that `softgrain new` writes, where that is tiny enough for tests.
+inline std::string starter_scene(const std::string& kind) {
+  for (const SceneKind& k : scene_kinds())
+    if (kind == k.name) return "kind = \"" + kind + "\"\n" + k.starter;
+  ADD_FAILURE() << "no kind " << kind;
+  return "";
+}
 
 struct KindScene {
   std::string name;
   std::string command;
   std::string text;
-  int status = 0;  ///< of the undisturbed run: 3 where so little was measured that a law stays underdetermined
+  int status = 0;        ///< of the undisturbed run: 3 where so little was measured that a law stays underdetermined
   bool instant = false;  ///< it ends within milliseconds: no signal finds it with kept tasks
 };
 
@@ -340,12 +275,12 @@ inline std::vector<KindScene> every_kind() {
                                {"macro", "", kTinyMacro, 0},
                                {"material", "", kTinyMaterial, 0},
                                {"material-law", "", kTinyMaterialLaw, 3},
-                               {"recipe", "", kTinyRecipe, 0},
-                               {"material-models", "", kTinyMaterialModels, 0},
+                               {"recipe", "", starter_scene("recipe"), 0},
+                               {"material-models", "", starter_scene("material-models"), 0},
                                {"macro-comparison", "", kTinyComparison, 0},
                                {"law-table", "", std::string(kTinyLawTable) + kTinyLawFit, 0},
                                {"hierarchy", "", kTinyHierarchy, 3},
-                               {"inverse", "", kTinyInverse, 0},
+                               {"inverse", "", starter_scene("inverse"), 0},
                                {"particles", "", tiny_particles(), 0},
                                {"disks", "", tiny_disks(), 0},
                                {"powder", "", kTinyPowder, 0},

@@ -161,7 +161,7 @@ kind = "reload"
 }
 
 inline std::string models_scene() {
-  return std::string(kTinyMaterialModels) + "[[model]]\nname = \"cells\"\nkind = \"cells\"\nsplit = 0.8\ncard = \"" +
+  return starter_scene("material-models") + "[[model]]\nname = \"cells\"\nkind = \"cells\"\nsplit = 0.8\ncard = \"" +
          SOFTGRAIN_SOURCE_DIR +
          "/results/material_law/cell_law.toml\"\n[[model]]\nname = \"mean\"\nkind = "
          "\"mean-field\"\ncard = \"" +

@@ -12,6 +12,7 @@
 #include "common/core/random.h"
 #include "common/io/text_file.h"
 #include "common/packing/grading_scene.h"
+#include "common/packing/sieve_table.h"
 #include "tests/support/temporary_directory.h"
 
 namespace {
@@ -184,7 +185,7 @@ class GradingFile : public ::testing::Test {
  protected:
   Grading sieves(const std::string& text) {
     write_text_atomic(directory_.file("curve.csv"), text);
-    return read_sieve_curve(directory_.file("curve.csv"));
+    return read_sieve_file(directory_.file("curve.csv")).grading;
   }
   std::string complaint(const std::string& text) {
     try {

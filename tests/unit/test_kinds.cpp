@@ -52,20 +52,17 @@ TEST(Kinds, OptionsThatAKindHasNoUseForAreRefusedInOneMessage) {
   CommonOptions law;
   law.law = "law.toml";
   law.bands = 20;
-  EXPECT_EQ(idle_options("pipeline", law),
-            "--law, --bands: scenes of kind \"pipeline\" take no law from the command line; those of \"macro\" do");
+  EXPECT_EQ(idle_options("pipeline", law), "--law, --bands: not for scenes of kind \"pipeline\"; goes with \"macro\"");
   EXPECT_EQ(idle_options("macro", law), "");
   CommonOptions lammps;
   lammps.engine = "lammps";
   lammps.ranks = 2;
-  EXPECT_EQ(
-      idle_options("particles", lammps),
-      "--engine, --ranks: scenes of kind \"particles\" run in our own engine alone and take none of LAMMPS; those "
-      "of \"macro\", \"material\" do");
+  EXPECT_EQ(idle_options("particles", lammps),
+            "--engine, --ranks: not for scenes of kind \"particles\"; goes with \"macro\", \"material\"");
   for (const char* kind : {"macro", "material"}) EXPECT_EQ(idle_options(kind, lammps), "");
   CommonOptions twins;
   twins.twin_cache = "twins";
-  EXPECT_NE(idle_options("material", twins).find("--twin-cache: scenes of kind \"material\" have nothing to keep"),
+  EXPECT_NE(idle_options("material", twins).find("--twin-cache: not for scenes of kind \"material\""),
             std::string::npos);
 }
 

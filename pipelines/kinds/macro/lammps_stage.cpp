@@ -81,8 +81,8 @@ class Sample {
 
   void run(const LammpsEngine& engine, const std::function<void(double)>& progress) {
     MacroCurve so_far = blank_curve(spec(), packing_, runs_.law.name, number_);
-    lammps::add_points(read_rows(), spec(),
-                       so_far);  // rows of another test are refused before LAMMPS goes on after them
+    // Rows of another test are refused before LAMMPS continues after them.
+    lammps::add_points(read_rows(), spec(), so_far);
     lammps::ResumePoint from =
         lammps::find_resume_point(where_, key_, recorded_points(spec()), spec().stages, lammps::grain_names(spec()));
     if (from.done) return;

@@ -297,13 +297,9 @@ class StageReader {
     const std::int64_t count = t.count({"count", "of `\"cycles\"`: number of cycles"}, 1, 1000);
     const std::string name = given_name(t, "cycle");
     std::int64_t first = 1;  // cycles of an earlier table of this name come before
-    const auto taken = [&](const MacroStage& s) {
-      for (std::int64_t k = first; k < first + count; ++k)
-        for (const char* way : {"unload", "reload"})
-          if (s.record.name == fmt::format("{} {} {}", name, k, way)) return true;
-      return false;
-    };
-    while (std::any_of(stages_.begin(), stages_.end(), taken)) ++first;
+    for (std::int64_t k = first; k < first + count; ++k)
+      for (const char* way : {"unload", "reload"})
+        if (is_taken(fmt::format("{} {} {}", name, k, way))) first = k + 1;
     for (std::int64_t k = first; k < first + count; ++k) {
       stages_.push_back(begin(t, StageKind::unload));
       stages_.back().record.name = fmt::format("{} {} unload", name, k);

@@ -1,4 +1,3 @@
-// Fines alone in cells, strained as measured samples were; then the fit of the cell law.
 #include "pipelines/kinds/material_law/fit.h"
 
 #include <fmt/format.h>
@@ -8,179 +7,22 @@
 #include <functional>
 #include <tuple>
 
-#include "calibrate/draws.h"
 #include "calibrate/excess_pores_fit.h"
 #include "calibrate/face_friction_fit.h"
 #include "calibrate/state_curves.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/core/limits.h"
-#include "common/core/parallel_tasks.h"
 #include "common/core/statistics.h"
-#include "common/io/interrupt.h"
-#include "macrosim/cell_matter/cell_packing.h"
 #include "macrosim/cell_matter/face_springs.h"
-#include "macrosim/preparation.h"
 #include "pipelines/compare/stage_results.h"
+#include "pipelines/kinds/material_law/correlation.h"
+#include "pipelines/kinds/material_law/fines_in_cells.h"
 #include "pipelines/kinds/material_law/memory_fit.h"
 
 namespace softgrain {
 
 namespace {
-
-/// Bodies of one size would order.
-constexpr double kSiteRatio = 1.5;
-/// Compared points of a stage: steps of one percent give what those of a quarter do.
-constexpr std::size_t kComparedPoints = 8;
-/// Tolerance of a relaxation; at a tenth of it stress ratios differ by 1e-4.
-constexpr double kTolerance = 1e-2;
-
-std::size_t last_stage_begins(const MacroCurve& curve) {
-  std::size_t first = curve.stage.size();
-  while (first > 1 && curve.stage[first - 1] == curve.stage.back()) --first;
-  return first;
-}
-
-EquationOfState equation_of_fines(const FinesState& s) {
-  if (s.form == StateForm::porosity) return PorosityForm{s.modulus, s.exponent};
-  return PoreForm{s.modulus, s.exponent};
-}
-
-/// Image of a point in the periodic cell whose low corner is the origin.
-Vec3 home(const Vec3& x, const Vec3& size) {
-  Vec3 out;
-  for (int k = 0; k < 3; ++k) {
-    out[k] = x[k] - size[k] * std::floor(x[k] / size[k]);
-    if (!(out[k] < size[k])) out[k] = 0.0;
-  }
-  return out;
-}
-
-double measure_of(const Matrix<3>& stress, FinesMeasure measure) {
-  const double x = stress[0][0];
-  const double y = stress[1][1];
-  const double z = stress[2][2];
-  if (measure == FinesMeasure::lateral_ratio) return 0.5 * (x + y) / z;
-  const double q = std::sqrt(0.5 * ((x - y) * (x - y) + (y - z) * (y - z) + (z - x) * (z - x)));
-  return 3.0 * q / (x + y + z);
-}
-
-}  // namespace
-
-FinesPath path_of(const MacroCurve& curve, FinesMeasure measure) {
-  FinesPath path;
-  path.measure = measure;
-  const std::size_t first = last_stage_begins(curve);
-  const std::size_t all = curve.strain_z.size();
-  const std::size_t every = std::max<std::size_t>(1, (all - first) / kComparedPoints);
-  for (std::size_t k = 0; k < all; ++k)
-    if (k < first || (all - 1 - k) % every == 0) {
-      path.points.push_back(k);
-      path.length.push_back({{1.0 - curve.strain_x[k], 1.0 - curve.strain_y[k], 1.0 - curve.strain_z[k]}});
-      path.compared += k < first ? 0 : 1;
-    }
-  return path;
-}
-
-std::vector<double> measured_on(const MacroCurve& curve, const FinesPath& path) {
-  std::vector<double> out;
-  const std::vector<double> ratio = stress_ratios(curve);
-  for (std::size_t at = path.points.size() - path.compared; at < path.points.size(); ++at) {
-    const std::size_t k = path.points[at];
-    out.push_back(path.measure == FinesMeasure::stress_ratio ? ratio[k]
-                                                             : curve.stress_lateral[k] / curve.stress_axial[k]);
-  }
-  return out;
-}
-
-MacroPacking pack_sites(std::int64_t count, std::uint64_t seed) {
-  MacroSpec spec;
-  spec.boundary = Boundary::periodic;
-  spec.soft_share = 0.0;
-  spec.bodies = count;
-  spec.solid_polydispersity = kSiteRatio;
-  spec.start_pressure = 1e-4;
-  spec.protocol = protocol_of(spec.preparation, 0.0);
-  return make_macro_packing(spec, seed, 0);
-}
-
-std::vector<double> strain_fines(const MacroPacking& sites, const FinesState& state, const FaceFriction& friction,
-                                 const FinesPath& path) {
-  const Vec3 size = sites.size();
-  const Cell<3> cell = box_cell<3>(size, {true, true, true});
-  std::vector<Sphere<3>> spheres;
-  for (const MacroBody& b : sites.bodies) spheres.push_back({home(b.x - sites.low, size), b.r});
-  const double onset = 1.0 / (1.0 + state.void_ratio);
-  const double phi = state_phi(state.form, state.modulus, state.exponent, onset, state.start_pressure);
-  std::vector<CellContent> content;
-  for (const double v : radical_cells(spheres, cell).volume) content.push_back({phi * v, state.void_ratio * phi * v});
-  CellPacking packing({equation_of_fines(state), {}, friction}, spheres, std::move(content), cell);
-  std::vector<double> out;
-  try {
-    for (std::size_t k = 1; k < path.length.size(); ++k) {
-      Vec3 stretch;
-      for (int a = 0; a < 3; ++a) stretch[a] = path.length[k][a] / path.length[k - 1][a];
-      const CellPoint point = packing.strain(stretch, {.tolerance = kTolerance});
-      if (point.relaxation.end != RelaxationEnd::converged) return {};
-      if (k + path.compared >= path.length.size()) out.push_back(measure_of(point.stress, path.measure));
-    }
-  } catch (const UnusableResult&) {
-    return {};
-  }
-  return out;
-}
-
-std::vector<std::vector<double>> strain_fines(const MacroPacking& sites, const FinesState& state,
-                                              const std::vector<FaceFrictionTrial>& trials,
-                                              const std::vector<FinesPath>& paths) {
-  std::vector<std::vector<double>> parts(trials.size() * paths.size());
-  parallel_tasks(static_cast<std::int64_t>(parts.size()), [&](std::int64_t task) {
-    const auto k = static_cast<std::size_t>(task);
-    const FaceFrictionTrial& t = trials[k / paths.size()];
-    parts[k] = strain_fines(sites, state, FaceFriction{t.friction, t.stiffness}, paths[k % paths.size()]);
-  });
-  stop_if_interrupted("straining cells of fines");
-  std::vector<std::vector<double>> rows(trials.size());
-  for (std::size_t k = 0; k < parts.size(); ++k)
-    rows[k / paths.size()].insert(rows[k / paths.size()].end(), parts[k].begin(), parts[k].end());
-  return rows;
-}
-
-double friction_seconds(std::int64_t cells) {
-  constexpr double kSecondsPerCell = 0.14;  // two rounds of 3 x 3 trials and the last one, two paths each
-  return kSecondsPerCell * static_cast<double>(cells);
-}
-
-namespace {
-
-/// Correlations of both, which know nothing of each other.
-CellCorrelation side_by_side(const CellCorrelation& a, const CellCorrelation& b) {
-  CellCorrelation out = a;
-  out.numbers.insert(out.numbers.end(), b.numbers.begin(), b.numbers.end());
-  const std::size_t first = a.numbers.size();
-  const std::size_t n = out.numbers.size();
-  out.matrix.assign(n * n, 0.0);
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j)
-      if ((i < first) == (j < first))
-        out.matrix[i * n + j] = i < first ? a.matrix[i * first + j] : b.matrix[(i - first) * (n - first) + j - first];
-  return out;
-}
-
-/// Those numbers alone whose errors are known.
-CellCorrelation of_known(const CellCorrelation& all, const std::vector<CellCardNumber>& numbers) {
-  std::vector<std::size_t> kept;
-  for (std::size_t k = 0; k < all.numbers.size(); ++k) {
-    const double error = std::ranges::find(numbers, all.numbers[k], &CellCardNumber::key)->estimate.standard_error;
-    if (error > 0.0 && std::isfinite(error)) kept.push_back(k);
-  }
-  CellCorrelation out;
-  for (const std::size_t i : kept) {
-    out.numbers.push_back(all.numbers[i]);
-    for (const std::size_t j : kept) out.matrix.push_back(all.matrix[i * all.numbers.size() + j]);
-  }
-  return out;
-}
 
 class MaterialLawFit {
  public:
@@ -202,7 +44,7 @@ class MaterialLawFit {
       fit_memory();
     else
       fit_friction();
-    if (out_.problems.empty()) correlate();
+    if (out_.problems.empty()) out_.card.correlation = correlation_of_card(out_.card, states_, pores_, faces_);
     out_.summary.usable = out_.problems.empty();
     return std::move(out_);
   }
@@ -258,7 +100,7 @@ class MaterialLawFit {
       const MixturePores& m = fit.mixtures[k];
       out_.summary.mixtures.push_back({m.name, m.ratio, shares[k].coarse, shares[k].fines, m.pores, m.fitted});
     }
-    excess_replicates_ = fit.replicates;
+    pores_ = fit.replicates;
     out_.card.void_ratio = fit.void_ratio;
     out_.card.excess_alone = fit.alone;
     add("e_J", fit.void_ratio);
@@ -281,38 +123,6 @@ class MaterialLawFit {
     out_.summary.band = std::move(band);
     out_.summary.excess_deviation = fit.deviation;
     out_.summary.excess_widening = fit.widening;
-  }
-
-  /// Correlations of the numbers whose errors are known. Those of the equation of state and of the pores are of refits
-  /// to the same drawn samples, made smaller where an error holds more than the scatter of its refits; those of faces
-  /// are of their own fit, with the others as they are.
-  void correlate() {
-    const StateGroup* fines = states_.find(result(scene_.at.fines).variant->name);
-    const StateGroup* coarse = states_.find(result(scene_.at.coarse).variant->name);
-    const auto onset = [&](const StateGroup* g) { return 2 + static_cast<std::size_t>(g - states_.groups.data()); };
-    const auto log_pores = [](double phi) { return std::log((1.0 - phi) / phi); };
-    CellCorrelation state{{"K", "n", "e_J", "e_c", "w_inf", "xi"}, {}};
-    const std::size_t size = state.numbers.size();
-    std::vector<std::vector<double>> refits;
-    for (std::size_t r = 0; r < states_.replicates.size(); ++r) {
-      const std::vector<double>& p = states_.replicates[r];
-      const auto& [many, log_decay] = excess_replicates_[r];
-      if (is_known(many))
-        refits.push_back({p[0], p[1], log_pores(p[onset(fines)]), log_pores(p[onset(coarse)]), many, log_decay});
-    }
-    state.matrix = correlations(refits, size);
-    const std::vector<CellCardNumber> numbers = numbers_of(out_.card);
-    std::vector<double> share;
-    for (std::size_t k = 0; k < size; ++k) {
-      const CellCardNumber& n = *std::ranges::find(numbers, state.numbers[k], &CellCardNumber::key);
-      const double error = n.estimate.standard_error / (n.logarithm ? n.estimate.value : 1.0);
-      std::vector<double> values;
-      for (const std::vector<double>& one : refits) values.push_back(one[k]);
-      share.push_back(error > 0.0 ? std::min(1.0, mean_error(values).deviation_or_zero() / error) : 0.0);
-    }
-    for (std::size_t k = 0; k < size * size; ++k)
-      state.matrix[k] = k / size == k % size ? 1.0 : state.matrix[k] * (share[k / size] * share[k % size]);
-    out_.card.correlation = of_known(side_by_side(state, faces_), numbers);
   }
 
   /// Adds K0, the lateral over the axial stress of the fines, mean over the recorded points of the compression.
@@ -455,8 +265,8 @@ class MaterialLawFit {
   const StateFit& states_;
   std::uint64_t seed_;
   MaterialLaw out_;
-  std::vector<std::array<double, 2>> excess_replicates_;  ///< as ExcessPoresFit::replicates
-  CellCorrelation faces_;                                 ///< of mu_f, chi and what shear leaves behind
+  std::vector<std::array<double, 4>> pores_;  ///< as ExcessPoresFit::replicates
+  CellCorrelation faces_;                     ///< of mu_f, chi and what shear leaves behind
 };
 
 /// Whether the fit knows every variant that tells an onset.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "calibrate/draws.h"
 #include "calibrate/least_squares.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
@@ -144,17 +145,8 @@ Estimate estimate_of(const FittedNumber& number, double all, const std::vector<d
 }
 
 CellCorrelation correlation_of(const LeastSquaresFit& fit) {
-  CellCorrelation out;
-  const std::size_t n = fit.parameters.size();
-  for (std::size_t a = 0; a < n; ++a) {
-    out.numbers.emplace_back(kFitted[a].name);
-    for (std::size_t b = 0; b < n; ++b) {
-      const double scale = std::sqrt(fit.covariance[a * n + a] * fit.covariance[b * n + b]);
-      const bool known = scale > 0.0 && std::isfinite(scale);
-      const double r = known ? std::clamp(fit.covariance[a * n + b] / scale, -1.0, 1.0) : 0.0;
-      out.matrix.push_back(a == b ? 1.0 : b < a ? out.matrix[b * n + a] : r);
-    }
-  }
+  CellCorrelation out{{}, correlations_of(fit.covariance, fit.parameters.size())};
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) out.numbers.emplace_back(kFitted[k].name);
   return out;
 }
 

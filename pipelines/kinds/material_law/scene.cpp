@@ -11,7 +11,7 @@
 #include "macrosim/preparation.h"
 #include "macrosim/test_protocol.h"
 #include "pipelines/kinds/macro/room.h"
-#include "pipelines/kinds/material_law/fit.h"
+#include "pipelines/kinds/material_law/fines_in_cells.h"
 #include "pipelines/kinds/material_law/memory_fit.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 

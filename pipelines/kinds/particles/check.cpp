@@ -13,6 +13,7 @@
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/time_step.h"
 #include "common/dynamics/verlet.h"
+#include "microsim/particles/particles_run.h"
 #include "microsim/particles/scene_memory.h"
 #include "microsim/particles/trajectory.h"
 #include "pipelines/run/findings.h"
@@ -91,16 +92,14 @@ double recorded_bytes(const ParticlesSceneOf<D>& scene, std::int64_t contacts) {
 /// A run looks for such particles before its first step and ends there.
 template <int D>
 void warn_of_fast(const System<D>& s, double step, Findings& out) {
-  for (Slot i = 0; i < s.particles.grains; ++i) {
-    const auto u = static_cast<std::size_t>(i);
-    const double move = norm(s.particles.velocity[u]) * step / s.particles.sphere[u].r;
-    if (move < 1.0) continue;
-    out.warn(
-        fmt::format("particle {} moves {:.3g} of its radius in one step, from 1 on a particle counts as lost: the "
-                    "run will end at once; take a step below {:.3g} s",
-                    i, move, step / move));
-    return;
-  }
+  const Slot lost = lost_particle(s, step);
+  if (lost < 0) return;
+  const auto u = static_cast<std::size_t>(lost);
+  const double move = norm(s.particles.velocity[u]) * step / s.particles.sphere[u].r;
+  out.warn(
+      fmt::format("particle {} moves {:.3g} of its radius in one step, from 1 on a particle counts as lost: the run "
+                  "will end at once; take a step below {:.3g} s",
+                  s.particles.id.empty() ? lost : s.particles.id[u], move, step / move));
 }
 
 void warn_of_step(const SceneTime& time, Findings& out) {

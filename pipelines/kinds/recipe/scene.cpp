@@ -10,7 +10,7 @@
 #include "common/packing/grading_scene.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/material/run.h"
-#include "pipelines/kinds/material_law/fit.h"
+#include "pipelines/kinds/material_law/fines_in_cells.h"
 #include "pipelines/kinds/recipe/run.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 
