@@ -188,7 +188,7 @@ TEST(ExperimentFit, TangentialForcesThatSayNoStiffnessAreSaid) {
     EXPECT_NE(kt_remark(fit.card).find("measured, but not determined"), std::string::npos) << kt_remark(fit.card);
     return law.reason;
   };
-  EXPECT_NE(reason({0.0, 0.4, 0.8}).find("60 of 60 turns"), std::string::npos);
+  EXPECT_NE(reason({0.0, 0.4, 0.8}).find("60 of 60 rotations"), std::string::npos);
   EXPECT_NE(reason({0.0, 0.4, 0.8}).find("do not reach ht"), std::string::npos);
   EXPECT_NE(reason({0.5, 1.0, 1.5}).find("no reading before the turn (ht = 0)"), std::string::npos);
   const auto good = fit_experiment({turned(PairKind::soft_solid, {0.0, 1.0})}, replicates(20), false);
@@ -199,7 +199,7 @@ TEST(ExperimentFit, TangentialForcesThatSayNoStiffnessAreSaid) {
   some.samples[0].tangential.pop_back();
   const auto most = fit_experiment({some}, replicates(20), false);
   EXPECT_EQ(most.card.pairs.at(0).status, LawStatus::good);
-  EXPECT_NE(join_text(most.remarks).find("Ft of 1 of 60 turns"), std::string::npos) << join_text(most.remarks);
+  EXPECT_NE(join_text(most.remarks).find("from 1 of 60 rotations"), std::string::npos) << join_text(most.remarks);
 }
 
 /// Simulations of two soft particles take 0.5 degree where it was measured; an experiment reads Ft at 1 for both kinds.

@@ -159,7 +159,7 @@ TEST(RunPlan, SensitivityIsThatOfEveryNumberToEveryKey) {
   EXPECT_NEAR(effects[1].coefficient->value / effects[0].coefficient->value, -std::log(10.0) / 10.0, 0.02);
   EXPECT_FALSE(effects[0].total.has_value());
   EXPECT_FALSE(effects[2].rank.has_value());
-  EXPECT_EQ(effects[2].reason, "values that are no numbers have no order");
+  EXPECT_EQ(effects[2].reason, "the values of the key are not numbers");
   EXPECT_EQ(effects[3].reason, "the number does not vary");
   const std::vector<KeyEffect> few = sensitivity_of(linear_set("sobol:4"));
   EXPECT_EQ(few[0].reason, "4 points, at least 8 are needed");
