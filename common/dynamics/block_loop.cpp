@@ -21,6 +21,8 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kSource> {
 
   void run() {
     const PairRange& range = this->range_;
+    if (!kForeign && pass_.virials != nullptr)
+      std::fill(pass_.virials + range.begin, pass_.virials + range.end, Vec<D>{});
     for (std::int32_t k = range.begin; k < range.end; k += kBlock) {
       this->find_touching(k, std::min(k + kBlock, range.end));
       if (block_.touching == 0) continue;
@@ -44,7 +46,7 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kSource> {
       scatter_to<kStiffness, !kForeign>([](std::size_t) { return true; });
     else
       scatter_to<kStiffness, true>([split = pass_.part.split](std::size_t c) { return split[c] == 0; });
-    if (pass_.virial != nullptr) add_virial(*pass_.virial);
+    if (!kForeign && pass_.virials != nullptr) store_virials();
   }
 
   /// `mine`: whether the second body of the contact at a place is of this thread.
@@ -127,10 +129,11 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kSource> {
     to.rotation[body] += rotation_of(k, block_.arm_j.v[k]);
   }
 
-  void add_virial(Vec<D>& out) {
+  void store_virials() {
     for (int k = 0; k < block_.touching; ++k)
       for (int a = 0; a < D; ++a)
-        out[a] += block_.force[static_cast<std::size_t>(a)].v[k] * block_.branch[static_cast<std::size_t>(a)].v[k];
+        pass_.virials[u(block_.pair[u(k)])][a] =
+            block_.force[static_cast<std::size_t>(a)].v[k] * block_.branch[static_cast<std::size_t>(a)].v[k];
   }
 
   void store_forces() {

@@ -59,7 +59,8 @@ struct BlockPass {
   Stored<D>* forces = nullptr;  ///< goes with `foreign`: bodies are left alone, and the force on the first body of pair
                                 ///< k goes to forces[k] if the pair touches
   BodyStiffness* stiffness = nullptr;  ///< gets the sums of what goes to the bodies
-  Vec<D>* virial = nullptr;            ///< sum over contacts of force times branch, per axis [N m]
+  Vec<D>* virials = nullptr;           ///< force times branch, per axis, of every pair, at its place in the list [N m];
+                                       ///< 0 where it does not touch. Of foreign pairs: not asked for
 };
 
 /// Adds the forces and torques of some pairs of a section to their bodies, in the order of the range, and treats their

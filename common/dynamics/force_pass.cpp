@@ -49,13 +49,13 @@ void count_pass(System<D>& s) {
 }
 
 template <int D>
-void add_forces(System<D>& system, double dt, History history, BodyStiffness* stiffness) {
-  if (history == History::next) system.contacts.make_next();
+void add_forces(System<D>& system, const BlockPass<D>& pass) {
+  if (pass.history == History::next) system.contacts.make_next();
   if (system.contacts.size() >= kParallelPairs && omp_get_max_threads() > 1 && omp_in_parallel() == 0) {
-    parallel_pass(system, dt, history, omp_get_max_threads(), stiffness);
+    parallel_pass(system, pass, omp_get_max_threads());
   } else {
     particle_pass(system);
-    block_loop<D>(system, {.dt = dt, .history = history, .stiffness = stiffness});
+    block_loop<D>(system, pass);
   }
   count_pass(system);
 }
@@ -64,13 +64,19 @@ void add_forces(System<D>& system, double dt, History history, BodyStiffness* st
 
 template <int D>
 void add_contact_forces(System<D>& system, double dt, History history) {
-  add_forces(system, dt, history, nullptr);
+  add_forces<D>(system, {.dt = dt, .history = history});
 }
 
 template <int D>
 void add_contact_forces(System<D>& system, double dt, BodyStiffness& stiffness, History history) {
   stiffness.clear(static_cast<std::size_t>(system.particles.size()));
-  add_forces(system, dt, history, &stiffness);
+  add_forces<D>(system, {.dt = dt, .history = history, .stiffness = &stiffness});
+}
+
+template <int D>
+void add_contact_forces(System<D>& system, double dt, std::vector<Vec<D>>& virials, History history) {
+  virials.resize(system.contacts.i.size());
+  add_forces<D>(system, {.dt = dt, .history = history, .virials = virials.data()});
 }
 
 template <int D>
@@ -101,6 +107,8 @@ template void add_contact_forces<2>(System<2>&, double, History);
 template void add_contact_forces<3>(System<3>&, double, History);
 template void add_contact_forces<2>(System<2>&, double, BodyStiffness&, History);
 template void add_contact_forces<3>(System<3>&, double, BodyStiffness&, History);
+template void add_contact_forces<2>(System<2>&, double, std::vector<Vec<2>>&, History);
+template void add_contact_forces<3>(System<3>&, double, std::vector<Vec<3>>&, History);
 template void force_pass<2>(System<2>&, double, History);
 template void force_pass<3>(System<3>&, double, History);
 template void force_pass<2>(System<2>&, double, BodyStiffness&, History);

@@ -24,6 +24,10 @@ void add_contact_forces(System<D>& system, double dt, History history);
 template <int D>
 void add_contact_forces(System<D>& system, double dt, BodyStiffness& stiffness, History history);
 
+/// Sums the forces; `virials` gets force times branch of every listed pair, per axis [N m].
+template <int D>
+void add_contact_forces(System<D>& system, double dt, std::vector<Vec<D>>& virials, History history);
+
 /// A pass that also returns the stiffness sums.
 template <int D>
 void force_pass(System<D>& system, double dt, BodyStiffness& stiffness, History history = History::next);

@@ -227,8 +227,7 @@ void make_plan(const System<D>& s, std::size_t threads, Plan<D>& plan) {
 template <int D>
 class Pass {
  public:
-  Pass(System<D>& s, double dt, History history, Plan<D>& plan, BodyStiffness* stiffness)
-      : s_(s), dt_(dt), history_(history), plan_(plan), stiffness_(stiffness) {}
+  Pass(System<D>& s, const BlockPass<D>& asked, Plan<D>& plan) : s_(s), asked_(asked), plan_(plan) {}
 
   /// What it takes a thread decides on its later share, never on a sum.
   void timed(std::size_t thread, void (Pass::*work)(std::size_t)) {
@@ -261,15 +260,14 @@ class Pass {
   }
 
   void add_forces(std::size_t thread) {
+    BlockPass<D> pass = asked_;
+    pass.part = part(thread);
     for (std::size_t k = 0; k < s_.contacts.sections.size(); ++k) {
       const Share<D>& share = plan_.shares[thread][k];
-      for (const Segment& segment : share.segments)
-        block_loop<D>(s_, s_.contacts.sections[k], {segment.begin, segment.end},
-                      {.dt = dt_,
-                       .history = history_,
-                       .part = part(thread),
-                       .foreign = segment.foreign ? &share.foreign : nullptr,
-                       .stiffness = stiffness_});
+      for (const Segment& segment : share.segments) {
+        pass.foreign = segment.foreign ? &share.foreign : nullptr;
+        block_loop<D>(s_, s_.contacts.sections[k], {segment.begin, segment.end}, pass);
+      }
     }
   }
 
@@ -279,21 +277,19 @@ class Pass {
   }
 
   System<D>& s_;
-  double dt_;
-  History history_;
+  BlockPass<D> asked_;
   Plan<D>& plan_;
-  BodyStiffness* stiffness_;
 };
 
 }  // namespace
 
 template <int D>
-void parallel_pass(System<D>& s, double dt, History history, int threads, BodyStiffness* stiffness) {
+void parallel_pass(System<D>& s, const BlockPass<D>& asked, int threads) {
   auto& plan = s.contacts.plan.template get<Plan<D>>();
   const int many = std::min(threads, 255);
   if (plan.build != s.contacts.build || plan.shares.size() != static_cast<std::size_t>(many) || plan.pace.uneven())
     make_plan(s, static_cast<std::size_t>(many), plan);
-  Pass<D> pass(s, dt, history, plan, stiffness);
+  Pass<D> pass(s, asked, plan);
   const bool sums = !s.contacts.particle_sum.empty();
 #pragma omp parallel num_threads(many)
   {
@@ -354,7 +350,7 @@ template std::vector<PartSize> part_sizes(System<2>&);
 template std::vector<PartSize> part_sizes(System<3>&);
 template const PieceThreads* piece_threads(System<2>&);
 template const PieceThreads* piece_threads(System<3>&);
-template void parallel_pass<2>(System<2>&, double, History, int, BodyStiffness*);
-template void parallel_pass<3>(System<3>&, double, History, int, BodyStiffness*);
+template void parallel_pass<2>(System<2>&, const BlockPass<2>&, int);
+template void parallel_pass<3>(System<3>&, const BlockPass<3>&, int);
 
 }  // namespace softgrain

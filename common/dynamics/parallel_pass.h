@@ -18,9 +18,10 @@ namespace softgrain {
 /// space-filling curve, larger for a faster thread. It goes through all pairs that have a body of its own, in list
 /// order, and adds their loads to that body. A pair of two threads is evaluated by both, from the same numbers. So
 /// every body gets its sums in list order, whatever the number of threads and whoever owns it, and no thread writes
-/// what another one reads in the same phase. `stiffness`, where it is there, gets the stiffness sums; it must be clear.
+/// what another one reads in the same phase. `asked`: what it does beside the forces (stiffness sums, which must be
+/// clear, and virials); its part and foreign pairs are not looked at.
 template <int D>
-void parallel_pass(System<D>& system, double dt, History history, int threads, BodyStiffness* stiffness = nullptr);
+void parallel_pass(System<D>& system, const BlockPass<D>& asked, int threads);
 
 /// Bodies [begin, end).
 struct BodyRange {

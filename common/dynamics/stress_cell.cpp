@@ -2,23 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "common/core/limits.h"
-#include "common/dynamics/block_loop.h"
+#include "common/dynamics/force_pass.h"
 #include "common/dynamics/parallel_pass.h"
+#include "common/dynamics/thread_choice.h"
 #include "common/neighbours/skin.h"
 
 namespace softgrain {
 
-/// Forces must be zero before.
+/// Forces must be zero before. Virials are summed in list order on one thread: the same bits whoever made them.
 template <int D>
 void StressCellVerlet<D>::sum_forces(System<D>& s, double dt, History history) {
-  if (history == History::next) s.contacts.make_next();
-  particle_pass(s);
+  add_contact_forces(s, dt, virials_, history);
   virial_ = {};
-  block_loop<D>(s, {.dt = dt, .history = history, .virial = &virial_});
-  ++s.cost.loop_passes;
-  s.cost.contact_evaluations += s.contacts.size();
+  for (const Vec<D>& of_pair : virials_) virial_ += of_pair;
 }
 
 /// Stress of the state, and the cell's own acceleration for a time.
@@ -68,8 +66,7 @@ template <bool kDrag>
 void StressCellVerlet<D>::move_bodies(System<D>& s, const Vec<D>& growth, const Vec<D>& stretch, const Vec<D>& way) {
   auto& p = s.particles;
   const double half = 0.5 * dt_;
-  double fastest2 = 0.0;
-  for (std::size_t u = 0; u < peculiar_.size(); ++u) {
+  const double fastest2 = max_over_bodies(s, [&](std::size_t u) {
     const double loss = kDrag ? half * drag_[u] : 0.0;
     const Rot<D> turn = static_cast<Rot<D>>(p.torque[u]) * (half * p.inverse_inertia[u]);
     middle_spin_[u] = spin_[u] * (1.0 - loss) + turn;
@@ -82,8 +79,9 @@ void StressCellVerlet<D>::move_bodies(System<D>& s, const Vec<D>& growth, const 
     }
     p.force[u] = {};
     p.torque[u] = {};
-    fastest2 = larger_or_nan(fastest2, norm2(middle_[u]) * s.neighbours.inverse_skin2[u]);
-  }
+    const double used2 = norm2(middle_[u]) * s.neighbours.inverse_skin2[u];
+    return std::isnan(used2) ? std::numeric_limits<double>::infinity() : used2;  // no maximum would tell of it
+  });
   watch_.moved(dt_ * (std::sqrt(fastest2) + SkinUse<D>(s).strain_rate()));
 }
 
@@ -119,19 +117,19 @@ void StressCellVerlet<D>::correct_bodies(System<D>& s) {
   const double half = 0.5 * dt_;
   Vec<D> growth;
   for (int k = 0; k < D; ++k) growth[k] = s.cell.velocity_gradient[k][k];
-  Vec<D> kinetic{};
-  for (std::size_t u = 0; u < peculiar_.size(); ++u) {
+  (void)max_over_bodies(s, [&](std::size_t u) {
     const double drag = kDrag ? drag_[u] : 0.0;
     const double left = kDrag ? 1.0 / (1.0 + half * drag) : 1.0;
     spin_[u] = (middle_spin_[u] + static_cast<Rot<D>>(p.torque[u]) * (half * p.inverse_inertia[u])) * left;
     for (int k = 0; k < D; ++k) {
       const double kicked = middle_[u][k] + half * (p.force[u][k] * p.inverse_mass[u]);
-      const double v = kicked / (1.0 + half * (drag - growth[k]));
-      peculiar_[u][k] = v;
-      kinetic[k] += mass_[u] * v * v;
+      peculiar_[u][k] = kicked / (1.0 + half * (drag - growth[k]));
     }
-  }
-  kinetic_ = kinetic;
+    return 0.0;
+  });
+  kinetic_ = {};
+  for (std::size_t u = 0; u < peculiar_.size(); ++u)
+    for (int k = 0; k < D; ++k) kinetic_[k] += mass_[u] * peculiar_[u][k] * peculiar_[u][k];
 }
 
 template <int D>
@@ -156,11 +154,13 @@ void StressCellVerlet<D>::publish(System<D>& s) const {
 
 template <int D>
 void StressCellVerlet<D>::advance(System<D>& s, std::int64_t steps) {
+  PassThreads threads(s.particles.sphere.size());
   for (std::int64_t k = 0; k < steps; ++k) {
     move(s);
     watch_.require_list(s);
     sum_forces(s, dt_, History::advance);
     correct(s);
+    threads.passed(1, s.contacts.size());
     s.time += dt_;
     ++s.step;
   }

@@ -27,8 +27,8 @@ struct StressControl {
 /// Moves bodies and cell together: r = L s per axis, m L d2s/dt2 = F, so that the peculiar velocity v = L ds/dt obeys
 /// dv/dt = F/m + (dL/dt/L) v; the stored velocity of a body is v + (dL/dt/L) r, which is what contacts see, also across
 /// the boundary. Sigma_measured = (sum m v^2 + sum_pairs F r)/A per axis. Scheme: velocity Verlet with predicted
-/// velocities, second order in dt (first in the drag of the cell), free flight exact. One thread; the same bits every
-/// time.
+/// velocities, second order in dt (first in the drag of the cell), free flight exact. The same bits on any number of
+/// threads.
 template <int D>
 class StressCellVerlet {
  public:
@@ -69,8 +69,9 @@ class StressCellVerlet {
   StressControl<D> control_;
   double cell_drag_ = 0.0;
   std::vector<double> drag_;
-  Vec<D> virial_{};
-  Vec<D> kinetic_{};  ///< sum m v^2 per axis
+  std::vector<Vec<D>> virials_;  ///< of every pair
+  Vec<D> virial_{};              ///< their sum
+  Vec<D> kinetic_{};             ///< sum m v^2 per axis
   Vec<D> stress_{};
   Vec<D> rate_{};  ///< dL/dt
   std::vector<double> mass_;

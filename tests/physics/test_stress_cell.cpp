@@ -3,6 +3,7 @@
 #include "common/dynamics/stress_cell.h"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <array>
 #include <cmath>
@@ -292,6 +293,36 @@ TEST(StressCell, StopsAndPlacesDoNotMatter) {
   EXPECT_NEAR(moved.cell.edges[0][0] / whole.cell.edges[0][0], 1.0, 1e-9);
   EXPECT_NEAR(moved.cell.edges[1][1] / whole.cell.edges[1][1], 1.0, 1e-9);
   EXPECT_NEAR(parts.cell.edges[0][0] / whole.cell.edges[0][0], 1.0, 1e-12);
+}
+
+/// A pack that is pressed together, with stops of its motion in between, has the same bits on one, two and three
+/// threads: forces, bodies and the stress that drives the cell.
+TEST(StressCell, ThreadsDoNotMatter) {
+  const int before = omp_get_max_threads();
+  std::vector<System2> ended;
+  std::vector<Vec<2>> stress;
+  const System2 start = loose(5000, 0.45, disk_law(1e3, 1.0), 2);
+  for (const int threads : {1, 2, 3}) {
+    omp_set_num_threads(threads);
+    System2& s = ended.emplace_back(start);
+    StressCellVerlet<2> integrator(0.1 * std::sqrt(0.25 / 1e3), pressure(s, 0.5));
+    integrator.initialise(s);
+    integrator.advance(s, 400);
+    integrator.set_drag(0.1, std::vector<double>(s.particles.sphere.size(), 0.2));
+    integrator.advance(s, 100);
+    stress.push_back(integrator.stress());
+  }
+  omp_set_num_threads(before);
+  EXPECT_GT(ended[0].contacts.size(), 8000) << "too few pairs for several threads";
+  EXPECT_GT(contact_records(ended[0]).size(), 1000U);
+  for (const std::size_t n : {1U, 2U}) {
+    EXPECT_EQ(stress[n], stress[0]);
+    EXPECT_EQ(ended[n].cell.edges, ended[0].cell.edges);
+    for (std::size_t u = 0; u < ended[0].particles.sphere.size(); ++u) {
+      ASSERT_EQ(ended[n].particles.sphere[u].x, ended[0].particles.sphere[u].x) << u;
+      ASSERT_EQ(ended[n].particles.spin[u], ended[0].particles.spin[u]) << u;
+    }
+  }
 }
 
 }  // namespace
