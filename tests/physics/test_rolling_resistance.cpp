@@ -1,10 +1,13 @@
 // Rolling resistance of spheres: closed forms of a ball on a plane, numbers of LAMMPS, and what no law may do.
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include "common/dynamics/contact_watch.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/time_step.h"
+#include "common/state/system_io.h"
 #include "tests/support/impact.h"
+#include "tests/support/temporary_directory.h"
 
 namespace {
 
@@ -270,6 +273,56 @@ TEST(RollingResistance, TheStableStepCountsItsSpringAndDashpot) {
         EXPECT_LT(step_limit(s).natural_time, step_limit(ball_on_plane(free)).natural_time);
       }
     }
+}
+
+/// A lattice of grains that touch, move and spin.
+System3 spinning_lattice() {
+  System3 s;
+  s.materials = {kGlassBall};
+  s.laws = LawSet(1);
+  s.laws.set(0, 0, rolling_glass(0.02, 0.7, true));
+  RandomStream random(2, RandomPurpose::test, 3);
+  for (const Vec3& x : shaken_lattice<3>({}, 0.0195, 18, 4)) {
+    NewBody<3> grain = test_sphere<3>(x, 0.01, kDensity);
+    for (int k = 0; k < 3; ++k) grain.spin[k] = 20.0 * (random.uniform() - 0.5);
+    add_grain(s.particles, grain);
+  }
+  return s;
+}
+
+TEST(RollingResistance, ThreadsAndARestartChangeNoBit) {
+  const TemporaryDirectory directory;
+  const int before = omp_get_max_threads();
+  std::vector<System3> all;
+  for (const int threads : {1, 3}) {
+    omp_set_num_threads(threads);
+    all.push_back(spinning_lattice());
+    VelocityVerlet<3> motion(2e-6);
+    motion.initialise(all.back());
+    for (int k = 0; k < 20; ++k) {
+      if (k == 10 && threads == 1) {
+        h5::AtomicFile file(directory.file("state.h5"));
+        write_system(file.root(), all.back());
+        file.commit();
+      }
+      motion.step(all.back());
+    }
+  }
+  omp_set_num_threads(before);
+  System3 again = spinning_lattice();
+  read_system(h5::open_file(directory.file("state.h5")), again);
+  VelocityVerlet<3> motion(2e-6);
+  for (int k = 10; k < 20; ++k) motion.step(again);
+  all.push_back(again);
+  ASSERT_GT(all[0].contacts.size(), 8000) << "too small for the parallel path";
+  double rolled = 0.0;
+  for (const Stored<3>& angle : all[0].contacts.roll) rolled = std::max(rolled, norm(Vec3(angle)));
+  EXPECT_GT(rolled, 0.0);
+  for (const std::size_t other : {1U, 2U}) {
+    EXPECT_EQ(all[0].particles.spin, all[other].particles.spin);
+    EXPECT_EQ(all[0].particles.velocity, all[other].particles.velocity);
+    EXPECT_EQ(all[0].contacts.roll, all[other].contacts.roll);
+  }
 }
 
 TEST(RollingResistance, TheWatchCountsWhatTheSpringStores) {
