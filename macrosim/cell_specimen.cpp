@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/contact/rolling_scene.h"
 #include "common/core/error.h"
 #include "common/core/particles.h"
 #include "common/core/text.h"
@@ -179,11 +180,13 @@ std::string start_remark(const MacroSpec& spec, const CellStart& start) {
 }
 
 void require_same_grains(const CellCard& card, const MacroSpec& spec) {
-  if (card.poisson_ratio != spec.poisson_ratio || card.grain_friction != spec.friction)
+  if (card.poisson_ratio != spec.poisson_ratio || card.grain_friction != spec.friction ||
+      card.grain_rolling != spec.rolling)
     throw InputError(fmt::format(
-        "cell law: it was measured with nu = {}, mu = {} and serves no grains of nu = {}, mu = {}: measure a "
+        "cell law: it was measured with nu = {}, mu = {}{} and serves no grains of nu = {}, mu = {}{}: measure a "
         "card for them",
-        card.poisson_ratio, card.grain_friction, spec.poisson_ratio, spec.friction));
+        card.poisson_ratio, card.grain_friction, rolling_text(card.grain_rolling), spec.poisson_ratio, spec.friction,
+        rolling_text(spec.rolling)));
 }
 
 namespace {

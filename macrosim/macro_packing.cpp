@@ -113,6 +113,10 @@ std::vector<BodySpring> springs_of_test(const MacroSpec& spec, const MacroPackin
   return out;
 }
 
+bool any_rolls(const std::vector<BodySpring>& springs) {
+  return std::ranges::any_of(springs, [](const BodySpring& s) { return s.roll != Vec3{}; });
+}
+
 MacroPacking make_macro_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample,
                                 const PreparationWatch& watch) {
   return pack_bodies(spec, drawn_bodies(spec, seed, sample), seed, sample, watch);
@@ -136,26 +140,33 @@ void write_springs(const h5::Group& group, const std::vector<BodySpring>& spring
   if (springs.empty()) return;
   std::vector<std::int64_t> pairs;
   std::vector<double> values;
+  std::vector<double> rolls;
   for (const BodySpring& s : springs) {
     pairs.insert(pairs.end(), {s.i, s.j});
     values.insert(values.end(), {s.spring[0], s.spring[1], s.spring[2]});
+    rolls.insert(rolls.end(), {s.roll[0], s.roll[1], s.roll[2]});
   }
   group.write("spring_bodies", pairs);
   group.write("springs", values, {springs.size(), 3});
+  if (any_rolls(springs)) group.write("rolls", rolls, {springs.size(), 3});
 }
 
 void read_springs(const h5::Group& group, MacroPacking& packing) {
   if (!group.has("springs")) return;
   const auto pairs = group.integers("spring_bodies");
   const auto values = group.doubles("springs");
+  const std::vector<double> rolls =
+      group.has("rolls") ? group.doubles("rolls") : std::vector<double>(values.size(), 0.0);
   const auto bodies = static_cast<std::int64_t>(packing.bodies.size());
-  if (2 * values.size() != 3 * pairs.size()) throw IoError("macro packing: springs of wrong length");
+  if (2 * values.size() != 3 * pairs.size() || rolls.size() != values.size())
+    throw IoError("macro packing: springs of wrong length");
   for (std::size_t k = 0; 2 * k < pairs.size(); ++k) {
     if (pairs[2 * k] < 0 || pairs[2 * k] >= bodies || pairs[2 * k + 1] < 0 || pairs[2 * k + 1] >= bodies + kWalls)
       throw IoError("macro packing: a spring of bodies that are not there");
     packing.springs.push_back({static_cast<std::int32_t>(pairs[2 * k]),
                                static_cast<std::int32_t>(pairs[2 * k + 1]),
-                               {{values[3 * k], values[3 * k + 1], values[3 * k + 2]}}});
+                               {{values[3 * k], values[3 * k + 1], values[3 * k + 2]}},
+                               {{rolls[3 * k], rolls[3 * k + 1], rolls[3 * k + 2]}}});
   }
 }
 

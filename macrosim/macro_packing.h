@@ -20,11 +20,12 @@ struct MacroBody {
   bool soft = false;
 };
 
-/// The tangential spring of two bodies in touch, or of a body and a wall, as laws keep it.
+/// The history of two bodies in touch, or of a body and a wall, as laws keep it.
 struct BodySpring {
   std::int32_t i = 0;
   std::int32_t j = 0;  ///< body, or bodies + number of the wall in the order of the box
-  Vec3 spring{};
+  Vec3 spring{};       ///< tangential spring [m]
+  Vec3 roll{};         ///< angle of rolling [rad]; 0 without rolling resistance
 };
 
 struct MacroPacking {
@@ -32,7 +33,7 @@ struct MacroPacking {
   Vec3 high{};
   std::vector<MacroBody> bodies;
   Cost cost{};                        ///< cost of the preparation
-  std::vector<BodySpring> springs{};  ///< springs of a preparation with friction, sorted by i, then j
+  std::vector<BodySpring> springs{};  ///< histories of a preparation with friction, sorted by i, then j
 
   [[nodiscard]] Vec3 size() const { return high - low; }
   [[nodiscard]] double body_volume() const;     ///< volume of solid grains and shells [m^3]
@@ -55,6 +56,9 @@ inline std::string sizes_text(const MacroSpec& spec) {
 /// The springs with which a test begins: between solid grains, and of solid grains with walls, where the test has
 /// friction there. What soft particles bore is that of hard bodies, and forgotten.
 std::vector<BodySpring> springs_of_test(const MacroSpec& spec, const MacroPacking& packing);
+
+/// Whether any contact has rolled against a resistance.
+bool any_rolls(const std::vector<BodySpring>& springs);
 
 /// Told the share of a preparation that is done.
 using PreparationWatch = std::function<void(double share)>;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/material.h"
 #include "common/data/cell_card.h"
 #include "common/data/macro_result.h"
 #include "common/data/measurements.h"
@@ -141,6 +142,7 @@ struct MacroSpec {
   double poisson_ratio = 0.3;
   double friction = 0.3;  ///< mu of solid contacts; stands in for mu_soft
   double wall_friction = 0.0;
+  RollingResistance rolling{};  ///< of solid contacts with friction, in a preparation with friction too
   double density = 2500.0;
   double start_pressure = 1.0e-5;  ///< pressure at the end of the preparation, over E
   MacroTest test = MacroTest::oedometric;

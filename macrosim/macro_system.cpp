@@ -18,8 +18,9 @@ Material solid_material(const MacroSpec& spec, const char* name) {
   return {name, spec.density, spec.youngs_modulus, spec.poisson_ratio, false};
 }
 
-AnyLaw solid_law(const Material& material, double friction, double restitution = 1.0) {
-  return hertz_law(HertzCoefficients::of(material, material, friction, restitution), false);
+AnyLaw solid_law(const Material& material, double friction, double restitution = 1.0,
+                 const RollingResistance& rolling = {}) {
+  return hertz_law(HertzCoefficients::of(material, material, friction, restitution, rolling), false);
 }
 
 /// A rotation drawn uniformly (random unit quaternion), as the images of the three axes.
@@ -101,7 +102,9 @@ void load_springs(const MacroSpec& spec, const MacroPacking& packing, MacroSyste
       const auto before = [&](std::size_t k) { return list.i[k] != b.i ? list.i[k] < b.i : list.j[k] < b.j; };
       while (c < at(section.end) && before(c)) ++c;
       if (c == at(section.end)) break;
-      if (list.i[c] == b.i && list.j[c] == b.j) list.spring[c] = b.spring;
+      if (list.i[c] != b.i || list.j[c] != b.j) continue;
+      list.spring[c] = b.spring;
+      if (list.has_roll) list.roll[c] = b.roll;
     }
   }
 }
@@ -118,10 +121,20 @@ void add_shells(MacroSystem& out, const MacroSpec& spec, const MacroPacking& pac
   }
 }
 
+/// Materials of twins: grains, walls, and solid grains where they resist rolling, which the grains of soft particles
+/// do not.
+constexpr std::int32_t kRollingSolid = 2;
+
+bool solids_resist_rolling(const MacroSpec& spec) { return spec.rolling.friction > 0.0; }
+
 LawSet twin_laws(const Material& grain, const MacroSpec& spec, double restitution) {
-  LawSet laws(2);
+  LawSet laws(solids_resist_rolling(spec) ? 3 : 2);
   laws.set(0, 0, solid_law(grain, spec.friction, restitution));
   laws.set(0, 1, solid_law(grain, spec.wall_friction, restitution));
+  if (!solids_resist_rolling(spec)) return laws;
+  laws.use(0, kRollingSolid, laws.index(0, 0));
+  laws.set(kRollingSolid, kRollingSolid, solid_law(grain, spec.friction, restitution, spec.rolling));
+  laws.set(kRollingSolid, 1, solid_law(grain, spec.wall_friction, restitution, spec.rolling));
   return laws;
 }
 
@@ -133,6 +146,7 @@ MacroSystem make_twin(const MacroSpec& spec, const MacroPacking& packing, const 
   MacroSystem out;
   System3& s = out.system;
   s.materials = {solid_material(spec, "grain"), solid_material(spec, "wall")};
+  if (solids_resist_rolling(spec)) s.materials.push_back(solid_material(spec, "solid"));
   out.dashpots = {twin_laws(s.materials[0], spec, 1.0), twin_laws(s.materials[0], spec, spec.twin.restitution)};
   s.laws = out.dashpots->off;
   out.inner_grains = count_inner_grains(packing, contents);
@@ -140,7 +154,7 @@ MacroSystem make_twin(const MacroSpec& spec, const MacroPacking& packing, const 
   for (std::int32_t n = 0; n < bodies; ++n) {
     const MacroBody& b = packing.bodies[static_cast<std::size_t>(n)];
     if (b.soft) continue;
-    add_grain(s.particles, solid_sphere(b.x, b.r, spec.density, 0));
+    add_grain(s.particles, solid_sphere(b.x, b.r, spec.density, solids_resist_rolling(spec) ? kRollingSolid : 0));
     out.body.push_back(n);
   }
   const Slot first_shell = s.particles.grains + static_cast<Slot>(out.inner_grains);
@@ -177,8 +191,8 @@ MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, 
   System3& s = out.system;
   s.materials = {solid_material(spec, "solid"), solid_material(spec, "soft"), solid_material(spec, "wall")};
   s.laws = LawSet(3);
-  s.laws.set(0, 0, solid_law(s.materials[0], spec.friction));
-  s.laws.set(0, 2, solid_law(s.materials[0], spec.wall_friction));
+  s.laws.set(0, 0, solid_law(s.materials[0], spec.friction, 1.0, spec.rolling));
+  s.laws.set(0, 2, solid_law(s.materials[0], spec.wall_friction, 1.0, spec.rolling));
   s.laws.set(1, 0, laws.soft_solid, true);
   s.laws.set(0, 1, laws.solid_soft, true);
   s.laws.set(1, 2, laws.soft_wall);

@@ -145,7 +145,7 @@ double preparation_wall_friction(const MacroSpec& spec) {
 
 AnyLaw HardBodies::law(const MacroSpec& spec, double friction, double restitution) {
   const Material hard = hard_material(spec);
-  return hertz_law(HertzCoefficients::of(hard, hard, friction, restitution), false);
+  return hertz_law(HertzCoefficients::of(hard, hard, friction, restitution, spec.rolling), false);
 }
 
 HardBodies::HardBodies(const MacroSpec& spec, const MacroPacking& packing, double friction, double restitution) {
@@ -188,7 +188,8 @@ std::vector<BodySpring> HardBodies::springs() const {
   if (!frictional_ || !list.has_spring) return out;
   for (const ContactSection& section : list.sections) {
     for (auto c = at(section.begin); c < at(section.end); ++c)
-      if (list.spring[c] != Stored<3>{}) out.push_back({list.i[c], list.j[c], list.spring[c]});
+      if (list.spring[c] != Stored<3>{} || (list.has_roll && list.roll[c] != Stored<3>{}))
+        out.push_back({list.i[c], list.j[c], list.spring[c], list.has_roll ? Vec3(list.roll[c]) : Vec3{}});
   }
   std::ranges::sort(out, {}, [](const BodySpring& s) { return std::pair(s.i, s.j); });  // those of walls came last
   return out;

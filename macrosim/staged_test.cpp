@@ -36,7 +36,8 @@ MacroStart start_of(const MacroSpec& spec, const MacroPacking& packing) {
           size[0],
           size[1],
           size[2],
-          hash_of(packing)};
+          hash_of(packing),
+          spec.rolling};
 }
 
 }  // namespace

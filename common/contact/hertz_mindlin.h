@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "common/contact/contact_state.h"
+#include "common/contact/rolling_spring.h"
 #include "common/core/material.h"
 
 namespace softgrain {
@@ -23,8 +24,10 @@ struct HertzCoefficients {
   double shear = 0.0;      ///< Dt, 1/Dt = (2-nu1)/(8 G1) + (2-nu2)/(8 G2) [Pa]
   double friction = 0.0;   ///< mu
   double damping = 0.0;    ///< alpha(e)
+  RollingResistance rolling{};
 
-  static HertzCoefficients of(const Material& m1, const Material& m2, double friction, double restitution);
+  static HertzCoefficients of(const Material& m1, const Material& m2, double friction, double restitution,
+                              const RollingResistance& rolling = {});
 };
 
 /// alpha(e) = -sqrt(5) ln e / sqrt(ln^2 e + pi^2): restitution e at any speed when the contact ends at zero overlap
@@ -37,20 +40,26 @@ inline double tsuji_alpha(double restitution) {
 }
 
 inline HertzCoefficients HertzCoefficients::of(const Material& m1, const Material& m2, double friction,
-                                               double restitution) {
+                                               double restitution, const RollingResistance& rolling) {
   const double normal = 0.75 * (m1.normal_compliance() + m2.normal_compliance());
   const double tangential = m1.tangential_compliance() + m2.tangential_compliance();
   if (!(normal > 0.0)) throw std::invalid_argument("a contact of two rigid materials has no finite stiffness");
-  return {1.0 / normal, 1.0 / tangential, friction, tsuji_alpha(restitution)};
+  return {1.0 / normal, 1.0 / tangential, friction, tsuji_alpha(restitution), rolling};
 }
 
 /// Fn = sqrt(R12) h^(3/2)/D - eta vn, Ft = -sqrt(R12 h) Dt ht, |Ft| <= mu Fn,
-/// eta = alpha sqrt(m12 sqrt(R12)/D) h^(1/4), the same for both directions. SI units.
-template <Tangential kTangential, bool kDamped>
+/// eta = alpha sqrt(m12 sqrt(R12)/D) h^(1/4), the same for both directions. kRolling: rolling_spring() with the
+/// tangential stiffness sqrt(R12 h) Dt and eta; with `rescaled` its angle is shortened as the tangential spring is. SI
+/// units; with kRolling 3D only.
+template <Tangential kTangential, bool kDamped, bool kRolling = false>
 struct HertzMindlin {
-  static constexpr LawTraits traits{.needs_velocity = kTangential != Tangential::none || kDamped,
+  static_assert(kTangential != Tangential::none || !kRolling,
+                "spheres that slide freely do not roll: nothing turns them");
+  static constexpr LawTraits traits{.dimension = kRolling ? 3 : 0,
+                                    .needs_velocity = kTangential != Tangential::none || kDamped,
                                     .has_tangential = kTangential != Tangential::none,
                                     .has_memory = kTangential == Tangential::rescaled,
+                                    .has_rolling = kRolling,
                                     .stores_energy = true};
 
   HertzCoefficients k;
@@ -59,6 +68,11 @@ struct HertzMindlin {
   [[nodiscard]] PairConstants pair_constants(const PairBodies& bodies) const {
     const double root = std::sqrt(bodies.effective_radius());
     return {root, k.damping * std::sqrt(bodies.effective_mass() * (root * k.inverse_d))};
+  }
+
+  /// Dashpot constant of rolling [N m s] where that of the contact is `dashpot` [N s/m].
+  [[nodiscard]] double rolling_dashpot(double dashpot, const PairConstants& constants) const requires kRolling {
+    return k.rolling.damping * dashpot * constants.a * constants.a * constants.a * constants.a;
   }
 
   /// Duration of an undamped impact at this speed [s]: 4/5 B(2/5, 1/2) h/v with the largest overlap
@@ -99,12 +113,24 @@ struct HertzMindlin {
     const T limit = k.friction * largest(out.normal_force, 0.0);
     if constexpr (kTangential == Tangential::rescaled) {
       ContactState<D, T> shortened = s;
-      shortened.spring *= choose<T>(s.memory > 0.0 && contact_radius > s.memory, s.memory / contact_radius, T(1.0));
+      const T share = choose<T>(s.memory > 0.0 && contact_radius > s.memory, s.memory / contact_radius, T(1.0));
+      shortened.spring *= share;
       coulomb_spring<kDamped>(shortened, T(contact_radius * k.shear), eta, limit, out);
       out.memory = contact_radius;
+      if constexpr (kRolling) {
+        shortened.roll *= share;
+        roll(shortened, eta, out);
+      }
     } else {
       coulomb_spring<kDamped>(s, T(contact_radius * k.shear), eta, limit, out);
+      if constexpr (kRolling) roll(s, eta, out);
     }
+  }
+
+  template <class T>
+  void roll(const ContactState<3, T>& s, const T& eta, ContactResponse<3, T>& out) const {
+    rolling_spring<kDamped>(s, k.rolling, T(s.constants.a * s.constants.a), out.tangential_stiffness, eta,
+                            largest(out.normal_force, 0.0), out);
   }
 };
 

@@ -110,10 +110,10 @@ class Reader {
   std::set<std::string> asked_;
 };
 
-template <Tangential kTangential>
-AnyLaw hertz(const HertzCoefficients& k) {
-  if (k.damping > 0.0) return HertzMindlin<kTangential, true>{k};
-  return HertzMindlin<kTangential, false>{k};
+/// Of laws that resist rolling.
+RollingResistance read_rolling_resistance(Reader& r) {
+  if (!r.has("rolling_friction")) return {};
+  return {r.positive("rolling_friction"), r.positive("rolling_stiffness"), r.not_negative("rolling_damping")};
 }
 
 AnyLaw read_hertz(Reader& r) {
@@ -122,18 +122,25 @@ AnyLaw read_hertz(Reader& r) {
   k.shear = r.not_negative("shear");
   k.friction = r.not_negative("friction");
   k.damping = r.not_negative("damping");
+  k.rolling = read_rolling_resistance(r);
   const auto kind = r.word<Tangential>("tangential", "none, mindlin or rescaled");
-  if (kind == Tangential::none) return hertz<Tangential::none>(k);
-  return kind == Tangential::mindlin ? hertz<Tangential::mindlin>(k) : hertz<Tangential::rescaled>(k);
+  if (kind == Tangential::none && k.rolling.friction > 0.0) r.fail("rolling_friction", "needs a tangential spring");
+  return hertz_law(k, kind);
 }
 
-AnyLaw read_linear(Reader& r) {
-  LinearSpring law;
+template <bool kRolling>
+AnyLaw read_linear_spring(Reader& r) {
+  LinearSpringLaw<kRolling> law;
   law.normal = r.positive("normal");
   law.tangential = r.not_negative("tangential");
   law.friction = r.not_negative("friction");
   law.damping = r.not_negative("damping");
+  law.rolling = read_rolling_resistance(r);
   return law;
+}
+
+AnyLaw read_linear(Reader& r) {
+  return r.has("rolling_friction") ? read_linear_spring<true>(r) : read_linear_spring<false>(r);
 }
 
 AnyLaw read_soft(Reader& r) {

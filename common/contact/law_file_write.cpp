@@ -49,22 +49,31 @@ class Writer {
   std::string& out_;
 };
 
-template <Tangential kTangential, bool kDamped>
-void write(std::string& out, const std::string& name, const HertzMindlin<kTangential, kDamped>& law) {
+void write_rolling_resistance(Writer& w, const RollingResistance& rolling) {
+  w.value("rolling_friction", rolling.friction);
+  w.value("rolling_stiffness", rolling.stiffness);
+  w.value("rolling_damping", rolling.damping);
+}
+
+template <Tangential kTangential, bool kDamped, bool kRolling>
+void write(std::string& out, const std::string& name, const HertzMindlin<kTangential, kDamped, kRolling>& law) {
   Writer w(out, name, LawType::hertz);
   w.text("tangential", to_string(kTangential));
   w.value("inverse_d", law.k.inverse_d);
   w.value("shear", law.k.shear);
   w.value("friction", law.k.friction);
   w.value("damping", law.k.damping);
+  if (kRolling) write_rolling_resistance(w, law.k.rolling);
 }
 
-void write(std::string& out, const std::string& name, const LinearSpring& law) {
+template <bool kRolling>
+void write(std::string& out, const std::string& name, const LinearSpringLaw<kRolling>& law) {
   Writer w(out, name, LawType::linear);
   w.value("normal", law.normal);
   w.value("tangential", law.tangential);
   w.value("friction", law.friction);
   w.value("damping", law.damping);
+  if (kRolling) write_rolling_resistance(w, law.rolling);
 }
 
 void write(std::string& out, const std::string& name, const SoftContact& law) {

@@ -30,7 +30,9 @@ using AnyLaw =
                  SoftMultiContact<LawForm::isotropic, false, true>, SoftMultiContact<LawForm::isotropic, true, true>,
                  SoftMultiContact<LawForm::directional, false, true>,
                  SoftMultiContact<LawForm::directional, true, true>, CohesiveDisk<false, false>,
-                 CohesiveDisk<true, false>, CohesiveDisk<true, true>>;
+                 CohesiveDisk<true, false>, CohesiveDisk<true, true>, HertzMindlin<Tangential::mindlin, false, true>,
+                 HertzMindlin<Tangential::mindlin, true, true>, HertzMindlin<Tangential::rescaled, false, true>,
+                 HertzMindlin<Tangential::rescaled, true, true>, LinearSpringLaw<true>>;
 
 /// What every law is: traits, constants of a pair, and a force for a number or for several side by side; and what it
 /// says of itself is there. impact_time(bodies, speed) bounds the time step: how long two bodies touch that meet at
@@ -87,7 +89,25 @@ inline LawTraits traits_of(const AnyLaw& any) {
 }
 
 /// The cheapest Hertz law that does what the coefficients ask for: no friction, no history; no damping, no dashpot.
-AnyLaw hertz_law(const HertzCoefficients& coefficients, bool rescaled);
+/// Only contacts with friction resist rolling.
+inline AnyLaw hertz_law(const HertzCoefficients& k, Tangential tangential) {
+  const auto with_rolling = [&]<Tangential kTangential, bool kDamped>() -> AnyLaw {
+    if (k.rolling.friction > 0.0) return HertzMindlin<kTangential, kDamped, true>{k};
+    return HertzMindlin<kTangential, kDamped>{k};
+  };
+  const auto with_friction = [&]<Tangential kTangential>() -> AnyLaw {
+    return k.damping > 0.0 ? with_rolling.template operator()<kTangential, true>()
+                           : with_rolling.template operator()<kTangential, false>();
+  };
+  if (tangential == Tangential::mindlin) return with_friction.template operator()<Tangential::mindlin>();
+  if (tangential == Tangential::rescaled) return with_friction.template operator()<Tangential::rescaled>();
+  if (k.damping > 0.0) return HertzMindlin<Tangential::none, true>{k};
+  return HertzMindlin<Tangential::none, false>{k};
+}
+inline AnyLaw hertz_law(const HertzCoefficients& k, bool rescaled) {
+  if (k.friction == 0.0) return hertz_law(k, Tangential::none);
+  return hertz_law(k, rescaled ? Tangential::rescaled : Tangential::mindlin);
+}
 
 class LawSet {
  public:

@@ -7,6 +7,7 @@
 //   SoftContact    E R^2 (a Delta^b + c), Delta = h/R > delta      soft_contact.h
 //   CohesiveDisk   K_N h - F0 - eta vn, attraction at a distance   cohesive_disk.h
 //   SoftMultiContact      E R^2 dnu/dx p(S)/S B: several contacts         soft_multi_contact.h, multi_contact_form.h
+//   rolling_spring moment of rolling resistance, of the first two  rolling_spring.h
 //
 // How to use one: pair_constants(PairBodies) once per pair, evaluate(ContactState) as often as wanted. SI units.
 // SoftMultiContact asks for a pass before: share() of every contact to the sums of its bodies, finish() once per body.
@@ -16,5 +17,6 @@
 #include "common/contact/hertz_mindlin.h"
 #include "common/contact/linear_spring.h"
 #include "common/contact/multi_contact_form.h"
+#include "common/contact/rolling_spring.h"
 #include "common/contact/soft_contact.h"
 #include "common/contact/soft_multi_contact.h"

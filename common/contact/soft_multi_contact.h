@@ -10,6 +10,7 @@
 
 #include "common/contact/contact_state.h"
 #include "common/contact/multi_contact_form.h"
+#include "common/contact/rolling_spring.h"
 #include "common/core/law_range.h"
 #include "common/core/limits.h"
 #include "common/core/monotone_curve.h"
@@ -135,7 +136,6 @@ struct SoftMultiContact {
   }
 
  private:
-  /// The spring is carried along with the normal, turned by this step and cut at the limit.
   template <int D, class T>
   void roll(const ContactState<D, T>& s, ContactResponse<D, T>& out) const {
     const T plane = T(0.0);
@@ -144,14 +144,8 @@ struct SoftMultiContact {
     const T both = choose<T>(flat, s.radius_i, s.radius_i * other / (s.radius_i + other));  // R12
     const T soft = i_is_soft && j_is_soft ? T(2.0 * both) : i_is_soft ? s.radius_i : s.radius_j;
     const T stiffness = modulus * rolling * soft * soft * both;
-    const Rot<D, T> turned = s.turning - s.normal * dot(s.turning, s.normal);
-    Rot<D, T> angle = carried_spring<D, T>(s.roll, s.normal) + turned * T(s.dt);
-    const T size = root(norm2(angle)) * stiffness;
     const T limit = rolling_friction * soft * largest(out.elastic_force, T(0.0));
-    const Mask<T> slips = size > limit;
-    if (any(slips)) angle *= choose<T>(slips, limit / size, T(1.0));
-    out.roll = angle;
-    out.rolling_moment = angle * -stiffness;
+    angular_spring<false>(s, stiffness, T(0.0), limit, out);
     out.rolling_stiffness = choose<T>(out.elastic_force > 0.0, stiffness, T(0.0));
   }
 

@@ -23,6 +23,19 @@ struct Material {
   }
 };
 
+/// How the contacts of two spheres, or of a sphere and a wall, resist rolling (rolling_spring.h). All without
+/// dimension.
+struct RollingResistance {
+  double friction = 0.0;   ///< mu_r: the moment is at most mu_r R12 Fn; 0: contacts roll freely
+  double stiffness = 1.0;  ///< stiffness of the rolling spring over that of the tangential spring
+  double damping = 1.0;    ///< dashpot constant of rolling over that of the contact
+
+  /// Contacts that roll freely are alike.
+  friend bool operator==(const RollingResistance& a, const RollingResistance& b) {
+    return a.friction == b.friction && (a.friction == 0.0 || (a.stiffness == b.stiffness && a.damping == b.damping));
+  }
+};
+
 /// Isotropic elasticity is stable for -1 < nu <= 1/2 (Landau and Lifshitz, Theory of Elasticity, section 5), and the
 /// contact laws of Hertz and Mindlin hold there: E* = E/(1 - nu^2) and G* = G/(2 - nu) are finite and positive.
 inline constexpr double kPoissonAbove = -1.0;

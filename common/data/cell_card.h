@@ -8,6 +8,7 @@
 
 #include "common/core/enum_names.h"
 #include "common/core/limits.h"
+#include "common/core/material.h"
 #include "common/data/law_card.h"
 
 namespace softgrain {
@@ -65,6 +66,7 @@ struct CellCard {
   double density = kNaN;         ///< density of the grains, mean over their solid volume [kg/m^3]; NaN: not said
   double poisson_ratio = 0.0;
   double grain_friction = 0.0;
+  RollingResistance grain_rolling{};
   std::string preparation;      ///< its name
   double start_pressure = 0.0;  ///< p/E of its end
   double split = 0.0;           ///< largest radius of fines over largest of coarse grains

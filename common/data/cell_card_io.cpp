@@ -116,6 +116,9 @@ void write_measured(Out out, const CellCard& card) {
                    real(card.youngs_modulus));
   if (is_known(card.density)) fmt::format_to(out, "density = {}  # [kg/m^3]\n", real(card.density));
   fmt::format_to(out, "nu = {}\nmu = {}\n", real(card.poisson_ratio), real(card.grain_friction));
+  if (card.grain_rolling.friction > 0.0)
+    fmt::format_to(out, "mu_r = {}\nkr_ratio = {}\n", real(card.grain_rolling.friction),
+                   real(card.grain_rolling.stiffness));
   fmt::format_to(out, "preparation = {}\n", quoted(card.preparation));
   fmt::format_to(out, "start_pressure = {}  # p/E of its end\n", real(card.start_pressure));
   fmt::format_to(out, "split = {}  # fines are below this share of the largest radius\n", real(card.split));
@@ -186,6 +189,10 @@ void read_measured(const SceneTable& t, CellCard& card) {
   if (t.has("density")) card.density = t.number("density", Unit::density, Range::positive());
   card.poisson_ratio = t.number("nu", Unit::none, kPoissonRange);
   card.grain_friction = t.number("mu", Unit::none, Range::not_negative());
+  if (t.has("mu_r")) {
+    card.grain_rolling.friction = t.number("mu_r", Unit::none, Range::positive());
+    card.grain_rolling.stiffness = t.number("kr_ratio", Unit::none, Range::positive());
+  }
   card.preparation = read_words_of(t, "preparation");
   card.start_pressure = t.number("start_pressure", Unit::none, Range::positive());
   card.split = t.number("split", Unit::none, Range{0.0, 1.0, true, true});

@@ -167,6 +167,8 @@ constexpr Number<MacroStart> kStartNumbers[] = {{"radius_min", &MacroStart::radi
                                                 {"friction", &MacroStart::friction},
                                                 {"wall_friction", &MacroStart::wall_friction}};
 constexpr const char* kPoissonName = "poisson_ratio";  // of the start; below zero for auxetic grains
+constexpr const char* kRollingFriction = "rolling_friction";
+constexpr const char* kRollingStiffness = "rolling_stiffness_ratio";
 constexpr Number<MacroStart> kStartSizes[] = {
     {"size_x", &MacroStart::size_x}, {"size_y", &MacroStart::size_y}, {"size_z", &MacroStart::size_z}};
 
@@ -179,6 +181,10 @@ void write_origin(const h5::Group& group, const MacroCurve& curve) {
     for (const auto& n : kStartNumbers) group.attribute(n.name, curve.start.*n.value);
     group.attribute(kPoissonName, curve.start.poisson_ratio);
     for (const auto& n : kStartSizes) group.attribute(n.name, curve.start.*n.value);
+    if (const RollingResistance& rolling = curve.start.rolling; rolling.friction > 0.0) {
+      group.attribute(kRollingFriction, rolling.friction);
+      group.attribute(kRollingStiffness, rolling.stiffness);
+    }
   }
   if (curve.law.hash.empty()) return;
   group.attribute("law_form", curve.law.form ? to_string(*curve.law.form) : kCellForm);
@@ -196,6 +202,9 @@ void read_origin(const h5::Group& group, MacroCurve& curve) {
     curve.start.poisson_ratio = read_attribute(group, kPoissonName, {kPoissonLowest, kPoissonHighest});
     if (group.has_attribute("size_x"))
       for (const auto& n : kStartSizes) curve.start.*n.value = read_attribute(group, n.name, kNotNegative);
+    if (group.has_attribute(kRollingFriction))
+      curve.start.rolling = {read_attribute(group, kRollingFriction, kNotNegative),
+                             read_attribute(group, kRollingStiffness, kNotNegative)};
   }
   if (!group.has_attribute("law_form")) return;
   if (group.text("law_form") != kCellForm) curve.law.form = read_word<LawForm>(group, "law_form");

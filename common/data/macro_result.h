@@ -10,6 +10,7 @@
 
 #include "common/core/cost.h"
 #include "common/core/law_range.h"
+#include "common/core/material.h"
 #include "common/io/hdf5_file.h"
 #include "common/io/provenance.h"
 
@@ -126,6 +127,7 @@ struct MacroStart {
   double size_y = 0.0;
   double size_z = 0.0;
   std::string bodies;  ///< hash of the box and of places, radii and kinds of all bodies
+  RollingResistance rolling{};
 
   friend bool operator==(const MacroStart&, const MacroStart&) = default;
 };

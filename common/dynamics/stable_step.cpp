@@ -20,10 +20,11 @@ struct Joint {
   Vec<D> normal{};
   double arm_i = 0.0;
   double arm_j = 0.0;
-  double kn = 0.0;    ///< [N/m]
-  double kt = 0.0;    ///< twice the tangential stiffness, see stable_step [N/m]
-  double eta = 0.0;   ///< damping constant in both directions [N s/m]
-  double roll = 0.0;  ///< twice the stiffness of rolling, likewise [N m]
+  double kn = 0.0;        ///< [N/m]
+  double kt = 0.0;        ///< twice the tangential stiffness, see stable_step [N/m]
+  double eta = 0.0;       ///< damping constant in both directions [N s/m]
+  double roll = 0.0;      ///< twice the stiffness of rolling, likewise [N m]
+  double roll_eta = 0.0;  ///< damping constant of rolling [N m s]
 };
 
 /// What a law answers to a contact that does not move but for a normal speed of 1, which shows its dashpot.
@@ -40,6 +41,8 @@ Joint<D> joint_of(const Source& source, const Law& law, std::size_t c, const Pai
   out.kt = 2.0 * r.tangential_stiffness;
   out.eta = dashpots == Dashpots::count ? std::max(r.elastic_force - r.normal_force, 0.0) : 0.0;
   if constexpr (Law::traits.has_rolling) out.roll = 2.0 * r.rolling_stiffness;
+  if constexpr (requires { law.rolling_dashpot(out.eta, state.constants); })
+    out.roll_eta = law.rolling_dashpot(out.eta, state.constants);
   return out;
 }
 
@@ -84,7 +87,7 @@ StableStep bound(const System<D>& s, Dashpots dashpots) {
       sums[u].push_k += std::max(2.0 * joint.kn, across * joint.kt);
       sums[u].push_c += std::max(2.0, across) * joint.eta;
       sums[u].turn_k += across * joint.kt * arm * arm + 2.0 * joint.roll;
-      sums[u].turn_c += across * joint.eta * arm * arm;
+      sums[u].turn_c += across * joint.eta * arm * arm + 2.0 * joint.roll_eta;
       ++sums[u].contacts;
     }
   });
@@ -174,7 +177,7 @@ class Network {
       const double along = dot(v, o.normal) * dot(v, o.normal);
       const double across = norm2(v) - along;
       rk += o.kn * along + o.kt * across + o.roll * norm2(rolled(o));
-      rc += o.eta * (o.kt > 0.0 ? along + across : along);
+      rc += o.eta * (o.kt > 0.0 ? along + across : along) + o.roll_eta * norm2(rolled(o));
     }
     const double step = std::min(step_of(rk, rc), last);
     if (std::isfinite(step)) apply(0.25 * step * step, step);
@@ -190,7 +193,7 @@ class Network {
       const Vec<D> sheared = (v - along) * (o.kt > 0.0 ? of_stiffness * o.kt + of_damping * o.eta : 0.0);
       const Vec<D> force = along * (of_stiffness * o.kn + of_damping * o.eta) + sheared;
       const Rot<D> moment = cross(o.normal, sheared);
-      const Rot<D> rolling = rolled(o) * (of_stiffness * o.roll);
+      const Rot<D> rolling = rolled(o) * (of_stiffness * o.roll + of_damping * o.roll_eta);
       push[o.i] += force * root_[o.i];
       push[o.j] -= force * root_[o.j];
       turn[o.i] += (rolling - moment * o.arm_i) * turn_root_[o.i];

@@ -24,6 +24,16 @@ MultiContactSum<3> crowded(const Law& law, ContactState<3> state) {
   return sum;
 }
 
+/// The stiffest of a contact. Across the normal only springs of rolling are set by hand, and may be as stiff as a scene
+/// likes: K_r m/I, I = 2/5 m r^2.
+template <class Law>
+double stiffness_of(const ContactResponse<3>& r, double radius) {
+  if constexpr (Law::traits.has_rolling && !Law::traits.is_fitted)
+    return std::max(r.normal_stiffness, 2.5 * r.rolling_stiffness / (radius * radius));
+  else
+    return r.normal_stiffness;
+}
+
 double stiffness_of(const AnyLaw& any, double radius, double inverse_mass, double overlap_ratio) {
   return std::visit(
       [&]<class Law>(const Law& law) {
@@ -39,7 +49,7 @@ double stiffness_of(const AnyLaw& any, double radius, double inverse_mass, doubl
         } else if constexpr (Law::traits.acts_at_distance) {
           return law.stiffest(radius);
         } else {
-          return law.evaluate(state).normal_stiffness;
+          return stiffness_of<Law>(law.evaluate(state), radius);
         }
       },
       any);

@@ -21,6 +21,7 @@ namespace {
 
 constexpr int kWords = 8;      ///< number of values per remembered contact
 constexpr int kSpringRow = 5;  ///< number of values per row of a file of springs
+constexpr int kRollRow = 8;    ///< with angles of rolling
 
 double* put(const bridge::AtomMemory& memory, double* buf) {
   *buf++ = static_cast<double>(memory.size());
@@ -68,19 +69,19 @@ void FixSoftgrainHistory::init() {
 }
 
 /// Whether the atom is one of this rank.
-bool FixSoftgrainHistory::remember(int tag, int partner, const softgrain::Vec<3>& spring) {
+bool FixSoftgrainHistory::remember(int tag, const bridge::Remembered& contact) {
   const int i = tag < atom->get_map_size() ? atom->map(tag) : -1;  // the map knows no bounds itself
   const bool own = i >= 0 && i < atom->nlocal;
-  if (own) memory_[static_cast<std::size_t>(i)].push_back({partner, spring, 0.0, {}});
+  if (own) memory_[static_cast<std::size_t>(i)].push_back(contact);
   return own;
 }
 
 /// Takes the rows of a block that are of atoms of this rank. All ranks refuse rows of atoms that are nowhere: their
 /// springs would be lost.
-void FixSoftgrainHistory::take_springs(const std::vector<double>& rows, const std::string& file) {
+void FixSoftgrainHistory::take_springs(const std::vector<double>& rows, int width, const std::string& file) {
   double ends = 0.0;  // of springs: two between atoms, one at a wall
   double taken = 0.0;
-  for (std::size_t k = 0; k < rows.size(); k += kSpringRow) {
+  for (std::size_t k = 0; k < rows.size(); k += static_cast<std::size_t>(width)) {
     const double* r = rows.data() + k;
     const int first = static_cast<int>(r[0]);
     const int second = static_cast<int>(r[1]);
@@ -88,9 +89,10 @@ void FixSoftgrainHistory::take_springs(const std::vector<double>& rows, const st
       error->all(FLERR, "springs of contacts: '" + file + "': no contact has the ids " + std::to_string(first) +
                             " and " + std::to_string(second));
     const softgrain::Vec<3> spring{{r[2], r[3], r[4]}};
+    const softgrain::Vec<3> roll = width == kRollRow ? softgrain::Vec<3>{{r[5], r[6], r[7]}} : softgrain::Vec<3>{};
     ends += second > 0 ? 2.0 : 1.0;
-    if (remember(first, second, spring)) taken += 1.0;
-    if (second > 0 && remember(second, first, -spring)) taken += 1.0;
+    if (remember(first, {second, spring, 0.0, roll})) taken += 1.0;
+    if (second > 0 && remember(second, {first, -spring, 0.0, -roll})) taken += 1.0;
   }
   double all = 0.0;
   MPI_Allreduce(&taken, &all, 1, MPI_DOUBLE, MPI_SUM, world);
@@ -103,22 +105,26 @@ void FixSoftgrainHistory::read_springs(const std::string& file) {
   if (atom->map_style == 0) error->all(FLERR, std::string("springs of contacts need atom_modify map yes"));
   std::ifstream in;
   double count = -1.0;
+  int width = kSpringRow;
   if (comm->me == 0) {
     in.open(file);
     std::string word;
     if (!(in >> count >> word) || word != "springs" || count != std::floor(count)) count = -1.0;
+    std::getline(in, word);
+    if (word == " rolls") width = kRollRow;
   }
   MPI_Bcast(&count, 1, MPI_DOUBLE, 0, world);
+  MPI_Bcast(&width, 1, MPI_INT, 0, world);
   if (count < 0.0) error->all(FLERR, "springs of contacts: '" + file + "' cannot be read");
   std::vector<double> rows;
   for (double done = 0.0; done < count; done += kBlock) {
     const int now = static_cast<int>(std::min<double>(kBlock, count - done));
-    rows.assign(static_cast<std::size_t>(kSpringRow) * static_cast<std::size_t>(now), 0.0);
+    rows.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(now), 0.0);
     if (comm->me == 0)
       for (double& x : rows)
         if (!(in >> x)) error->one(FLERR, "springs of contacts: '" + file + "' ends too soon");
-    MPI_Bcast(rows.data(), kSpringRow * now, MPI_DOUBLE, 0, world);
-    take_springs(rows, file);
+    MPI_Bcast(rows.data(), width * now, MPI_DOUBLE, 0, world);
+    take_springs(rows, width, file);
   }
 }
 

@@ -39,14 +39,14 @@ class FixSoftgrainHistory : public Fix {
   double memory_usage() override;
 
   /// Springs that contacts begin with: "N springs", then a row per contact: both tags (of a wall minus its number, from
-  /// 1), the spring as the first sees it.
+  /// 1), the spring as the first sees it. "N springs rolls": the angle by which the first has rolled follows.
   void read_springs(const std::string& file);
 
   PairSoftgrain* pair = nullptr;
 
  private:
-  bool remember(int tag, int partner, const softgrain::Vec<3>& spring);
-  void take_springs(const std::vector<double>& rows, const std::string& file);
+  bool remember(int tag, const softgrain::lammps::Remembered& contact);
+  void take_springs(const std::vector<double>& rows, int width, const std::string& file);
   void store();
   void store_once();
   [[nodiscard]] int largest() const;

@@ -107,10 +107,14 @@ void write_data_file(const std::string& path, const std::string& title, const Ma
 void write_springs_file(const std::string& path, const MacroSpec& spec, const MacroPacking& packing) {
   const std::vector<BodySpring> springs = springs_of_test(spec, packing);
   const auto bodies = static_cast<std::int32_t>(packing.bodies.size());
-  TextFile out(path, fmt::format("{} springs\n", springs.size()));
-  for (const BodySpring& s : springs)
-    out.line("{} {} {} {} {}\n", s.i + 1, s.j < bodies ? s.j + 1 : bodies - s.j - 1, s.spring[0], s.spring[1],
+  const bool rolls = any_rolls(springs);
+  TextFile out(path, fmt::format("{} springs{}\n", springs.size(), rolls ? " rolls" : ""));
+  for (const BodySpring& s : springs) {
+    out.line("{} {} {} {} {}", s.i + 1, s.j < bodies ? s.j + 1 : bodies - s.j - 1, s.spring[0], s.spring[1],
              s.spring[2]);
+    if (rolls) out.line(" {} {} {}", s.roll[0], s.roll[1], s.roll[2]);
+    out.line("\n");
+  }
   out.close();
 }
 

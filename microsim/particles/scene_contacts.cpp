@@ -6,6 +6,7 @@
 #include <array>
 #include <set>
 
+#include "common/contact/rolling_scene.h"
 #include "common/core/error.h"
 #include "common/io/scene.h"
 #include "microsim/particles/scene_soft_laws.h"
@@ -96,6 +97,23 @@ double read_normal_stiffness(const SceneTable& t) {
                   Range::positive());
 }
 
+/// mu_r, kr_ratio and rolling_damping of a law whose contacts have this friction and restitution.
+RollingResistance read_rolling(const SceneTable& t, double friction, double restitution, int dimension) {
+  constexpr const char* kDamping = "rolling_damping";
+  RollingResistance rolling;
+  if (dimension == 2) {
+    t.refuse({"mu_r", "kr_ratio", kDamping}, "is of spheres: disks resist rolling with law = \"cohesive\"");
+    return rolling;
+  }
+  read_rolling_resistance(t, friction, rolling);
+  rolling.damping =
+      t.number({kDamping, "with `mu_r`: dashpot constant of rolling over that of the contact times R12^2"}, Unit::none,
+               Range::not_negative(), rolling.damping);
+  if (!t.has("mu_r")) t.refuse({kDamping}, "goes with mu_r: nothing resists rolling");
+  if (restitution >= 1.0) t.refuse({kDamping}, "goes with restitution below 1: the contact has no dashpot");
+  return rolling;
+}
+
 AnyLaw read_hertz(const SceneTable& t, const Material& a, const Material& b) {
   const double friction = read_friction(t);
   const double restitution = read_restitution(t);
@@ -108,18 +126,22 @@ AnyLaw read_hertz(const SceneTable& t, const Material& a, const Material& b) {
       t.throw_error("pair", "the law needs E and nu of material '" + m->name + "'");
   if (a.rigid && b.rigid)
     t.throw_error("pair", "a contact of two rigid materials has no finite stiffness; use law = \"linear-spring\"");
-  return hertz_law(HertzCoefficients::of(a, b, friction, restitution), rescaled);
+  return hertz_law(HertzCoefficients::of(a, b, friction, restitution, read_rolling(t, friction, restitution, 3)),
+                   rescaled);
 }
 
-AnyLaw read_linear(const SceneTable& t) {
+AnyLaw read_linear(const SceneTable& t, int dimension) {
   LinearSpring law;
   law.friction = read_friction(t);
-  law.damping = LinearSpring::zeta(read_restitution(t));
+  const double restitution = read_restitution(t);
+  law.damping = LinearSpring::zeta(restitution);
   law.normal = read_normal_stiffness(t);
   if (law.friction > 0.0 || t.has("tangential_stiffness"))  // of no friction it may be left out: it has no effect
     law.tangential = t.number(kTangentialStiffnessKey, Unit::stiffness, Range::not_negative());
   if (law.friction > 0.0 && law.tangential == 0.0) t.add_error("tangential_stiffness", "must be above 0 when mu is");
-  return law;
+  const RollingResistance rolling = read_rolling(t, law.friction, restitution, dimension);
+  if (!(rolling.friction > 0.0)) return law;
+  return LinearSpringLaw<true>{law.normal, law.tangential, law.friction, law.damping, rolling};
 }
 
 /// A key that means nothing unless something else is above 0 (or there): needed then, refused otherwise.
@@ -186,7 +208,7 @@ void read_contact(const SceneTable& t, const std::vector<Material>& materials, i
   const Material& a = materials[static_cast<std::size_t>(pair.first)];
   const Material& b = materials[static_cast<std::size_t>(pair.second)];
   if (law == "hertz-tsuji") out.laws.set(pair.first, pair.second, read_hertz(t, a, b));
-  if (law == "linear-spring") out.laws.set(pair.first, pair.second, read_linear(t));
+  if (law == "linear-spring") out.laws.set(pair.first, pair.second, read_linear(t, dimension));
   if (law == "cohesive") out.laws.set(pair.first, pair.second, read_cohesive(t));
   if (law == "law-card") soft.read(t, pair);
   const auto laws = static_cast<std::size_t>(out.laws.size());

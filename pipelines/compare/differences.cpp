@@ -62,6 +62,9 @@ void note_start(const MacroCurve& candidate, const MacroCurve& reference, Differ
   note(out.obstacles, "nu of the grains", a.poisson_ratio, b.poisson_ratio);
   note(out.obstacles, "mu of the grains", a.friction, b.friction);
   note(out.obstacles, "mu of the walls", a.wall_friction, b.wall_friction);
+  note(out.obstacles, "mu_r of the grains", a.rolling.friction, b.rolling.friction);
+  if (a.rolling.friction > 0.0 && b.rolling.friction > 0.0)
+    note(out.obstacles, "kr_ratio of the grains", a.rolling.stiffness, b.rolling.stiffness);
 }
 
 /// The law of one side is compared with the grains that the other side resolves.

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "common/contact/rolling_scene.h"
 #include "common/data/cell_card.h"
 #include "common/data/law_words.h"
 #include "pipelines/law/fitted_law.h"
@@ -40,11 +41,12 @@ std::string show(const CellCard& card, const FittedLaw& file, bool utf8) {
   if (const std::string origin = origin_text(file.origin); !origin.empty()) text += wrapped(origin, 2);
   text += wrapped(
       fmt::format("measured on {} samples each, fines {}, largest over smallest {}, split at {} of the largest grain; "
-                  "E = {}, density {}, nu = {}, mu = {}, prepared '{}' to p/E = {}",
+                  "E = {}, density {}, nu = {}, mu = {}{}, prepared '{}' to p/E = {}",
                   card.samples, card.fines_sizes, number(card.fines_ratio), number(card.split),
                   is_known(card.youngs_modulus) ? number(card.youngs_modulus) + " Pa" : "not said",
                   is_known(card.density) ? number(card.density) + " kg/m^3" : "not said", number(card.poisson_ratio),
-                  number(card.grain_friction), card.preparation, number(card.start_pressure)),
+                  number(card.grain_friction), rolling_text(card.grain_rolling), card.preparation,
+                  number(card.start_pressure)),
       2);
   text += fmt::format("\n{} form, {}\n", to_string(card.form), state_text(card));
   std::vector<std::vector<std::string>> rows{{"", "", "value", "error", "95 % interval"}};
@@ -76,6 +78,10 @@ nlohmann::json law_json(const CellCard& card) {
                      {"fines_ratio", card.fines_ratio},
                      {"fines_sizes", card.fines_sizes},
                      {"samples", card.samples}};
+  if (card.grain_rolling.friction > 0.0) {
+    out["mu_r"] = card.grain_rolling.friction;
+    out["kr_ratio"] = card.grain_rolling.stiffness;
+  }
   for (const CellCardNumber& n : numbers_of(card)) {
     const Estimate& e = n.estimate;
     out[n.key] = {{"value", json_of(e.value)},

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "common/contact/rolling_scene.h"
 #include "common/core/text.h"
 #include "common/io/scene.h"
 #include "pipelines/law/named_laws.h"
@@ -67,9 +68,9 @@ void add_made_laws(const RunData& run, std::vector<HeadLine>& lines) {
 
 /// "E = 5e+05 Pa, nu = 0.3, mu = 0.3 (walls 0)" of the grains that curves began with.
 std::string started_with(const MacroStart& s) {
-  return fmt::format("E = {:.4g} Pa, nu = {:g}, mu = {:g}, walls mu = {:g}; radii {} to {} m", s.youngs_modulus,
-                     s.poisson_ratio, s.friction, s.wall_friction, format_number(s.radius_min, 3),
-                     format_number(s.radius_max, 3));
+  return fmt::format("E = {:.4g} Pa, nu = {:g}, mu = {:g}{}, walls mu = {:g}; radii {} to {} m", s.youngs_modulus,
+                     s.poisson_ratio, s.friction, rolling_text(s.rolling), s.wall_friction,
+                     format_number(s.radius_min, 3), format_number(s.radius_max, 3));
 }
 
 /// Tables of a scene that say what grains are of.

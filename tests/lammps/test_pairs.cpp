@@ -41,9 +41,10 @@ struct Family {
   AnyLaw soft_soft;
 };
 
-template <Tangential kTangential, bool kDamped>
+template <Tangential kTangential, bool kDamped, bool kRolling = false>
 Family hertz_family(const std::string& name, double friction, double restitution) {
-  const HertzMindlin<kTangential, kDamped> law{HertzCoefficients::of(kMaterial, kMaterial, friction, restitution)};
+  const HertzMindlin<kTangential, kDamped, kRolling> law{
+      HertzCoefficients::of(kMaterial, kMaterial, friction, restitution, {kRolling ? 0.05 : 0.0, 0.8, 0.7})};
   return {name, law, law, law};
 }
 
@@ -92,7 +93,9 @@ std::vector<Family> families() {
           multi_contact_family<LawForm::pair, true>("crowd pair"),
           multi_contact_family<LawForm::isotropic, false>("isotropic"),
           multi_contact_family<LawForm::directional, true>("directional, unloading"),
-          multi_contact_family<LawForm::directional, false, true>("directional, rolling")};
+          multi_contact_family<LawForm::directional, false, true>("directional, rolling"),
+          hertz_family<Tangential::mindlin, true, true>("mindlin, rolling", 0.3, 0.5),
+          hertz_family<Tangential::rescaled, false, true>("rescaled, rolling", 0.2, 1.0)};
 }
 
 /// Clusters of two to five bodies of one family far from each other, those of the first layer on a plane that moves.

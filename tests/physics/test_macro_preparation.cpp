@@ -263,16 +263,18 @@ TEST(MacroPreparation, WhatCannotBePreparedSaysHowFarItCame) {
 /// the friction of its walls.
 TEST(MacroPreparation, ATestBeginsAtThePressureOfARoughPreparation) {
   for (const Preparation p : {Preparation::fast, Preparation::slow})
-    for (const double wall_friction : {0.0, 0.3}) {
+    for (const auto& [wall_friction, rolling_friction] : {std::pair{0.0, 0.0}, {0.3, 0.0}, {0.3, 0.2}}) {
       MacroSpec spec = prepared_by(p, 60);
       spec.soft_share = 0.0;
       spec.friction = 0.3;
       spec.wall_friction = wall_friction;
+      spec.rolling.friction = rolling_friction;
       spec.start_pressure = 1e-4;
       spec.protocol.tolerance = 1e-3;
       const MacroPacking packing = make_macro_packing(spec, 1, 0);
       const bool walls = std::ranges::any_of(packing.springs, [](const BodySpring& s) { return s.j >= 60; });
       EXPECT_EQ(walls, wall_friction > 0.0) << to_string(p);
+      EXPECT_EQ(any_rolls(packing.springs), rolling_friction > 0.0) << to_string(p);
       spec.steps = 1;
       spec.increments_per_step = 1;
       spec.strain_end = 1e-5;
@@ -290,7 +292,7 @@ TEST(MacroPreparation, ATestBeginsAtThePressureOfARoughPreparation) {
 }
 
 /// What contacts bore at the end of a preparation with friction, twins begin with as runs by laws do: without soft
-/// particles both are the same bodies, and have the same bits.
+/// particles both are the same bodies, and have the same bits. In a periodic cell grains resist rolling.
 TEST(MacroPreparation, TwinsBeginWithTheSpringsThatItLeft) {
   for (const Preparation p : {Preparation::fast, Preparation::slow, Preparation::frictionless})
     for (const Boundary boundary : {Boundary::walls, Boundary::periodic}) {
@@ -299,6 +301,7 @@ TEST(MacroPreparation, TwinsBeginWithTheSpringsThatItLeft) {
       spec.friction = 0.3;  // or nobody asks for springs
       spec.boundary = boundary;
       spec.wall_friction = boundary == Boundary::walls ? 0.2 : 0.0;
+      spec.rolling.friction = boundary == Boundary::walls ? 0.0 : 0.1;
       spec.steps = 1;
       spec.increments_per_step = 1;
       spec.strain_end = 0.005;

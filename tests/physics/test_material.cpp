@@ -115,5 +115,37 @@ TEST(Material, SpringsOfThePreparationGoOnBearing) {
   EXPECT_LT(start_pressure(packing), 0.97e-4);
 }
 
+/// q/p at the end of a shear at constant volume, mean of some packings.
+double stress_ratio(double mu_r) {
+  double sum = 0.0;
+  constexpr std::uint64_t kPackings = 3;
+  for (std::uint64_t seed = 1; seed <= kPackings; ++seed) {
+    MacroSpec spec = material_spec(200);
+    spec.friction = 0.5;
+    spec.rolling.friction = mu_r;
+    spec.start_pressure = 1e-3;
+    spec.test = MacroTest::shear;
+    spec.strain_end = 0.08;
+    spec.steps = 8;
+    spec.increments_per_step = 2;
+    const MacroPacking packing = make_macro_packing(spec, seed, 0);
+    CompressionState state;
+    state.macro = make_law_system(spec, packing, {}, 1.0);
+    state.curve = begin_curve(spec, packing, state.macro, "material", 0);
+    compress(state, spec);
+    const MacroCurve& c = state.curve;
+    const double mean = (c.stress_x.back() + c.stress_y.back() + c.stress_axial.back()) / 3.0;
+    sum += (c.stress_axial.back() - c.stress_x.back()) / mean;
+  }
+  return sum / static_cast<double>(kPackings);
+}
+
+/// Rolling resistance stands for the shape of grains: the same packings bear more shear.
+TEST(Material, RollingResistanceMakesItStronger) {
+  const double free = stress_ratio(0.0);
+  EXPECT_GT(free, 0.4);
+  EXPECT_GT(stress_ratio(0.5), 1.1 * free);
+}
+
 }  // namespace
 }  // namespace softgrain

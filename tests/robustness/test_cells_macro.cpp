@@ -212,6 +212,8 @@ TEST_F(CellsMacro, SayWhatDoesNotFit) {
   expect(run("bad"), 2, {"cells fill all voids"});
   scene("", "share = 0.4\n", "law = \"cells.toml\"\nform = \"isotropic\"\n");
   expect(run("bad"), 2, {"is a card of the cell law"});
+  scene("mu_r = 0.1\n");
+  expect(run("bad"), 2, {"is that of the card"});
   scene("mu = 0.5\n");
   expect(run("bad"), 2, {"measured with nu = 0.3, mu = 0.3 and serves no grains of nu = 0.3, mu = 0.5"});
 }

@@ -66,6 +66,7 @@ TEST_F(GrainBoxBadInput, Material) {
   expect("E_sd = 0.1", "E_sd = 0.9", {"scene.toml:7: E_sd", "0.3"});
   expect("nu = 0.2", "nu = 0.7", {"scene.toml:8: nu", "at most 0.5"});
   expect("mu = 0.3", "mu = -1.0", {"scene.toml:9: mu", "0"});
+  expect("mu = 0.3", "mu = 0.3\nmu_r = 0.1", {"scene.toml:10: mu_r", "the least-work solver knows no rolling"});
   expect("mu = 0.3", "mu = \"endless\"", {"scene.toml:9: mu", "infinite"});
   expect("E = \"70 GPa\"", "E = \"70 N\"", {"scene.toml:6: E"});
   expect("radius_min", "radius_mni", {"radius_mni", "radius_min"});

@@ -134,6 +134,10 @@ TEST_F(ParticlesBadInput, Materials) {
 
 TEST_F(ParticlesBadInput, Contacts) {
   expect("restitution = 0.9", "restitution = 1.1", {"scene.toml:12: restitution", "from 0 to 1"});
+  expect("mu = 0.3", "mu = 0.3\nkr_ratio = 1.0", {"scene.toml:14: kr_ratio", "nothing resists rolling"});
+  expect("mu = 0.3", "mu = 0.0\nmu_r = 0.1", {"scene.toml:14: mu_r", "needs friction"});
+  expect("restitution = 0.9", "restitution = 1.0\nmu_r = 0.1\nrolling_damping = 0.5",
+         {"scene.toml:14: rolling_damping", "no dashpot"});
   expect("mu = 0.3", "mu = -0.3", {"scene.toml:13: mu"});
   expect("mu = 0.3\n", "", {"mu", "scene.toml:"});
   expect("law = \"hertz-tsuji\"", "law = \"hertz-tsuij\"", {"scene.toml:11: law", "nearest is \"hertz-tsuji\""});

@@ -170,6 +170,11 @@ AnyLaw solid(bool friction, bool damped, bool rescaled) {
   return hertz_law(HertzCoefficients::of(m, m, friction ? 0.4 : 0.0, damped ? 0.6 : 1.0), rescaled);
 }
 
+AnyLaw rolling(bool damped, bool rescaled) {
+  const Material m = stuff();
+  return hertz_law(HertzCoefficients::of(m, m, 0.4, damped ? 0.6 : 1.0, {0.01, 0.8, 0.7}), rescaled);
+}
+
 SoftContact soft(bool both, double damping) {
   SoftContact law;
   law.delta = 0.15;
@@ -239,6 +244,9 @@ std::vector<AnyLaw> laws() {
     out.push_back(disk<CohesiveDisk<true, false>>(adhesion));
     out.push_back(disk<CohesiveDisk<true, true>>(adhesion));
   }
+  for (const bool damped : {false, true})
+    for (const bool rescaled : {false, true}) out.push_back(rolling(damped, rescaled));
+  out.push_back(LinearSpringLaw<true>{1e6, 5e5, 0.3, 0.2, {0.01, 0.8, 0.7}});
   return out;
 }
 

@@ -138,11 +138,12 @@ MacroSpec full_spec() {
   return spec;
 }
 
-/// Members of no effect on a packing: those of the test that follows it; walls have its friction where a preparation
-/// has any.
+/// Members of no effect on a packing: those of the test that follows it; walls have its friction, and contacts its
+/// rolling resistance, where a preparation has friction.
 bool of_the_test(const MacroSpec& s, const void* place) {
   const bool rough_walls = s.protocol.friction > 0.0 && s.boundary == Boundary::walls;
-  return within(s.friction, place) || (!rough_walls && within(s.wall_friction, place)) || within(s.test, place) ||
+  return within(s.friction, place) || (!rough_walls && within(s.wall_friction, place)) ||
+         (!(s.protocol.friction > 0.0) && within(s.rolling, place)) || within(s.test, place) ||
          within(s.modulus_stress, place) || within(s.strain_end, place) || within(s.preload, place) ||
          within(s.preload_steps, place) || within(s.steps, place) || within(s.increments_per_step, place) ||
          within(s.tolerance, place) || within(s.force_floor, place) || within(s.max_passes, place) ||

@@ -48,6 +48,7 @@ CellCard sample_card() {
 CellCard card_with_memory() {
   CellCard c = sample_card();
   c.form = StateForm::porosity;
+  c.grain_rolling = {0.2, 0.7, 1.0};
   c.correlation = {{"K", "n", "A"}, {1.0, 0.9 / 7.0, -0.25, 0.9 / 7.0, 1.0, 0.1, -0.25, 0.1, 1.0}};
   c.memory = CellMemory{{1.18, 0.1 / 3.0, 1.1, 1.3}, {0.9496, 0.01, 0.93, 0.97},     {35.0, 5.0, 20.0, 50.0},
                         {0.666, kInf, 0.0, 1.0},     {-0.24, 0.05 / 7.0, -0.4, 0.0}, {1.6e-3, kInf, 0.0, 1.0}};
@@ -80,6 +81,7 @@ TEST(CellCardFile, RoundTripIsExact) {
         &CellCard::mixture_high, &CellCard::poisson_ratio, &CellCard::grain_friction, &CellCard::start_pressure,
         &CellCard::split, &CellCard::fines_ratio})
     EXPECT_EQ(a.*number, b.*number);
+  EXPECT_EQ(a.grain_rolling, b.grain_rolling);
   EXPECT_EQ(a.preparation, b.preparation);
   EXPECT_EQ(a.fines_sizes, b.fines_sizes);
   EXPECT_EQ(a.samples, b.samples);
@@ -97,6 +99,7 @@ TEST(CellCardFile, MayNotSayTheModulusOfItsGrains) {
   write_cell_card(card, directory.file("card.toml"));
   const std::string text = read_text(directory.file("card.toml"));
   EXPECT_EQ(text.find("\nE = "), std::string::npos) << text;
+  EXPECT_EQ(text.find("mu_r"), std::string::npos) << "its grains roll freely";
   const CellCard read = read_cell_card(directory.file("card.toml"));
   EXPECT_TRUE(std::isnan(read.youngs_modulus));
   EXPECT_TRUE(std::isnan(read.density));

@@ -331,6 +331,7 @@ TEST(CompareSides, WhatCannotBeMeantIsRefusedUnlessToldOtherwise) {
       {"measured with nu = 0.3, the grains of the twin have nu = 0.2",
        [](MacroCurve& c) { c.start.poisson_ratio = 0.2; }},
       {"mu of the walls: 0 against 0.2", [](MacroCurve& c) { c.start.wall_friction = 0.2; }},
+      {"mu_r of the grains: 0 against 0.1", [](MacroCurve& c) { c.start.rolling.friction = 0.1; }},
       {"test: oedometric against isotropic", [](MacroCurve& c) { c.test = MacroTest::isotropic; }},
       {"preload of the test: 0 against 0.1", [](MacroCurve& c) { c.preload = 0.1; }}};
   for (const Change& change : changes) {

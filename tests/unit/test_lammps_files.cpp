@@ -188,6 +188,9 @@ TEST(LammpsFiles, ScriptsOfMaterialsBeginWithSpringsAndRecordGrains) {
   EXPECT_EQ(springs(), "1 springs\n1 2 1e-06 0.3333333333333333 -2e-07\n") << "those of soft bodies are forgotten";
   spec.wall_friction = 0.2;
   EXPECT_EQ(springs(), "2 springs\n1 2 1e-06 0.3333333333333333 -2e-07\n3 -3 0.5 0.25 0\n");
+  packing.springs.front().roll = {{1e-3, 0.0, -2.5}};
+  EXPECT_EQ(springs(), "2 springs rolls\n1 2 1e-06 0.3333333333333333 -2e-07 0.001 0 -2.5\n3 -3 0.5 0.25 0 0 0 0\n");
+  packing.springs.front().roll = {};
   spec.wall_friction = 0.0;
   spec.friction = 0.0;
   EXPECT_EQ(script().find("springs.txt"), std::string::npos);

@@ -62,7 +62,10 @@ std::vector<LawFileEntry> every_law() {
           {"pair", pair},
           {"disk", CohesiveDisk<false, false>{1e3, 0.0, 0.0, 0.1, 0.2, 1e-5, 0.0, 0.0}},
           {"disk that slides", CohesiveDisk<true, false>{1e3, 5e2, 0.3, 0.1, 0.0, 0.0, 0.0, 0.0}},
-          {"disk that rolls", CohesiveDisk<true, true>{1e3, 5e2, 0.3, 0.1, 0.2, 1e-5, 1e-4, 2e-5}}};
+          {"disk that rolls", CohesiveDisk<true, true>{1e3, 5e2, 0.3, 0.1, 0.2, 1e-5, 1e-4, 2e-5}},
+          {"mindlin that rolls", hertz_law(HertzCoefficients::of(m, m, 0.3, 0.5, {0.1, 0.7, 0.4}), false)},
+          {"rescaled that rolls", hertz_law(HertzCoefficients::of(m, m, 0.3, 1.0, {0.2, 1.0, 1.0}), true)},
+          {"spring that rolls", LinearSpringLaw<true>{2e3, 1e3, 0.4, 0.2, {0.3, 1.5, 0.0}}}};
 }
 
 TEST(LawFile, ReadsBackToTheSameBits) {

@@ -41,6 +41,19 @@ std::string complaint_of_loadings(const std::string& more) {
   return "";
 }
 
+/// mu_r of all grains, of a variant or of none; kr_ratio goes with it.
+TEST(MaterialScene, GrainsMayResistRolling) {
+  const MaterialScene scene = loaded_material(
+      "[material]\nmu_r = 0.1\n[[variant]]\nname = \"a\"\nkr_ratio = 2.0\n"
+      "[[variant]]\nname = \"b\"\nmu_r = 0.0\n");
+  EXPECT_EQ(scene.variants.front().setup.spec.rolling, (RollingResistance{0.1, 2.0, 1.0}));
+  EXPECT_EQ(scene.variants.back().setup.spec.rolling, RollingResistance{});
+  EXPECT_NE(family_of(scene.variants.front(), scene.variants).find("mu_r = 0.1, kr_ratio = 2"), std::string::npos);
+  EXPECT_NE(complaint_of_loadings("[material]\nkr_ratio = 2.0\n").find("nothing resists rolling"), std::string::npos);
+  EXPECT_NE(complaint_of_loadings("[material]\nmu = 0.0\nmu_r = 0.1\n").find("needs friction"), std::string::npos);
+  EXPECT_NE(complaint_of_loadings("[material]\nmu_r = -0.1\n").find("mu_r"), std::string::npos);
+}
+
 TEST(MaterialScene, EveryVariantIsTestedUnderEveryLoadingOfItsPackings) {
   const MaterialScene scene = loaded_material(R"([[variant]]
 name = "a"

@@ -66,6 +66,31 @@ TEST(ParticlesScene, ReadsWhatIsWritten) {
   EXPECT_EQ(scene.output_stride, 10);
 }
 
+/// A ball that rolls on a plane under each law, and slows down by 5/7 mu_r g.
+TEST(ParticlesScene, ContactsMayResistRolling) {
+  for (const std::string law : {"law = \"hertz-tsuji\"\n",
+                                "law = \"linear-spring\"\nnormal_stiffness = 1e4\n"
+                                "tangential_stiffness = 8e3\n"}) {
+    const auto text = [&](const std::string& more) {
+      return "kind = \"particles\"\ngravity = [0.0, 0.0, -9.81]\n[material.glass]\ndensity = 2500.0\nE = \"10 MPa\"\n"
+             "nu = 0.2\n[[contact]]\npair = [\"glass\", \"glass\"]\n" +
+             law + "restitution = 0.5\nmu = 0.6\n" + more +
+             "[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.0, 0.0, 1.0]\nmaterial = \"glass\"\n" +
+             particle(0.0, 0.0, 0.009985, 0.01, "velocity = [0.2, 0.0, 0.0]\nspin = [0.0, 20.0, 0.0]\n") +
+             "[time]\nend = 0.2\n";
+    };
+    const auto speed = [&](const std::string& more) {
+      const ParticlesScene scene = scene_of_text(text(more));
+      return std::pair{run(scene).system.particles.velocity[0][0], scene.time.step};
+    };
+    const double slowed = 5.0 / 7.0 * 0.05 * 9.81 * 0.2;
+    EXPECT_NEAR(0.2 - speed("mu_r = 0.05\n").first, slowed, 0.02 * slowed) << law;
+    EXPECT_NEAR(0.2 - speed("mu_r = 0.05\nkr_ratio = 0.3\nrolling_damping = 0\n").first, slowed, 0.05 * slowed) << law;
+    EXPECT_NEAR(speed("").first, 0.2, 0.01 * slowed) << law;
+    EXPECT_LT(speed("mu_r = 0.05\nkr_ratio = 500.0\n").second, 0.5 * speed("mu_r = 0.05\n").second) << law;
+  }
+}
+
 TEST(ParticlesScene, ParticlesBelongToTheSphereThatIsNamed) {
   const std::string walls =
       "[[wall]]\nname = \"a\"\nshape = \"sphere-inside\"\ncenter = [0.0, 0.0, 0.0]\nradius = 0.1\nmaterial = "

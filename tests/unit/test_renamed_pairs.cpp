@@ -61,10 +61,10 @@ Pairing multi_contact_pairing(const char* name, const AnyLaw& solid) {
           multi_contact_law<kLawForm, kUnloading, kRolling>(true)};
 }
 
-AnyLaw hertz(bool rescaled) {
+AnyLaw hertz(bool rescaled, const RollingResistance& rolling = {}) {
   Material m = glass();
   m.youngs_modulus = kModulus;
-  return hertz_law(HertzCoefficients::of(m, m, 0.4, 0.7), rescaled);
+  return hertz_law(HertzCoefficients::of(m, m, 0.4, 0.7, rolling), rescaled);
 }
 
 std::vector<Pairing> pairings(std::integral_constant<int, 3>) {
@@ -73,7 +73,10 @@ std::vector<Pairing> pairings(std::integral_constant<int, 3>) {
   spring.tangential = 300.0;
   spring.friction = 0.4;
   spring.damping = 0.1;
+  const RollingResistance rolling{0.01, 0.8, 0.7};
   return {{"hertz", hertz(false), hertz(true), spring},
+          {"hertz that rolls", hertz(false, rolling), hertz(true, rolling),
+           LinearSpringLaw<true>{500.0, 300.0, 0.4, 0.1, rolling}},
           {"soft contact", hertz(true), contact_law(false), contact_law(true)},
           multi_contact_pairing<LawForm::pair, true>("multi-contact: pair", hertz(false)),
           multi_contact_pairing<LawForm::isotropic, false>("multi-contact: isotropic", hertz(false)),

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "common/contact/rolling_scene.h"
 #include "common/core/error.h"
 #include "common/io/scene.h"
 #include "common/packing/grading_scene.h"
@@ -401,6 +402,7 @@ GrainBoxSetup read_grain_box(const Scene& scene) {
                                    "friction between grains: a number, or `\"infinite\"` (taken as 5, so that a "
                                    "contact that opens loses its tangential force)"},
                                   spec.friction);
+    material.refuse(kRollingKeys, "the least-work solver knows no rolling resistance: kind = \"material\" does");
     const SceneTable walls = root.table_or_empty({"walls", "the six planes around the grains"});
     read_walls(walls, spec);
     read_box(root.table_or_empty({"box", "the loose arrangement of the grains between the planes"}), spec);

@@ -156,6 +156,7 @@ MacroSpec as_prepared(MacroSpec spec) {
   const MacroSpec none;
   spec.friction = none.friction;  // of the test; that of the preparation among bodies is in its protocol
   spec.wall_friction = preparation_wall_friction(spec);
+  if (!(spec.protocol.friction > 0.0)) spec.rolling = none.rolling;
   spec.test = none.test;
   spec.splits = none.splits;
   spec.stages = none.stages;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/contact/rolling_scene.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
@@ -88,6 +89,8 @@ void read_cells(const SceneTable& root, const SceneTable& macro, const CellCard&
   if (spec.soft_share >= 1.0) macro.add_error("soft_share", "cells need solid grains: must be below 1");
   macro.refuse({"wall_mu"}, "walls of cells are smooth");
   macro.refuse({"kt"}, "the tangential stiffness of cells is that of the card");
+  macro.refuse(kRollingKeys, "is that of the card, whose grains were measured with it");
+  spec.rolling = card.grain_rolling;
   macro.refuse({"law_increments", "noise_samples"},
                "goes with laws of soft particles; increments_per_step serves cells");
   macro.refuse({"band_estimator"}, "cells run every draw");

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/contact/rolling_scene.h"
 #include "common/core/text.h"
 #include "common/io/text_file.h"
 #include "common/packing/grading_scene.h"
@@ -161,6 +162,7 @@ void read_bodies(const SceneTable& t, MacroSetup& setup) {
   spec.wall_friction =
       t.number({"wall_mu", "friction of walls"}, Unit::none, Range::not_negative(), spec.wall_friction);
   if (spec.boundary == Boundary::periodic) t.refuse({"wall_mu"}, "a periodic cell has no walls");
+  read_rolling_resistance(t, spec.friction, spec.rolling);
   read_preparation(t, setup);
 }
 
@@ -409,7 +411,7 @@ void refuse_idle_sizes(const SceneTable& macro, const std::vector<const MacroSet
     macro.refuse({"soft_radius_max", "soft_polydispersity", "soft_sizes"},
                  "goes with soft_share above 0: there are no soft particles");
   if (none([](double soft_share) { return soft_share < 1.0; }))
-    macro.refuse({"solid_radius_max", "solid_polydispersity", "solid_sizes"},
+    macro.refuse({"solid_radius_max", "solid_polydispersity", "solid_sizes", "mu_r", "kr_ratio"},
                  "goes with soft_share below 1: there are no solid grains");
 }
 

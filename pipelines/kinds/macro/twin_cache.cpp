@@ -29,6 +29,7 @@ void add_springs(Bytes& bytes, const MacroPacking& packing) {
     bytes.add(s.i);
     bytes.add(s.j);
     bytes.add(s.spring);
+    bytes.add(s.roll);
   }
 }
 

@@ -321,10 +321,11 @@ std::vector<HeadLine> lines_of(const RunData& run) {
     if (v.runs.stages.empty() || !v.solid_fraction_start) continue;
     const StageMeans& last = v.runs.stages.back();
     const double modulus = modulus_of(summary, v);
-    std::string text =
-        fmt::format("{} grains with E = {} MPa, mu = {:g}, largest over smallest {}; solid fraction {} at the start",
-                    format_count(v.grains), format_number(1e-6 * modulus), v.friction, format_number(v.size_ratio, 3),
-                    format_with_error(v.solid_fraction_start->mean, v.solid_fraction_start->error));
+    std::string text = fmt::format(
+        "{} grains with E = {} MPa, mu = {:g}{}, largest over smallest {}; solid fraction {} at the start",
+        format_count(v.grains), format_number(1e-6 * modulus), v.friction,
+        v.rolling_friction ? fmt::format(", mu_r = {:g}", *v.rolling_friction) : "", format_number(v.size_ratio, 3),
+        format_with_error(v.solid_fraction_start->mean, v.solid_fraction_start->error));
     if (last.axial_end)
       text += fmt::format(", axial stress {} E at the end of {}",
                           format_with_error(last.axial_end->mean / modulus, last.axial_end->error / modulus),

@@ -130,6 +130,7 @@ MaterialVariantSummary summary_of(const VariantResult& r) {
   s.size_ratio = spec.solid_polydispersity;
   s.preparation = spec.preparation;
   s.friction = spec.friction;
+  if (spec.rolling.friction > 0.0) s.rolling_friction = spec.rolling.friction;
   const auto more = [&](const char* name) {
     return mean_at_start(r.curves,
                          [name](const MacroCurve& c) -> const std::vector<double>& { return c.more.at(name); });

@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "common/contact/rolling_scene.h"
 #include "common/core/cost.h"
 #include "common/core/error.h"
 #include "common/core/text.h"
@@ -56,6 +57,7 @@ void read_matter(const SceneTable& t, MacroSpec& spec) {
   spec.poisson_ratio = t.number({"nu", "Poisson's ratio of the grains"}, Unit::none, kPoissonRange, spec.poisson_ratio);
   spec.friction =
       t.number({"mu", "friction coefficient of the grains"}, Unit::none, Range::not_negative(), spec.friction);
+  read_rolling_resistance(t, spec.friction, spec.rolling);
   spec.density = t.number({"density", "density of the grains"}, Unit::density, Range::positive(), spec.density);
 }
 
@@ -423,6 +425,8 @@ std::vector<Property> properties_of_packings(const MaterialVariant& v) {
   const PreparationProtocol& p = s.protocol;
   return {{"E [Pa]", number(s.youngs_modulus)},
           {"nu", number(s.poisson_ratio)},
+          {"mu_r", number(s.rolling.friction)},
+          {"kr_ratio", number(s.rolling.friction > 0.0 ? s.rolling.stiffness : 1.0)},
           {"density", number(s.density)},
           {"start_pressure", number(s.start_pressure)},
           {"start_fraction", number(p.start_fraction)},

@@ -16,6 +16,7 @@ struct MaterialVariantSummary {
   double size_ratio = 0.0;      ///< largest over smallest radius
   Preparation preparation = Preparation::frictionless;
   double friction = 0.0;
+  std::optional<double> rolling_friction;  ///< mu_r; empty: grains roll freely
   std::optional<MeanError> solid_fraction_start;
   std::optional<MeanError> rattlers_start;
   std::optional<MeanError> coordination_start;
@@ -30,6 +31,7 @@ void fields(auto&& visit, Of<MaterialVariantSummary> auto& s) {
   visit("size_ratio", s.size_ratio);
   visit("preparation", s.preparation);
   visit("mu", s.friction);
+  visit("mu_r", s.rolling_friction, kLeftOut);
   visit("solid_fraction_start", s.solid_fraction_start, kLeftOut);
   visit("rattlers_start", s.rattlers_start, kLeftOut);
   visit("coordination_start", s.coordination_start, kLeftOut);

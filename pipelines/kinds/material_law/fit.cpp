@@ -62,6 +62,7 @@ class MaterialLawFit {
     card.density = spec.density;
     card.poisson_ratio = spec.poisson_ratio;
     card.grain_friction = spec.friction;
+    card.grain_rolling = spec.rolling;
     card.preparation = to_string(spec.preparation);
     card.start_pressure = spec.start_pressure;
     card.fines_ratio = spec.solid_sizes->largest() / spec.solid_sizes->smallest();

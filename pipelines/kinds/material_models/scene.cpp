@@ -123,6 +123,9 @@ MaterialModelsScene read_material_models_scene(const Scene& scene) {
       if (!names.insert(t.text("name", "")).second) t.add_error("name", "is used twice");
       MaterialModel m = read_model(scene, t, out);
       require_variants(t, "variants", m.variants);
+      const auto rolls = [](const MaterialVariant& v) { return v.setup.spec.rolling.friction > 0.0; };
+      if (m.kind == ModelKind::shells && std::ranges::any_of(out.material.variants, rolls))
+        t.add_error("kind", "goes without mu_r: soft particles are measured with grains that roll freely");
       out.models.push_back(std::move(m));
     }
     if (out.models.empty()) root.add_error("model", "give at least one [[model]]");

@@ -20,7 +20,12 @@ MaterialLaw fit_coarsest(const RecipeScene& scene, const std::vector<VariantResu
   MaterialLawScene law{
       scene.material,
       pair_of(scene.levels[0], scene.levels[1], fines_over_coarse(scene, 0) / (1.0 + fines_over_coarse(scene, 0))),
-      cut_of_pair(scene.levels[0], scene.levels[1]), scene.mixtures, scene.cells, false, false, {}};
+      cut_of_pair(scene.levels[0], scene.levels[1]),
+      scene.mixtures,
+      scene.cells,
+      false,
+      false,
+      {}};
   std::vector<VariantResult> some{results[scene.slice[1]], results[kSheared], results[scene.slice[0]]};
   for (const std::size_t v : scene.mixed[0]) some.push_back(results[v]);
   return fit_material_law(law, some, states, seed);
@@ -222,12 +227,15 @@ void write_material_card(const RecipeScene& scene, const WholeLaw& law, const st
                  estimate_text(ratio));
   fmt::format_to(out, "\n[range]\npressure = [{}, {}]  # p/E of the fit\n", real(law.pressure_low),
                  real(law.pressure_high));
-  fmt::format_to(out,
-                 "\n[measured]\nE = {}  # [Pa]\ndensity = {}  # [kg/m^3], mean over the solid volume\n"
-                 "nu = {}\nmu = {}\npreparation = {}\nstart_pressure = {}\nsamples = {}\n",
-                 real(spec.youngs_modulus), real(grain_density(scene)), real(spec.poisson_ratio), real(spec.friction),
-                 quoted(to_string(spec.preparation)), real(spec.start_pressure),
-                 scene.material.variants.front().setup.samples);
+  fmt::format_to(
+      out,
+      "\n[measured]\nE = {}  # [Pa]\ndensity = {}  # [kg/m^3], mean over the solid volume\n"
+      "nu = {}\nmu = {}\n{}preparation = {}\nstart_pressure = {}\nsamples = {}\n",
+      real(spec.youngs_modulus), real(grain_density(scene)), real(spec.poisson_ratio), real(spec.friction),
+      spec.rolling.friction > 0.0
+          ? fmt::format("mu_r = {}\nkr_ratio = {}\n", real(spec.rolling.friction), real(spec.rolling.stiffness))
+          : "",
+      quoted(to_string(spec.preparation)), real(spec.start_pressure), scene.material.variants.front().setup.samples);
   for (const RecipeLevel& level : scene.levels)
     fmt::format_to(out, "\n[[level]]\nradius_min = {}  # m\nradius_max = {}\nvolume_share = {}\n", real(level.low),
                    real(level.high), real(level.share));

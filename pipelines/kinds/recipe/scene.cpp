@@ -28,7 +28,7 @@ constexpr double kCoarseGrains = 60.0;
 
 /// One E, nu and mu: packings of one material are measured, and the equation of state is over its E.
 void refuse_own_material(const SceneTable& t) {
-  for (const char* key : {"E", "nu", "mu"})
+  for (const char* key : {"E", "nu", "mu", "mu_r", "kr_ratio"})
     if (t.has(key))
       t.add_error(key,
                   "goes into [material]: contacts between constituents of different stiffness or friction are not "
@@ -382,6 +382,8 @@ RecipeScene read_recipe_scene(const Scene& scene) {
     const double shear =
         read_law(root.table_or_empty({"law", "fits of the equation of state and of the cell law"}), out);
     read_rest(root, out);
+    if (root.has("shells") && base.spec.rolling.friction > 0.0)
+      root.add_error("shells", "goes without mu_r: soft particles are measured with grains that roll freely");
     const SceneTable levels = root.table_or_empty(
         {"levels", "cuts of the size distribution into levels, and the mixtures of neighbouring levels"});
     read_mixtures(levels, out);
