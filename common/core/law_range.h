@@ -33,6 +33,17 @@ inline constexpr auto enum_names<LawStatus> =
                                {LawStatus::inaccurate, "inaccurate"},
                                {LawStatus::not_run, "not run"}});
 
+/// Smallest exponent of an unloading branch (UnloadingBranch) with which unloading begins at least as steeply as
+/// loading with the exponent b ends, at any depth. The branch then lies nowhere above the loading curve, and no cycle
+/// gives back more than it took: with F' (D - delta)/F <= B = max(1, b), the energy kept at Delta_max, F (1 - residual)
+/// (Delta_max - delta)/(exponent + 1), grows by less than the work of loading where (1 - residual) (1 + B) <= 1 +
+/// exponent. At least 1: a contact of finite stiffness.
+constexpr double least_unloading_exponent(double residual, double loading_exponent) {
+  const double bend = loading_exponent > 1.0 ? loading_exponent : 1.0;
+  const double least = (1.0 - residual) * bend;
+  return least > 1.0 ? least : 1.0;
+}
+
 /// Whether there is a law at all: one that the data do not determine is still one, and its status says so.
 constexpr bool has_numbers(LawStatus status) {
   return status == LawStatus::good || status == LawStatus::underdetermined;
