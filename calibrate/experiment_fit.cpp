@@ -285,7 +285,7 @@ void question(PairLaw& law, const std::string& why) {
 /// The unloading branch of a law that has numbers; a remark where there is none, though something was unloaded.
 void add_unloading(ForceCurves& curves, PairLaw& law) {
   if (!has_numbers(law.status) || !(law.normal.b.value > 0.0)) return;
-  UnloadingFit fit = fit_unloading(curves.samples, law.normal.delta.value, law.normal.b.value);
+  UnloadingFit fit = fit_unloading(curves.samples, law.normal.delta, law.normal.b.value);
   law.unloading = fit.law;
   if (!fit.remark.empty()) curves.remarks.push_back(to_string(curves.kind) + ": " + fit.remark);
 }

@@ -10,6 +10,7 @@
 #include "calibrate/least_squares.h"
 #include "common/core/few_samples.h"
 #include "common/core/law_range.h"
+#include "common/core/statistics.h"
 
 namespace softgrain {
 
@@ -61,6 +62,12 @@ class BranchProblem {
 
   [[nodiscard]] std::size_t readings() const { return readings_; }
   [[nodiscard]] std::size_t unloadings() const { return curves_.size(); }
+  /// Mean Delta where unloadings begin.
+  [[nodiscard]] double deepest() const {
+    double sum = 0.0;
+    for (const UnloadedCurve& u : curves_) sum += u.deepest;
+    return sum / static_cast<double>(curves_.size());
+  }
 
   [[nodiscard]] std::optional<BranchFit> fit() const {
     if (readings_ < kShape + curves_.size() + 2) return std::nullopt;
@@ -115,8 +122,8 @@ class BranchProblem {
     const double rr = block * found.covariance[0];
     const double re = block * found.covariance[1];
     const double ee = block * found.covariance[n + 1];
-    const double bend = std::max(1.0, b_);
-    const double slope = (1.0 - x[0]) * bend > 1.0 ? -bend : 0.0;  // of the least exponent over the residual
+    const double bend = 1.0 + std::max(1.0, b_);
+    const double slope = (1.0 - x[0]) * bend > 2.0 ? -bend : 0.0;  // of the least exponent over the residual
     out.covariance = {rr, slope * rr + re, slope * slope * rr + 2.0 * slope * re + ee};
     return out;
   }
@@ -156,9 +163,20 @@ std::optional<std::array<double, 3>> jackknife(const std::vector<const ForceCurv
   return out;
 }
 
+/// The residual is the share of a depth below the threshold, whose error shifts it, dr/d delta = -(1 - r)/(Delta_max -
+/// delta): what is left after unloading is measured, not its share.
+void add_threshold_error(const Estimate& delta, double deepest, Estimate& residual) {
+  if (!std::isfinite(delta.standard_error)) return;
+  const double shift = (1.0 - residual.value) / (deepest - delta.value) * delta.standard_error;
+  residual.standard_error = std::hypot(residual.standard_error, shift);
+  residual.low = std::max(0.0, residual.value - std::hypot(residual.value - residual.low, kNormal95 * shift));
+  residual.high = std::min(1.0, residual.value + std::hypot(residual.high - residual.value, kNormal95 * shift));
+}
+
 }  // namespace
 
-UnloadingFit fit_unloading(const std::vector<ForceCurve>& samples, double threshold, double loading_exponent) {
+UnloadingFit fit_unloading(const std::vector<ForceCurve>& samples, const Estimate& delta, double loading_exponent) {
+  const double threshold = delta.value;
   std::vector<const ForceCurve*> unloaded;
   for (const ForceCurve& s : samples)
     if (!s.unloaded.empty()) unloaded.push_back(&s);
@@ -184,15 +202,14 @@ UnloadingFit fit_unloading(const std::vector<ForceCurve>& samples, double thresh
   }
   law.residual = student_estimate(fit->residual, std::sqrt(covariance[0]), freedom, 0.0, 1.0);
   law.exponent = student_estimate(fit->exponent, std::sqrt(covariance[2]), freedom, 1.0);
-  const double scale = std::sqrt(covariance[0] * covariance[2]);
+  add_threshold_error(delta, problem.deepest(), law.residual);
+  const double scale = law.residual.standard_error * law.exponent.standard_error;
   law.correlation = scale > 0.0 ? std::clamp(covariance[1] / scale, -1.0, 1.0) : 0.0;
   UnloadingFit out{law, ""};
   if (fit->at_least)
-    out.remark = fmt::format(
-        "unloading is less steep than loading ends: its exponent is {:.4g}, the least with which no cycle gives back "
-        "more "
-        "than it took",
-        fit->exponent);
+    out.remark =
+        fmt::format("the exponent of unloading is {:.4g}, the least with which no cycle gives back more than it took",
+                    fit->exponent);
   return out;
 }
 

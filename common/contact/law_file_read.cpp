@@ -141,7 +141,7 @@ UnloadingBranch read_branch(Reader& r, double loading_exponent) {
   const UnloadingBranch branch{r.not_negative("residual"), r.positive("unloading_exponent")};
   if (branch.residual >= 1.0) r.fail("residual", "must be below 1");
   if (branch.exponent < least_unloading_exponent(branch.residual, loading_exponent))
-    r.fail("unloading_exponent", "is too small: unloading would be less steep than loading");
+    r.fail("unloading_exponent", "is too small: cycles would give back more than they took");
   return branch;
 }
 

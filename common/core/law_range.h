@@ -33,14 +33,14 @@ inline constexpr auto enum_names<LawStatus> =
                                {LawStatus::inaccurate, "inaccurate"},
                                {LawStatus::not_run, "not run"}});
 
-/// Smallest exponent of an unloading branch (UnloadingBranch) with which unloading begins at least as steeply as
-/// loading with the exponent b ends, at any depth. The branch then lies nowhere above the loading curve, and no cycle
-/// gives back more than it took: with F' (D - delta)/F <= B = max(1, b), the energy kept at Delta_max, F (1 - residual)
-/// (Delta_max - delta)/(exponent + 1), grows by less than the work of loading where (1 - residual) (1 + B) <= 1 +
-/// exponent. At least 1: a contact of finite stiffness.
+/// Smallest exponent m of an unloading branch (UnloadingBranch) with the residual r with which no cycle gives back more
+/// than it took. Along the branch work is stored and given back; where loading goes on at Delta_max the stored energy,
+/// F (1 - r) (Delta_max - delta)/(m + 1), must grow by no more than the work of loading. With F' (D - delta)/F <= B =
+/// max(1, b), b the exponent of loading, that is so at any depth where (1 - r) (1 + B) <= 1 + m. At least 1: a contact
+/// of finite stiffness.
 constexpr double least_unloading_exponent(double residual, double loading_exponent) {
   const double bend = loading_exponent > 1.0 ? loading_exponent : 1.0;
-  const double least = (1.0 - residual) * bend;
+  const double least = (1.0 - residual) * (1.0 + bend) - 1.0;
   return least > 1.0 ? least : 1.0;
 }
 

@@ -81,11 +81,10 @@ UnloadingLaw read_unloading(const SceneTable& table, double loading_exponent) {
   const double least = least_unloading_exponent(u.residual.value, loading_exponent);
   if (u.exponent.value < least * (1.0 - kRounding))
     table.table("exponent")
-        .throw_error(
-            "value",
-            fmt::format("must be at least {:.6g} with this residual and b = {:.6g}: unloading is at least as steep "
-                        "as loading, or cycles would give back more than they took",
-                        least, loading_exponent));
+        .throw_error("value",
+                     fmt::format("must be at least {:.6g} with this residual and b = {:.6g}: with less, cycles would "
+                                 "give back more than they took",
+                                 least, loading_exponent));
   return u;
 }
 

@@ -211,8 +211,7 @@ AnyLaw law_of_card(const std::string& path, const std::string& kind, const CardC
   constexpr double kRounding = 1e-9;
   if (!(branch.residual >= 0.0 && branch.residual < 1.0) ||
       branch.exponent < least_unloading_exponent(branch.residual, law.normal.b) * (1.0 - kRounding))
-    throw InputError(where +
-                     ": unloading needs a residual in [0, 1) and an exponent that is at least as steep as loading");
+    throw InputError(where + ": unloading needs a residual in [0, 1) and an exponent with which no cycle gains energy");
   return SoftUnloading{
       law, {branch.residual, std::max(branch.exponent, least_unloading_exponent(branch.residual, law.normal.b))}};
 }

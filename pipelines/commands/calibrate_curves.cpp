@@ -10,16 +10,12 @@
 #include "common/data/law_words.h"
 #include "common/io/text_file.h"
 #include "pipelines/law/law_fit.h"
+#include "pipelines/law/press_test.h"
 #include "pipelines/report/report.h"
 
 namespace softgrain {
 
 namespace {
-
-bool is_curve_file(const std::string& path) {
-  const auto form = file_form(path);
-  return form == FileForm::csv || form == FileForm::tsv || form == FileForm::txt || form == FileForm::dat;
-}
 
 struct CurveSettings {
   FitOptions fit;

@@ -62,7 +62,9 @@ std::vector<LawFileEntry> every_law() {
           {"pair", pair},
           {"disk", CohesiveDisk<false, false>{1e3, 0.0, 0.0, 0.1, 0.2, 1e-5, 0.0, 0.0}},
           {"disk that slides", CohesiveDisk<true, false>{1e3, 5e2, 0.3, 0.1, 0.0, 0.0, 0.0, 0.0}},
-          {"disk that rolls", CohesiveDisk<true, true>{1e3, 5e2, 0.3, 0.1, 0.2, 1e-5, 1e-4, 2e-5}}};
+          {"disk that rolls", CohesiveDisk<true, true>{1e3, 5e2, 0.3, 0.1, 0.2, 1e-5, 1e-4, 2e-5}},
+          {"soft that unloads", SoftUnloading{soft, {0.1, 2.9}}},
+          {"soft both that unload", SoftUnloading{both, {1.0 / 3.0, 7.0 / 3.0}}}};
 }
 
 TEST(LawFile, ReadsBackToTheSameBits) {
@@ -81,7 +83,8 @@ TEST(LawFile, ReadsBackToTheSameBits) {
 TEST(LawFile, MirroredTwiceIsTheSame) {
   for (const auto& [name, law] : every_law()) {
     EXPECT_EQ(laws_text({{name, mirrored(mirrored(law))}}), laws_text({{name, law}}));
-    const bool turns = name == "soft" || name == "crowd" || name == "crowd that rolls" || name == "pair";
+    const bool turns = name == "soft" || name == "crowd" || name == "crowd that rolls" || name == "pair" ||
+                       name == "soft that unloads";
     EXPECT_EQ(laws_text({{name, mirrored(law)}}) != laws_text({{name, law}}), turns) << name;
   }
 }
