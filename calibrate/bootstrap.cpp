@@ -8,6 +8,7 @@
 
 #include "calibrate/draws.h"
 #include "calibrate/threshold_model.h"
+#include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/random.h"
 #include "common/core/statistics.h"
@@ -112,24 +113,45 @@ ResidualDraws::ResidualDraws(const BootstrapInput& input, const std::vector<Give
     if (input.curves[j].present()) prepare(j);
 }
 
+/// The factor of each sample to the fitted curve, by least squares; 1 for a single one.
+std::vector<double> ResidualDraws::factors(std::size_t j) const {
+  const CurveSamples& s = input_.samples[j];
+  std::vector<double> out(s.packings, 1.0);
+  for (std::size_t i = 0; s.packings > 1 && i < s.packings; ++i) {
+    double product = 0.0;
+    double square = 0.0;
+    for (std::size_t k = 0; k < s.delta.size(); ++k) {
+      if (std::isnan(s.at(i, k))) continue;
+      const double weight = 1.0 / (input_.curves[j].sigma[k] * input_.curves[j].sigma[k]);
+      product += weight * s.at(i, k) * curves_[j].fitted[k];
+      square += weight * curves_[j].fitted[k] * curves_[j].fitted[k];
+    }
+    if (square > 0.0) out[i] = product / square;
+  }
+  return out;
+}
+
 void ResidualDraws::prepare(std::size_t j) {
   const CurveSamples& s = input_.samples[j];
   const std::vector<double>& sigma = input_.curves[j].sigma;
   Curve& c = curves_[j];
   for (const double d : s.delta) c.fitted.push_back(input_.start.value(j, d));
+  const std::vector<double> factor = j == 0 ? factors(j) : std::vector<double>(s.packings, 1.0);
+  if (j == 0 && s.packings > 1)
+    c.between = mean_error(factor).deviation * student_over_normal(static_cast<double>(s.packings - 1));
   std::vector<double> standardised(s.value.size(), std::numeric_limits<double>::quiet_NaN());
   double chi2 = 0.0;
   double points = 0.0;
   for (std::size_t i = 0; i < s.packings; ++i)
     for (std::size_t k = 0; k < s.delta.size(); ++k) {
-      const double z = (s.at(i, k) - c.fitted[k]) / sigma[k];
+      const double z = (s.at(i, k) - factor[i] * c.fitted[k]) / sigma[k];
       if (std::isnan(z)) continue;
       standardised[i * s.delta.size() + k] = z;
       chi2 += z * z;
       points += 1.0;
     }
   c.block = correlation_length(standardised, s.packings);
-  const double parameters = j == 0 ? 3.0 : 2.0;
+  const double parameters = j == 0 ? 2.0 + static_cast<double>(s.packings) : 2.0;
   const double freedom = std::max(points - parameters, 1.0);
   // Errors as the fit weights points, to the size of the residuals; given ones are never taken to be smaller.
   const double size = std::max(given_[j].empty() ? 0.0 : 1.0, std::sqrt(chi2 / freedom));
@@ -164,6 +186,7 @@ FitCurves ResidualDraws::draw(RandomStream& random) const {
     CurveSamples drawn = input_.samples[j];
     const std::size_t n = drawn.delta.size();
     for (std::size_t i = 0; i < drawn.packings; ++i) {
+      const double factor = curves_[j].between > 0.0 ? 1.0 + curves_[j].between * random.normal() : 1.0;
       double number = 0.0;
       auto left = static_cast<std::size_t>(random.below(curves_[j].block));  // blocks begin anywhere
       if (left > 0) number = random.normal();
@@ -175,7 +198,7 @@ FitCurves ResidualDraws::draw(RandomStream& random) const {
           left = curves_[j].block;
         }
         --left;
-        drawn.value[i * n + k] = curves_[j].fitted[k] + number * amplitude;
+        drawn.value[i * n + k] = factor * curves_[j].fitted[k] + number * amplitude;
       }
     }
     if (j == 0) set_to_zero(drawn);

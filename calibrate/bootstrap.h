@@ -35,7 +35,10 @@ BootstrapResult bootstrap(const BootstrapInput& input, int replicates, std::uint
 /// law is fitted again. The new fit is weighted by the errors that the new curve shows, because errors told from the
 /// curve itself scatter, and with them the fit. The shape of the noise over Delta is that of sigma, and one normal
 /// random number serves as many neighbouring points as residuals are correlated over. With given errors of the normal
-/// force the noise is at least as large as these. The result says nothing about samples that were not measured.
+/// force the noise is at least as large as these. Several samples differ besides by a factor of their normal force,
+/// drawn for each of them with the scatter of the measured factors times Student's t over the normal quantile: the mean
+/// of n samples is known as t with n - 1 degrees of freedom says. Of a single sample the result says nothing about
+/// others.
 BootstrapResult residual_bootstrap(const BootstrapInput& input, const std::vector<GivenError>& given, int replicates,
                                    std::uint64_t seed, std::uint64_t stream);
 
@@ -66,8 +69,10 @@ class ResidualDraws {
     std::vector<double> fitted;     ///< per Delta
     std::vector<double> amplitude;  ///< samples x Delta; NaN where nothing was measured
     std::size_t block = 1;          ///< points
+    double between = 0.0;           ///< scatter of the factor by which samples differ
   };
   void prepare(std::size_t curve);
+  [[nodiscard]] std::vector<double> factors(std::size_t curve) const;
   void set_to_zero(CurveSamples& drawn) const;
 
   const BootstrapInput& input_;

@@ -10,6 +10,7 @@
 
 #include "calibrate/bootstrap.h"
 #include "calibrate/threshold_fit.h"
+#include "calibrate/unloading_fit.h"
 #include "common/core/text.h"
 
 namespace softgrain {
@@ -281,6 +282,14 @@ void question(PairLaw& law, const std::string& why) {
   append_part(law.reason, why, " ");
 }
 
+/// The unloading branch of a law that has numbers; a remark where there is none, though something was unloaded.
+void add_unloading(ForceCurves& curves, PairLaw& law) {
+  if (!has_numbers(law.status) || !(law.normal.b.value > 0.0)) return;
+  UnloadingFit fit = fit_unloading(curves.samples, law.normal.delta, law.normal.b.value);
+  law.unloading = fit.law;
+  if (!fit.remark.empty()) curves.remarks.push_back(to_string(curves.kind) + ": " + fit.remark);
+}
+
 TurnsVerdict judge_turns(const PreparedCurves& prepared, const FitOptions& options) {
   RunList runs;
   for (const PackingRun& run : prepared.data.runs) runs.push_back(&run);
@@ -378,6 +387,7 @@ ExperimentFit fit_experiment(const std::vector<ForceCurves>& curves, const FitOp
     FitReport report = fit_pair_law(prepared.data, one.kind, o);
     if (open)
       question(report.law, "The forces do not vanish with the overlap: an offset that the readings do not determine.");
+    add_unloading(one, report.law);
     const TurnsVerdict turns = judge_turns(prepared, o);
     if (turns.none)
       question(report.law, std::string(kNoStiffness) + " (" + turns.why + ").");
@@ -386,10 +396,15 @@ ExperimentFit fit_experiment(const std::vector<ForceCurves>& curves, const FitOp
     out.remarks.insert(out.remarks.end(), one.remarks.begin(), one.remarks.end());
     if (!prepared.note.empty()) out.remarks.push_back(prepared.note);
     if (report.from_residuals)
-      out.remarks.push_back(fmt::format(
-          "{}: {} sample{} ({} needed for an interval over samples): intervals are from the residuals about the law "
-          "and do not cover other samples",
-          to_string(one.kind), one.samples.size(), one.samples.size() == 1 ? "" : "s", options.min_packings));
+      out.remarks.push_back(
+          one.samples.size() == 1
+              ? fmt::format("{}: 1 sample ({} needed for an interval over samples): intervals are from the residuals "
+                            "about the law and do not cover other samples",
+                            to_string(one.kind), options.min_packings)
+              : fmt::format("{}: {} samples ({} needed to draw samples): intervals are from the differences between "
+                            "samples (Student's t, {} degree{} of freedom) and the residuals about the law",
+                            to_string(one.kind), one.samples.size(), options.min_packings, one.samples.size() - 1,
+                            one.samples.size() == 2 ? "" : "s"));
     const std::string origin = report.from_residuals ? kFromResiduals : kFromSamples;
     report.law.band_origin = origin;
     if (out.card.intervals.find(origin) == std::string::npos) append_part(out.card.intervals, origin);

@@ -42,12 +42,13 @@ struct ExperimentFit {
   std::vector<std::string> remarks;
 };
 
-/// Fits every pair kind. A constant force that is read without contact is taken off first, and said; a
-/// curve that asks for one which its readings do not determine makes the law underdetermined, and so do tangential
-/// forces that say no stiffness. `mirror`: a kind that was not measured follows from the other one, by symmetry: two
-/// equal soft particles that press on each other are each pressed on a plane at half the overlap and turned by half the
-/// angle,
-///   F_soft-soft(D) = F_soft-solid(D/2), kt_soft-soft(D, 2 angle) = kt_soft-solid(D/2, angle)/2.
+/// Fits every pair kind, and the unloading branch of those that were unloaded. A constant force that is read without
+/// contact is taken off first, and said; a curve that asks for one which its readings do not determine makes the law
+/// underdetermined, and so do tangential forces that say no stiffness. `mirror`: a kind that was not measured follows
+/// from the other one, by symmetry: two equal soft particles that press on each other are each pressed on a plane at
+/// half the overlap and turned by half the angle,
+///   F_soft-soft(D) = F_soft-solid(D/2), kt_soft-soft(D, 2 angle) = kt_soft-solid(D/2, angle)/2;
+/// an unloading branch is the same for both, as its numbers are shares of the depth.
 /// Grains of two particles that interlock are not in this; its law is marked "underdetermined" and says so. There is
 /// none where it would lie beyond what a law of two bodies can be: a remark says so.
 ExperimentFit fit_experiment(const std::vector<ForceCurves>& curves, const FitOptions& options, bool mirror);

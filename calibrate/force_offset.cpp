@@ -233,6 +233,10 @@ std::vector<ForceOffset> subtract_offsets(ForceCurves& curves) {
     }
     for (ForcePoint& p : sample.normal) p.force -= o.force;
     for (double& force : sample.before_touch) force -= o.force;
+    for (UnloadedCurve& u : sample.unloaded) {
+      u.force -= o.force;
+      for (ForcePoint& p : u.points) p.force -= o.force;
+    }
     curves.remarks.push_back(fmt::format(
         "{}: a constant force offset of {:.4g} +- {:.2g} N, by {} without contact (before touch, or below "
         "Delta = {:.3g}){}, was subtracted from all forces of the sample (--set offset=keep leaves it)",

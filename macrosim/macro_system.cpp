@@ -175,14 +175,17 @@ MacroSystem make_twin(const MacroSpec& spec, const MacroPacking& packing, const 
 
 }  // namespace
 
-SoftLaws pair_soft_laws(const SoftContact& soft_solid, const SoftContact& soft_soft, double wall_friction) {
-  SoftContact soft_first = soft_solid;
-  soft_first.i_is_soft = true;
-  SoftContact solid_first = soft_solid;
-  solid_first.i_is_soft = false;
-  SoftContact wall = soft_first;
-  wall.friction = wall_friction;
-  return {soft_first, solid_first, wall, soft_soft};
+SoftLaws pair_soft_laws(const CardLaw& soft_solid, const CardLaw& soft_soft, double wall_friction) {
+  return std::visit(
+      [&](auto soft_first) -> SoftLaws {
+        soft_first.i_is_soft = true;
+        auto solid_first = soft_first;
+        solid_first.i_is_soft = false;
+        auto wall = soft_first;
+        wall.friction = wall_friction;
+        return {soft_first, solid_first, wall, any_law(soft_soft)};
+      },
+      soft_solid);
 }
 
 MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, const SoftLaws& laws,

@@ -143,6 +143,15 @@ AnyLaw read_linear(Reader& r) {
   return r.has("rolling_friction") ? read_linear_spring<true>(r) : read_linear_spring<false>(r);
 }
 
+/// The branch of a law that unloads along one of its own.
+UnloadingBranch read_branch(Reader& r, double loading_exponent) {
+  const UnloadingBranch branch{r.not_negative("residual"), r.positive("unloading_exponent")};
+  if (branch.residual >= 1.0) r.fail("residual", "must be below 1");
+  if (branch.exponent < least_unloading_exponent(branch.residual, loading_exponent))
+    r.fail("unloading_exponent", "is too small: cycles would give back more than they took");
+  return branch;
+}
+
 AnyLaw read_soft(Reader& r) {
   SoftContact law;
   const auto normal = r.three("normal");
@@ -156,7 +165,8 @@ AnyLaw read_soft(Reader& r) {
   law.i_is_soft = r.flag("first_is_soft");
   law.partner_is_soft = r.flag("second_is_soft") && law.i_is_soft;
   law.range = r.range();
-  return law;
+  if (!r.has("residual") && !r.has("unloading_exponent")) return law;
+  return SoftUnloading{law, read_branch(r, law.normal.b)};
 }
 
 template <LawForm kLawForm, bool kUnloading, bool kRolling>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <charconv>
 #include <cmath>
+#include <concepts>
 #include <type_traits>
 
 #include "common/contact/law_set.h"
@@ -76,8 +77,7 @@ void write(std::string& out, const std::string& name, const LinearSpringLaw<kRol
   if (kRolling) write_rolling_resistance(w, law.rolling);
 }
 
-void write(std::string& out, const std::string& name, const SoftContact& law) {
-  Writer w(out, name, LawType::soft);
+void write_soft(Writer& w, const SoftContact& law) {
   w.values("normal", {law.normal.a, law.normal.b, law.normal.c});
   w.values("tangential", {law.tangential.a, law.tangential.b, law.tangential.c});
   w.value("delta", law.delta);
@@ -87,6 +87,18 @@ void write(std::string& out, const std::string& name, const SoftContact& law) {
   w.flag("first_is_soft", law.i_is_soft);
   w.flag("second_is_soft", law.partner_is_soft);
   w.range(law.range);
+}
+
+void write(std::string& out, const std::string& name, const SoftContact& law) {
+  Writer w(out, name, LawType::soft);
+  write_soft(w, law);
+}
+
+void write(std::string& out, const std::string& name, const SoftUnloading& law) {
+  Writer w(out, name, LawType::soft);
+  write_soft(w, law);
+  w.value("residual", law.branch.residual);
+  w.value("unloading_exponent", law.branch.exponent);
 }
 
 template <LawForm kLawForm, bool kUnloading, bool kRolling>
@@ -131,12 +143,9 @@ void write(std::string& out, const std::string& name, const CohesiveDisk<kFricti
 }
 
 template <class Law>
-AnyLaw mirror(const Law& law) {
-  return law;
-}
-
-AnyLaw mirror(SoftContact law) {
-  if (!law.partner_is_soft) law.i_is_soft = !law.i_is_soft;
+AnyLaw mirror(Law law) {
+  if constexpr (std::derived_from<Law, SoftContact>)
+    if (!law.partner_is_soft) law.i_is_soft = !law.i_is_soft;
   return law;
 }
 

@@ -23,16 +23,23 @@ using AnyLaw =
     std::variant<HertzMindlin<Tangential::none, false>, HertzMindlin<Tangential::none, true>,
                  HertzMindlin<Tangential::mindlin, false>, HertzMindlin<Tangential::mindlin, true>,
                  HertzMindlin<Tangential::rescaled, false>, HertzMindlin<Tangential::rescaled, true>, LinearSpring,
-                 SoftContact, SoftMultiContact<LawForm::pair, false>, SoftMultiContact<LawForm::pair, true>,
-                 SoftMultiContact<LawForm::isotropic, false>, SoftMultiContact<LawForm::isotropic, true>,
-                 SoftMultiContact<LawForm::directional, false>, SoftMultiContact<LawForm::directional, true>,
-                 SoftMultiContact<LawForm::pair, false, true>, SoftMultiContact<LawForm::pair, true, true>,
-                 SoftMultiContact<LawForm::isotropic, false, true>, SoftMultiContact<LawForm::isotropic, true, true>,
-                 SoftMultiContact<LawForm::directional, false, true>,
+                 SoftContact, SoftUnloading, SoftMultiContact<LawForm::pair, false>,
+                 SoftMultiContact<LawForm::pair, true>, SoftMultiContact<LawForm::isotropic, false>,
+                 SoftMultiContact<LawForm::isotropic, true>, SoftMultiContact<LawForm::directional, false>,
+                 SoftMultiContact<LawForm::directional, true>, SoftMultiContact<LawForm::pair, false, true>,
+                 SoftMultiContact<LawForm::pair, true, true>, SoftMultiContact<LawForm::isotropic, false, true>,
+                 SoftMultiContact<LawForm::isotropic, true, true>, SoftMultiContact<LawForm::directional, false, true>,
                  SoftMultiContact<LawForm::directional, true, true>, CohesiveDisk<false, false>,
                  CohesiveDisk<true, false>, CohesiveDisk<true, true>, HertzMindlin<Tangential::mindlin, false, true>,
                  HertzMindlin<Tangential::mindlin, true, true>, HertzMindlin<Tangential::rescaled, false, true>,
                  HertzMindlin<Tangential::rescaled, true, true>, LinearSpringLaw<true>>;
+
+/// A law of a law card.
+using CardLaw = std::variant<SoftContact, SoftUnloading>;
+
+inline AnyLaw any_law(const CardLaw& law) {
+  return std::visit([](const auto& one) { return AnyLaw(one); }, law);
+}
 
 /// What every law is: traits, constants of a pair, and a force for a number or for several side by side; and what it
 /// says of itself is there. impact_time(bodies, speed) bounds the time step: how long two bodies touch that meet at

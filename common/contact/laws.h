@@ -5,6 +5,7 @@
 //   HertzMindlin   sqrt(R12) h^(3/2)/D - eta vn                    hertz_mindlin.h
 //   LinearSpring   kn h - eta vn                                   linear_spring.h
 //   SoftContact    E R^2 (a Delta^b + c), Delta = h/R > delta      soft_contact.h
+//   SoftUnloading  the same, and a branch of its own for unloading soft_contact.h
 //   CohesiveDisk   K_N h - F0 - eta vn, attraction at a distance   cohesive_disk.h
 //   SoftMultiContact      E R^2 dnu/dx p(S)/S B: several contacts         soft_multi_contact.h, multi_contact_form.h
 //   rolling_spring moment of rolling resistance, of the first two  rolling_spring.h

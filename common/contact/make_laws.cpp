@@ -62,6 +62,16 @@ SoftContact make_soft_contact(const LawCard& card, PairKind kind, double modulus
   return out;
 }
 
+CardLaw make_card_law(const LawCard& card, PairKind kind, double modulus, double friction, double damping,
+                      bool use_secant, std::optional<Extrapolation> beyond, bool unloading) {
+  const SoftContact loading = make_soft_contact(card, kind, modulus, friction, damping, use_secant, beyond);
+  const std::optional<UnloadingLaw>& branch = card.find(kind)->unloading;
+  if (!unloading || !branch) return loading;
+  const double residual = branch->residual.value;
+  return SoftUnloading{
+      loading, {residual, std::max(branch->exponent.value, least_unloading_exponent(residual, loading.normal.b))}};
+}
+
 namespace {
 
 const MultiContactLaw& usable(const LawTableEntry& entry, LawForm form) {

@@ -23,6 +23,11 @@ namespace softgrain {
 SoftContact make_soft_contact(const LawCard& card, PairKind kind, double modulus, double friction, double damping,
                               bool use_secant, std::optional<Extrapolation> beyond = std::nullopt);
 
+/// The same with the unloading branch of the card, where it has one and `unloading` says so. The exponent of a branch
+/// is no smaller than least_unloading_exponent(), which that of a drawn law may be.
+CardLaw make_card_law(const LawCard& card, PairKind kind, double modulus, double friction, double damping,
+                      bool use_secant, std::optional<Extrapolation> beyond, bool unloading);
+
 /// A law of the table as the model that predicts with it.
 MultiContactModel multi_contact_model(const MultiContactLaw& law);
 

@@ -101,15 +101,7 @@ struct SoftContact {
     const auto [force, stiffness_now] = elastic_at<T>(ratio, radius);
     out.elastic_force = force;
     out.normal_stiffness = stiffness_now;
-    const T eta = s.constants.b * root(out.normal_stiffness);
-    out.normal_force = out.elastic_force - eta * s.normal_speed;
-    const T stiffness = modulus * radius * largest<T>(tangential.value(ratio), 0.0);
-    const Mask<T> held = stiffness > 0.0;
-    if (any(held)) {
-      const ContactResponse<D, T> loose = out;
-      coulomb_spring<true>(s, stiffness, eta, T(friction * largest(out.normal_force, 0.0)), out);
-      if (any(!held)) out = select(held, out, loose);
-    }
+    add_motion(s, modulus * radius * largest<T>(tangential.value(ratio), 0.0), out);
     return any(idle) ? select(idle, {}, out) : out;
   }
 
@@ -123,10 +115,81 @@ struct SoftContact {
            (normal.integral(ratio) - normal.integral(delta) + beyond * normal.value(ratio));
   }
 
+ protected:
+  /// Damping and tangential force with this stiffness [N/m], on top of the elastic force and stiffness in `out`.
+  template <int D, class T>
+  void add_motion(const ContactState<D, T>& s, const T& stiffness, ContactResponse<D, T>& out) const {
+    const T eta = s.constants.b * root(out.normal_stiffness);
+    out.normal_force = out.elastic_force - eta * s.normal_speed;
+    const Mask<T> held = stiffness > 0.0;
+    if (!any(held)) return;
+    const ContactResponse<D, T> loose = out;
+    coulomb_spring<true>(s, stiffness, eta, T(friction * largest(out.normal_force, 0.0)), out);
+    if (any(!held)) out = select(held, out, loose);
+  }
+
  private:
   [[nodiscard]] double reference_radius(const PairBodies& bodies) const {
     if (partner_is_soft) return std::min(bodies.radius_i, bodies.radius_j);
     return i_is_soft ? bodies.radius_i : bodies.radius_j;
+  }
+};
+
+/// How a soft contact unloads: from its deepest Delta_max along
+///   F = F(Delta_max) [(Delta - Delta_p)/(Delta_max - Delta_p)]^exponent, 0 below Delta_p,
+///   Delta_p = delta + residual (Delta_max - delta),
+/// and back the same way, onto the loading curve at Delta_max. Walton and Braun (1986, doi:10.1122/1.549893) with a
+/// power in place of their straight line; residual = 1 - 1/s with the exponent of loading and delta = 0 is the branch
+/// of law tables (SoftMultiContact). Dimensionless.
+struct UnloadingBranch {
+  double residual = 0.0;  ///< share of the depth below the threshold that stays, 0 <= residual < 1
+  double exponent = 1.0;  ///< at least least_unloading_exponent()
+};
+
+/// A soft contact that unloads along a branch of its own. Its history is the largest overlap since it last lay below
+/// the threshold. kt of the overlap falls with the force that is left, so that a contact without force has none. SI
+/// units.
+struct SoftUnloading : SoftContact {
+  static constexpr LawTraits traits{
+      .needs_velocity = true, .has_tangential = true, .has_memory = true, .has_onset = true, .is_fitted = true};
+
+  UnloadingBranch branch;
+
+  template <int D, class T>
+  [[nodiscard]] ContactResponse<D, T> evaluate(const ContactState<D, T>& s) const {
+    ContactResponse<D, T> out;
+    const T radius = s.constants.a;
+    const T ratio = taken_ratio<T>(s.overlap, radius);
+    const Mask<T> idle = idle_at(ratio);
+    if (!any(!idle)) return out;
+    const Elastic<T> loading = elastic_at<T>(ratio, radius);
+    out.elastic_force = loading.force;
+    out.normal_stiffness = loading.stiffness;
+    T share(1.0);  // force over that of loading at this overlap
+    const Mask<T> returns = s.overlap < s.memory;
+    if (any(returns)) {
+      const Elastic<T> returned = unloading_at<T>(s.overlap / radius, s.memory / radius, radius);
+      out.elastic_force = choose<T>(returns, returned.force, out.elastic_force);
+      out.normal_stiffness = choose<T>(returns, returned.stiffness, out.normal_stiffness);
+      share = choose<T>(returns && loading.force > 0.0, returned.force / loading.force, share);
+    }
+    out.memory = largest(s.memory, s.overlap);
+    add_motion(s, share * (modulus * radius * largest<T>(tangential.value(ratio), 0.0)), out);
+    return any(idle) ? select(idle, {}, out) : out;
+  }
+
+ private:
+  /// Elastic force and stiffness at a Delta below the deepest one. A contact deeper than a clamped law goes unloads
+  /// from where it was, with the force of the end of the range.
+  template <class T>
+  [[nodiscard]] Elastic<T> unloading_at(const T& at, const T& deepest, const T& radius) const {
+    const T length = (1.0 - branch.residual) * (deepest - delta);  // > 0: at lies above the threshold, deepest above at
+    const T share = (at - deepest + length) / length;
+    const Mask<T> bears = share > 0.0;
+    const T base = choose<T>(bears, share, T(1.0));
+    const T force = elastic_at<T>(least<T>(deepest, range.clamp_at()), radius).force * power(base, branch.exponent);
+    return {choose<T>(bears, force, T(0.0)),
+            choose<T>(bears, branch.exponent * force / (base * length * radius), T(0.0))};
   }
 };
 

@@ -33,6 +33,17 @@ inline constexpr auto enum_names<LawStatus> =
                                {LawStatus::inaccurate, "inaccurate"},
                                {LawStatus::not_run, "not run"}});
 
+/// Smallest exponent m of an unloading branch (UnloadingBranch) with the residual r with which no cycle gives back more
+/// than it took. Along the branch work is stored and given back; where loading goes on at Delta_max the stored energy,
+/// F (1 - r) (Delta_max - delta)/(m + 1), must grow by no more than the work of loading. With F' (D - delta)/F <= B =
+/// max(1, b), b the exponent of loading, that is so at any depth where (1 - r) (1 + B) <= 1 + m. At least 1: a contact
+/// of finite stiffness.
+constexpr double least_unloading_exponent(double residual, double loading_exponent) {
+  const double bend = loading_exponent > 1.0 ? loading_exponent : 1.0;
+  const double least = (1.0 - residual) * (1.0 + bend) - 1.0;
+  return least > 1.0 ? least : 1.0;
+}
+
 /// Whether there is a law at all: one that the data do not determine is still one, and its status says so.
 constexpr bool has_numbers(LawStatus status) {
   return status == LawStatus::good || status == LawStatus::underdetermined;

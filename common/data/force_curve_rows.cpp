@@ -20,6 +20,7 @@ constexpr double kLargestSceneDelta = 0.9;  ///< largest Delta that is accepted;
 
 void CurveRows::read() {
   for (const CsvRow& row : file_.rows()) {
+    if (!at_.repeat.empty() && !has_force(row)) continue;  // repeats may be of unequal length
     const std::size_t sample = sample_of(row);
     const double delta = overlap(row);
     if (delta < 0.0)
@@ -29,6 +30,7 @@ void CurveRows::read() {
     else
       add_normal(row, delta, sample);
   }
+  leave_out_jitter();
   if (before_touch_ > 0)
     out_.remarks.push_back(fmt::format("{}: {} points before touch (negative overlap) are left out of the fit",
                                        file_.path(), before_touch_));
@@ -47,14 +49,21 @@ double CurveRows::required(const CsvRow& row, std::size_t column, Unit unit) con
 }
 
 double CurveRows::overlap(const CsvRow& row) const {
-  const double delta = at_.delta != CurveLayout::none ? required(row, at_.delta, Unit::none)
-                                                      : required(row, at_.hn, Unit::length) / out_.spec.shell_radius;
+  const double radius = out_.spec.shell_radius;
+  double delta = at_.delta != CurveLayout::none ? required(row, at_.delta, Unit::none)
+                                                : required(row, at_.hn, Unit::length) / radius;
+  if (at_.touch != 0.0) delta -= at_.touch / radius;
+  if (std::isfinite(at_.machine_stiffness))
+    if (const auto force = file_.number(row, at_.fn, Unit::force))
+      delta -= (*force - at_.zero_force) / (at_.machine_stiffness * radius);
   if (delta > kLargestSceneDelta)
     throw InputError(
         fmt::format("{}: overlap of {:.4g} Rs (Rs = {:.4g} m): allowed are at most {}; check unit and radius",
                     file_.where(row.line), delta, out_.spec.shell_radius, kLargestSceneDelta));
   return delta;
 }
+
+bool CurveRows::has_force(const CsvRow& row) const { return file_.number(row, at_.fn, Unit::force).has_value(); }
 
 bool CurveRows::is_rotated(const CsvRow& row) const {
   if (at_.ft == CurveLayout::none) return false;
@@ -83,13 +92,14 @@ std::size_t CurveRows::sample_of(const CsvRow& row) {
   const bool all = at_.sample == CurveLayout::none;
   const std::string file =
       at_.sample_name.empty() ? std::filesystem::path(file_.path()).stem().string() : at_.sample_name;
-  const std::string name = all ? file : row.cells[at_.sample];
+  std::string name = all ? file : row.cells[at_.sample];
   if (name.empty())
     throw InputError(fmt::format("{}: column \"{}\": the value is missing", file_.where(row.line),
                                  file_.columns()[at_.sample].title));
+  if (!at_.repeat.empty()) name += " " + at_.repeat;
   const auto [known, is_new] = index_.try_emplace(name, out_.samples.size());
   if (is_new) {
-    out_.samples.push_back({name, {}, {}, {}});
+    out_.samples.push_back({name, {}, {}, {}, {}});
     lines_.emplace_back();
     turns_.emplace_back();
   }
@@ -99,34 +109,79 @@ std::size_t CurveRows::sample_of(const CsvRow& row) {
 /// Such readings say where the zero of the force is.
 void CurveRows::add_before_touch(const CsvRow& row, std::size_t sample) {
   ++before_touch_;
-  if (const auto force = file_.number(row, at_.fn, Unit::force)) out_.samples[sample].before_touch.push_back(*force);
+  if (const auto force = file_.number(row, at_.fn, Unit::force))
+    out_.samples[sample].before_touch.push_back(*force - at_.zero_force);
 }
 
 void CurveRows::add_normal(const CsvRow& row, double delta, std::size_t index) {
   ForceCurve& sample = out_.samples[index];
   ForcePoint p;
   p.delta = delta;
-  p.force = required(row, at_.fn, Unit::force);
+  p.force = required(row, at_.fn, Unit::force) - at_.zero_force;
   if (at_.error != CurveLayout::none) {
     p.error = required(row, at_.error, Unit::force);
     if (p.error < 0.0)
       throw InputError(fmt::format("{}: column \"{}\": {} must not be negative", file_.where(row.line),
                                    file_.columns()[at_.error].title, row.cells[at_.error]));
   }
-  if (!sample.normal.empty() && delta <= sample.normal.back().delta) {
+  if (returns(row, delta, sample)) {
+    if (options_.unloading == Unloading::fit) return add_returned(p, sample);
     if (options_.unloading == Unloading::drop) {
       ++dropped_;
       return;
     }
     throw InputError(fmt::format(
         "{}: sample \"{}\": the overlap does not rise (Delta = {:.6g} after {:.6g}); a law is fitted to the loading "
-        "branch: remove unloading and repeated points, or leave them out with --set unloading=drop",
+        "branch: remove unloading and repeated points, or leave them out with --set unloading=drop (unloading=fit fits "
+        "a law to them)",
         file_.where(row.line), sample.name, delta, sample.normal.back().delta));
   }
   add_stiffness(row, delta, sample);
   sample.normal.push_back(p);
   lines_[index].push_back(row.line);
   turns_[index] = {delta, true, {}};
+}
+
+/// Whether a reading belongs to unloading or reloading: as its branch says, else by its overlap.
+bool CurveRows::returns(const CsvRow& row, double delta, const ForceCurve& sample) const {
+  const bool falls = !sample.normal.empty() && delta <= sample.normal.back().delta;
+  if (at_.branch == CurveLayout::none) return falls;
+  const std::string& word = row.cells[at_.branch];
+  if (word == "loading" && !falls) return false;
+  if ((word == "unloading" || word == "reloading") && falls) return true;
+  const bool known = word == "loading" || word == "unloading" || word == "reloading";
+  throw InputError(fmt::format(
+      "{}: column \"{}\": {}", file_.where(row.line), file_.columns()[at_.branch].title,
+      !known              ? fmt::format("\"{}\": must be loading, unloading or reloading", word)
+      : word == "loading" ? fmt::format("the overlap of a loading reading must rise (Delta = {:.6g} after {:.6g})",
+                                        delta, sample.normal.back().delta)
+                          : "unloading and reloading lie below the largest overlap so far; beyond it loading goes on"));
+}
+
+void CurveRows::add_returned(const ForcePoint& point, ForceCurve& sample) {
+  const ForcePoint& deepest = sample.normal.back();
+  if (sample.unloaded.empty() || sample.unloaded.back().deepest != deepest.delta)
+    sample.unloaded.push_back({deepest.delta, deepest.force, {}});
+  sample.unloaded.back().points.push_back(point);
+}
+
+/// Readings that fell back a little are jitter of the displacement, no unloading.
+void CurveRows::leave_out_jitter() {
+  constexpr std::size_t kLeastReadings = 3;
+  constexpr double kLeastDepth = 0.05;  // of the overlap where it begins
+  std::size_t left_out = 0;
+  for (ForceCurve& s : out_.samples)
+    std::erase_if(s.unloaded, [&](const UnloadedCurve& u) {
+      const auto least = std::ranges::min_element(u.points, {}, &ForcePoint::delta);
+      const bool kept = at_.branch != CurveLayout::none ||
+                        (u.points.size() >= kLeastReadings && least->delta < (1.0 - kLeastDepth) * u.deepest);
+      left_out += kept ? 0 : u.points.size();
+      return !kept;
+    });
+  if (left_out > 0)
+    out_.remarks.push_back(fmt::format(
+        "{}: {} readings whose overlap falls back by less than {:g} %, or fewer than {} in a row, are left out",
+        file_.path(), left_out, 100.0 * kLeastDepth, kLeastReadings));
 }
 
 /// kt as given: the two rotations whose slope it is.

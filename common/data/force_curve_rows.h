@@ -14,7 +14,12 @@ namespace softgrain {
 /// Where each quantity stands in a file; `none` when it is not there.
 struct CurveLayout {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
-  std::size_t hn = none, delta = none, fn = none, error = none, sample = none, ht = none, ft = none, kt = none;
+  std::size_t hn = none, delta = none, fn = none, error = none, sample = none, ht = none, ft = none, kt = none,
+              branch = none;
+  std::string repeat;                                                  ///< number of the repeat; empty: no repeats
+  double touch = 0.0;                                                  ///< displacement at first touch [m]
+  double zero_force = 0.0;                                             ///< force that is read without contact [N]
+  double machine_stiffness = std::numeric_limits<double>::infinity();  ///< [N/m]
   std::string sample_name;  ///< sample name of all rows, from a comment; empty: the name of the file
 };
 
@@ -31,11 +36,15 @@ class CurveRows {
  private:
   [[nodiscard]] double required(const CsvRow& row, std::size_t column, Unit unit) const;
   [[nodiscard]] double overlap(const CsvRow& row) const;
+  [[nodiscard]] bool has_force(const CsvRow& row) const;
   [[nodiscard]] bool is_rotated(const CsvRow& row) const;
   void add_tangential(const CsvRow& row, double delta, std::size_t sample);
   std::size_t sample_of(const CsvRow& row);  ///< index into the samples
   void add_before_touch(const CsvRow& row, std::size_t sample);
   void add_normal(const CsvRow& row, double delta, std::size_t index);
+  [[nodiscard]] bool returns(const CsvRow& row, double delta, const ForceCurve& sample) const;
+  static void add_returned(const ForcePoint& point, ForceCurve& sample);
+  void leave_out_jitter();
   void add_stiffness(const CsvRow& row, double delta, ForceCurve& sample) const;
   void note_falls();
   void require_enough() const;

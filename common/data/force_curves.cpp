@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <unordered_set>
 
@@ -60,13 +62,14 @@ const std::vector<ColumnName>& column_names() {
       {"sample", {"sample", "specimen", "test", "packing"}},
       {"ht", {"ht", "h_t", "tangential displacement"}},
       {"Ft", {"ft", "f_t", "tangential force"}},
-      {"kt", {"kt", "k_t", "tangential stiffness"}}};
+      {"kt", {"kt", "k_t", "tangential stiffness"}},
+      {"branch", {"branch", "phase"}}};
   return names;
 }
 
 std::size_t& place(CurveLayout& layout, std::size_t quantity) {
-  std::size_t* const places[] = {&layout.hn,     &layout.delta, &layout.fn, &layout.error,
-                                 &layout.sample, &layout.ht,    &layout.ft, &layout.kt};
+  std::size_t* const places[] = {&layout.hn, &layout.delta, &layout.fn, &layout.error, &layout.sample,
+                                 &layout.ht, &layout.ft,    &layout.kt, &layout.branch};
   return *places[quantity];
 }
 
@@ -98,26 +101,85 @@ void refuse_ambiguous(const CsvFile& file) {
                       file.where(file.header_line()), c.title));
 }
 
-CurveLayout layout_of(const CsvFile& file, std::vector<std::string>& remarks) {
-  CurveLayout layout;
+/// The quantity of a name, its index in column_names().
+std::optional<std::size_t> quantity_of(const std::string& name) {
+  for (std::size_t q = 0; q < column_names().size(); ++q) {
+    const auto& names = column_names()[q].names;
+    if (std::find(names.begin(), names.end(), name) != names.end()) return q;
+  }
+  return std::nullopt;
+}
+
+/// "fn 2" is Fn of repeat 2; without a number the repeat is empty. Overlap, force and its error may be numbered.
+struct NamedColumn {
+  std::size_t quantity = 0;
+  std::string repeat;
+};
+
+std::optional<NamedColumn> named_column(const std::string& name) {
+  constexpr std::size_t kNumbered = 4;  // hn, Delta, Fn, error
+  if (const auto q = quantity_of(name)) return NamedColumn{*q, ""};
+  const std::size_t digits = name.find_last_not_of("0123456789") + 1;
+  if (digits == name.size() || digits == 0) return std::nullopt;
+  const std::size_t end = name.find_last_not_of(" _-.#", digits - 1) + 1;
+  const auto q = quantity_of(name.substr(0, end));
+  if (!q || *q >= kNumbered) return std::nullopt;
+  return NamedColumn{*q, name.substr(digits)};
+}
+
+/// Columns by the repeat that they belong to; those without a number belong to all.
+using RepeatLayouts = std::map<std::string, CurveLayout>;
+
+RepeatLayouts columns_of(const CsvFile& file, std::vector<std::string>& remarks) {
+  RepeatLayouts out{{"", {}}};
   std::string unused;
   refuse_ambiguous(file);
   for (std::size_t c = 0; c < file.columns().size(); ++c) {
-    bool known = false;
-    for (std::size_t q = 0; q < column_names().size(); ++q) {
-      const auto& names = column_names()[q].names;
-      if (std::find(names.begin(), names.end(), file.columns()[c].name) == names.end()) continue;
-      known = true;
-      if (place(layout, q) != CurveLayout::none)
-        throw InputError(fmt::format("{}: columns \"{}\" and \"{}\" both name {}", file.where(file.header_line()),
-                                     file.columns()[place(layout, q)].title, file.columns()[c].title,
-                                     column_names()[q].quantity));
-      place(layout, q) = c;
+    const auto named = named_column(file.columns()[c].name);
+    if (!named) {
+      unused += (unused.empty() ? "\"" : ", \"") + file.columns()[c].title + "\"";
+      continue;
     }
-    if (!known) unused += (unused.empty() ? "\"" : ", \"") + file.columns()[c].title + "\"";
+    std::size_t& at = place(out[named->repeat], named->quantity);
+    if (at != CurveLayout::none)
+      throw InputError(
+          fmt::format("{}: columns \"{}\" and \"{}\" both name {}; repeats are numbered: Fn 1 [N], Fn 2 [N]",
+                      file.where(file.header_line()), file.columns()[at].title, file.columns()[c].title,
+                      column_names()[named->quantity].quantity));
+    at = c;
   }
   if (!unused.empty()) remarks.push_back(file.path() + ": not used: " + unused);
-  return layout;
+  return out;
+}
+
+/// One layout, or one for each repeat.
+std::vector<CurveLayout> layouts_of(const CsvFile& file, std::vector<std::string>& remarks) {
+  const RepeatLayouts columns = columns_of(file, remarks);
+  const CurveLayout& common = columns.at("");
+  if (columns.size() == 1) return {common};
+  const auto refuse = [&](const std::string& problem) {
+    throw InputError(fmt::format("{}: {}", file.where(file.header_line()), problem));
+  };
+  if (common.fn != CurveLayout::none)
+    refuse(fmt::format(
+        "column \"{}\" beside numbered ones: number the forces of all repeats (Fn 1 [N], Fn 2 [N]), or none",
+        file.columns()[common.fn].title));
+  if (common.ft != CurveLayout::none || common.kt != CurveLayout::none)
+    refuse("a tangential stiffness goes with one column of the force: give repeats by a column \"sample\"");
+  std::vector<CurveLayout> out;
+  for (const auto& [repeat, own] : columns) {
+    if (repeat.empty()) continue;
+    if (own.fn == CurveLayout::none)
+      refuse(fmt::format("repeat {} has no column of the force: Fn {} [N]", repeat, repeat));
+    CurveLayout one = common;
+    one.repeat = repeat;
+    for (std::size_t CurveLayout::*at : {&CurveLayout::hn, &CurveLayout::delta, &CurveLayout::fn, &CurveLayout::error})
+      if (own.*at != CurveLayout::none) one.*at = own.*at;
+    out.push_back(one);
+    if ((one.error == CurveLayout::none) != (out.front().error == CurveLayout::none))
+      refuse("give the standard error of the force of every repeat, or of none");
+  }
+  return out;
 }
 
 void require_columns(const CsvFile& file, const CurveLayout& at) {
@@ -150,6 +212,16 @@ const CsvNames kPoisson{"nu", "poisson ratio", "poissons ratio", "poisson number
 const CsvNames kFriction{"mu", "friction", "friction coefficient", "coefficient of friction"};
 const CsvNames kDensity{"density", "rho", "grain density"};
 const CsvNames kSample{"sample", "specimen", "test"};
+const CsvNames kTouch{"touch", "touch point", "displacement at touch"};
+const CsvNames kZeroForce{"force offset", "zero force"};
+const CsvNames kMachine{"machine stiffness", "frame stiffness"};
+
+/// What the machine adds to every reading.
+void read_machine(const CsvFile& file, CurveLayout& at) {
+  at.touch = file.quantity(kTouch, Unit::length, Range::any()).value_or(0.0);
+  at.zero_force = file.quantity(kZeroForce, Unit::force, Range::any()).value_or(0.0);
+  if (const auto k = file.quantity(kMachine, Unit::stiffness, Range::positive())) at.machine_stiffness = *k;
+}
 
 PairKind kind_of(const CsvFile& file, const ForceCurveOptions& options) {
   const auto said = file.word(kKind);
@@ -274,19 +346,31 @@ SaidByFile said_by_comments(const CsvFile& table) {
 ForceCurves read_force_curves(const std::string& path, const ForceCurveOptions& options) {
   const CsvFile file = CsvFile::read(path);
   ForceCurves out;
-  CurveLayout at = layout_of(file, out.remarks);
-  require_columns(file, at);
-  file.require_known_comments({kRadius, kModulus, kKind, kPoisson, kFriction, kDensity, kSample}, "a press test");
-  if (const auto sample = file.word(kSample)) at.sample_name = sample->value;
-  if (!at.sample_name.empty() && at.sample != CurveLayout::none)
+  std::vector<CurveLayout> layouts = layouts_of(file, out.remarks);
+  for (const CurveLayout& at : layouts) require_columns(file, at);
+  file.require_known_comments(
+      {kRadius, kModulus, kKind, kPoisson, kFriction, kDensity, kSample, kTouch, kZeroForce, kMachine}, "a press test");
+  const CurveLayout& first = layouts.front();
+  const auto sample = file.word(kSample);
+  if (sample && first.sample != CurveLayout::none)
     throw InputError(fmt::format("{}: samples are named by the column \"{}\": leave the comment out",
-                                 file.where(file.setting(kSample)->line), file.columns()[at.sample].title));
+                                 file.where(file.setting(kSample)->line), file.columns()[first.sample].title));
   out.kind = kind_of(file, options);
   out.spec = spec_of(file, options);
-  out.has_errors = at.error != CurveLayout::none;
-  CurveRows(file, at, options, out).read();
-  for (ForceCurve& s : out.samples)
-    if (at.ft != CurveLayout::none) complete_turns(s, options);
+  out.has_errors = first.error != CurveLayout::none;
+  for (CurveLayout& at : layouts) {
+    if (sample) at.sample_name = sample->value;
+    read_machine(file, at);
+    ForceCurves one;
+    one.spec = out.spec;
+    CurveRows(file, at, options, one).read();
+    for (ForceCurve& s : one.samples) {
+      if (at.ft != CurveLayout::none) complete_turns(s, options);
+      out.samples.push_back(std::move(s));
+    }
+    for (std::string& remark : one.remarks)
+      if (std::ranges::find(out.remarks, remark) == out.remarks.end()) out.remarks.push_back(std::move(remark));
+  }
   return out;
 }
 

@@ -20,12 +20,20 @@ struct ForcePoint {
   double error = std::numeric_limits<double>::quiet_NaN();  ///< standard error of the force [N]; NaN: not given
 };
 
+/// One unloading from the largest overlap so far, and the way back to it.
+struct UnloadedCurve {
+  double deepest = 0.0;            ///< Delta where it begins
+  double force = 0.0;              ///< Fn there [N]
+  std::vector<ForcePoint> points;  ///< in the order of the file; Delta at most `deepest`
+};
+
 /// One specimen (or one test of it).
 struct ForceCurve {
   std::string name;
   std::vector<ForcePoint> normal;           ///< Delta rising
   std::vector<TangentialPoint> tangential;  ///< angle_deg = 180 ht / (pi Rs); all count as converged
   std::vector<double> before_touch{};       ///< forces read at negative overlaps [N], which no law is fitted to
+  std::vector<UnloadedCurve> unloaded{};    ///< with Unloading::fit
 };
 
 /// All tests of one pair kind.
@@ -38,11 +46,15 @@ struct ForceCurves {
 };
 
 /// What to do with points behind the largest overlap so far.
-enum class Unloading { refuse, drop };
+enum class Unloading {
+  refuse,
+  drop,
+  fit  ///< they are the unloading branch; single readings that fell back are left out, with a remark
+};
 
 template <>
-inline constexpr auto enum_names<Unloading> = enum_name_list<Unloading>({{Unloading::refuse, "refuse"},
-                                                                         {Unloading::drop, "drop"}});
+inline constexpr auto enum_names<Unloading> =
+    enum_name_list<Unloading>({{Unloading::refuse, "refuse"}, {Unloading::drop, "drop"}, {Unloading::fit, "fit"}});
 
 /// What is said beside the file, for what the file does not say; both must not contradict each other.
 struct ForceCurveOptions {
@@ -61,8 +73,13 @@ struct ForceCurveOptions {
 /// Readings within 1e-3 of secant_angle_deg count as at 0 or +-secant_angle_deg.
 /// Reads one CSV file. Columns (any order, name [unit]): hn or overlap (with a unit of length) or Delta; Fn or force;
 /// optional sample, a standard error of Fn (se, error), and for the tangential law ht with Ft (Ft at ht = 0 is the
-/// prestrain), or kt. Other columns are named in a remark. Comments may say "# kind = soft-solid", "# Rs = 16 mm",
-/// "# E [MPa] = 0.5", "# nu = ...", "# mu = ...", "# density [kg/m^3] = ...", "# sample = ..."; other comments that
+/// prestrain), or kt; `branch` (loading, unloading, reloading), which else is told by the overlap. Repeats in columns:
+/// numbered Fn 1, Fn 2, ... with a common overlap or hn 1, hn 2, ..., each a sample, whose cells may be empty. Other
+/// columns are named in a remark. Comments may say "# kind = soft-solid", "# Rs = 16 mm",
+/// "# E [MPa] = 0.5", "# nu = ...", "# mu = ...", "# density [kg/m^3] = ...", "# sample = ..."; and of the machine "#
+/// touch = 0.31 mm" (displacement at first touch),
+/// "# force offset = 12 mN" (force read without contact) and "# machine stiffness = 80 N/mm" (in series with the
+/// specimen): hn = read displacement - touch - (Fn - force offset)/stiffness; other comments that
 /// name a value are refused. Throws InputError with file and line: unknown unit, missing value, number that is not
 /// finite, overlap that falls, too few points (5), kind, Rs or E not given or said twice in different ways.
 ForceCurves read_force_curves(const std::string& path, const ForceCurveOptions& options);

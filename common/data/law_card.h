@@ -5,6 +5,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,16 @@ struct ThresholdPowerLaw {
 
   [[nodiscard]] double value(double overlap_ratio) const;
   [[nodiscard]] double derivative(double overlap_ratio) const;  ///< d value / d Delta, 0 below delta
+};
+
+/// How a contact unloads from its deepest Delta_max, and comes back: F = F(Delta_max) [(Delta - Delta_p)/(Delta_max -
+/// Delta_p)]^exponent, 0 below Delta_p = delta + residual (Delta_max - delta); see UnloadingBranch. Dimensionless.
+struct UnloadingLaw {
+  Estimate residual;         ///< in [0, 1)
+  Estimate exponent;         ///< at least least_unloading_exponent()
+  double correlation = 0.0;  ///< of their errors
+  int samples = 0;           ///< samples that were unloaded
+  int points = 0;            ///< readings of unloading and reloading
 };
 
 /// The mean measured curve behind a law, one entry per Delta. Dimensionless.
@@ -85,6 +96,7 @@ struct PairLaw {
   bool has_tangential_secant = false;
   /// kt/kn that runs take where neither was fitted; NaN: not said, see assumed_kt_ratio().
   double kt_ratio = std::numeric_limits<double>::quiet_NaN();
+  std::optional<UnloadingLaw> unloading{};  ///< empty: not measured, the contact gives back what it took
   std::vector<double> covariance;  ///< 7 x 7 row-major over kLawParameterNames; rows of unfitted parameters are zero
   double delta_min = 0.0;          ///< validity: range of Delta that was fitted
   double delta_max = 0.0;

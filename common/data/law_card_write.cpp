@@ -106,6 +106,18 @@ void write_assumed(Out out, double kt_ratio) {
                  real(kt_ratio));
 }
 
+void write_unloading(Out out, const UnloadingLaw& u) {
+  fmt::format_to(
+      out,
+      "\n# Unloading from the deepest Delta_max, and back: F = F(Delta_max) [(Delta - Delta_p)/(Delta_max - "
+      "Delta_p)]^exponent,\n# 0 below Delta_p = delta + residual (Delta_max - delta). Without this table the "
+      "contact gives back what it took.\n[pair.unloading]\nsamples = {}\npoints = {}\ncorrelation = {}  # "
+      "of the errors of both numbers\n",
+      u.samples, u.points, real(u.correlation));
+  write_estimate(out, "pair.unloading.residual", u.residual, "");
+  write_estimate(out, "pair.unloading.exponent", u.exponent, "");
+}
+
 void write_pair(Out out, const PairLaw& pair, const LawCard& card) {
   const SoftParticleSpec& spec = card.spec;
   fmt::format_to(out, "\n[[pair]]\nkind = \"{}\"\nstatus = {}\nreason = {}\n", to_string(pair.kind),
@@ -123,6 +135,7 @@ void write_pair(Out out, const PairLaw& pair, const LawCard& card) {
                  to_string(pair.beyond));
   for (const LawPartName& part : kLawParts) write_part(out, pair, part, spec);
   if (!has_tangential(pair) && has_numbers(pair.status)) write_assumed(out, assumed_kt_ratio(card, pair));
+  if (pair.unloading) write_unloading(out, *pair.unloading);
   write_covariance(out, pair);
 }
 

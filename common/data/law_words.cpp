@@ -109,6 +109,27 @@ std::string kt_remark(const LawCard& card) {
   return text;
 }
 
+std::string unloading_text(const PairLaw& law) {
+  if (!law.unloading) return "no unloading branch: the contact gives back the work that it took";
+  const UnloadingLaw& u = *law.unloading;
+  const ThresholdPowerLaw& n = law.normal;
+  std::string text =
+      fmt::format("unloading: residual {}, exponent {}", bracket_text(u.residual), bracket_text(u.exponent));
+  const double end = law.delta_max;
+  const double force = n.value(end);
+  if (!(force > 0.0)) return text;
+  const double threshold = n.delta.value;
+  const double length = (1.0 - u.residual.value) * (end - threshold);
+  const double power = n.b.value + 1.0;
+  const double work =
+      n.a.value * (std::pow(end, power) - std::pow(threshold, power)) / power + n.c.value * (end - threshold);
+  return text + fmt::format(
+                    "; from Delta = {:.3g} it begins {:.2f} times as steep as loading, and {:.0f} % of the work "
+                    "comes back",
+                    end, u.exponent.value * force / (length * n.derivative(end)),
+                    100.0 * force * length / ((u.exponent.value + 1.0) * work));
+}
+
 std::string unloading_text(const LawTableEntry& entry) {
   if (!entry.unloading_measured) return "unloading was not measured";
   std::string text = fmt::format("unloading is {:.2f} times as steep as loading", entry.unloading.value);

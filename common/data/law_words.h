@@ -67,6 +67,10 @@ std::string slides_text(const LawTableEntry& entry);
 /// none was measured; empty: all were, by a slow turn or in an experiment.
 std::string kt_remark(const LawCard& card);
 
+/// How the contact unloads at the end of its range: what of the depth stays, how steeply the force begins to fall, and
+/// the share of the work that comes back; that it gives back all where no branch was measured.
+std::string unloading_text(const PairLaw& law);
+
 /// "unloading is 1.16 times as steep as loading", or that it was not measured.
 std::string unloading_text(const LawTableEntry& entry);
 

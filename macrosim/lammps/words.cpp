@@ -205,7 +205,15 @@ AnyLaw law_of_card(const std::string& path, const std::string& kind, const CardC
   law.damping = choices.damping;
   law.range = range_of(pair, choices.beyond, where);
   law.partner_is_soft = kind == "soft-soft";
-  return law;
+  if (pair.at_path("unloading").as_table() == nullptr) return law;
+  const UnloadingBranch branch{number(pair, "unloading.residual.value", where),
+                               number(pair, "unloading.exponent.value", where)};
+  constexpr double kRounding = 1e-9;
+  if (!(branch.residual >= 0.0 && branch.residual < 1.0) ||
+      branch.exponent < least_unloading_exponent(branch.residual, law.normal.b) * (1.0 - kRounding))
+    throw InputError(where + ": unloading needs a residual in [0, 1) and an exponent with which no cycle gains energy");
+  return SoftUnloading{
+      law, {branch.residual, std::max(branch.exponent, least_unloading_exponent(branch.residual, law.normal.b))}};
 }
 
 }  // namespace softgrain::lammps

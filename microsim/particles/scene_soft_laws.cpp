@@ -34,7 +34,13 @@ struct CardChoices {
   double damping = 0.0;
   bool secant = false;
   std::optional<Extrapolation> beyond{};
+  bool unloading = true;
 };
+
+bool read_unloading(const SceneTable& t) {
+  return t.flag({"unloading", "use the measured unloading branch", "true for a law card that has one, else false"},
+                false);
+}
 
 CardChoices read_card_choices(const SceneTable& t) {
   CardChoices c;
@@ -44,13 +50,17 @@ CardChoices read_card_choices(const SceneTable& t) {
   c.secant = t.choice<TangentialSlope>({"kt", "law card: slope that gives the tangential stiffness"}) ==
              TangentialSlope::secant;
   c.beyond = read_beyond(t);
+  const bool said = t.has("unloading");
+  c.unloading = read_unloading(t) || !said;
   return c;
 }
 
-SoftContact card_law(const SceneTable& t, const LawCard& card, PairKind kind) {
+CardLaw card_law(const SceneTable& t, const LawCard& card, PairKind kind) {
   const CardChoices c = read_card_choices(t);
+  if (const PairLaw* law = card.find(kind); law != nullptr && !law->unloading && t.has("unloading") && c.unloading)
+    t.throw_error("unloading", "unloading was not measured for this law card");
   try {
-    return make_soft_contact(card, kind, c.modulus, c.friction, c.damping, c.secant, c.beyond);
+    return make_card_law(card, kind, c.modulus, c.friction, c.damping, c.secant, c.beyond, c.unloading);
   } catch (const Error& e) {
     t.throw_error("file", e.what());
   }
@@ -91,7 +101,7 @@ MultiContactChoices read_choices(const SceneTable& t, LawForm best) {
                      .value_or(best);
   choices.modulus = read_modulus(t);
   if (t.has("mu")) choices.friction = t.number("mu", Unit::none, Range::not_negative());
-  choices.unloading = t.flag({"unloading", "law table: use the measured unloading branch"}, false);
+  choices.unloading = read_unloading(t);
   choices.rolling = t.flag({"rolling", "law table: use the rolling resistance, if measured"}, true);
   choices.beyond = read_beyond(t);
   return choices;
@@ -137,7 +147,7 @@ std::int32_t SoftLawReader::soft_of(const SceneTable& t, const PairOfMaterials& 
 }
 
 void SoftLawReader::read_card(const SceneTable& t, const PairOfMaterials& pair, const std::string& path) {
-  for (const char* key : {"form", "solid_fraction", "range", "unloading", "rolling"})
+  for (const char* key : {"form", "solid_fraction", "range", "rolling"})
     if (t.has(key))
       t.throw_error(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
   const auto kind = t.choice<PairKind>(kPairKindKey);
@@ -147,16 +157,14 @@ void SoftLawReader::read_card(const SceneTable& t, const PairOfMaterials& pair, 
         std::find(out_.remarks.begin(), out_.remarks.end(), remark) == out_.remarks.end())
       out_.remarks.push_back(remark);
   if (kind == PairKind::soft_soft) {
-    out_.laws.set(pair.first, pair.second, card_law(t, card, PairKind::soft_soft));
+    out_.laws.set(pair.first, pair.second, any_law(card_law(t, card, PairKind::soft_soft)));
     return;
   }
-  SoftContact law = card_law(t, card, PairKind::soft_solid);
+  const AnyLaw law = any_law(card_law(t, card, PairKind::soft_solid));  // its body i is the soft one
   const std::int32_t soft = soft_of(t, pair);
   const std::int32_t solid = pair.first + pair.second - soft;
-  law.i_is_soft = true;
   out_.laws.set(soft, solid, law, true);
-  law.i_is_soft = false;
-  out_.laws.set(solid, soft, law, true);
+  out_.laws.set(solid, soft, mirrored(law), true);
 }
 
 void SoftLawReader::read_table(const SceneTable& t, const PairOfMaterials& pair, const std::string& path) {

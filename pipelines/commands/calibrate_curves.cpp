@@ -10,16 +10,12 @@
 #include "common/data/law_words.h"
 #include "common/io/text_file.h"
 #include "pipelines/law/law_fit.h"
+#include "pipelines/law/press_test.h"
 #include "pipelines/report/report.h"
 
 namespace softgrain {
 
 namespace {
-
-bool is_curve_file(const std::string& path) {
-  const auto form = file_form(path);
-  return form == FileForm::csv || form == FileForm::tsv || form == FileForm::txt || form == FileForm::dat;
-}
 
 struct CurveSettings {
   FitOptions fit;
@@ -43,8 +39,10 @@ std::optional<double> quantity(const char* option, const std::string& text, Unit
 CurveSettings read_settings(const SceneTable& t, const CommonOptions& options) {
   CurveSettings s;
   s.fit = read_fit_settings(t);
-  s.curves.unloading = t.choice<Unloading>(
-      {"unloading", "points whose overlap does not rise: `refuse` them or `drop` them"}, Unloading::refuse);
+  s.curves.unloading = t.choice<Unloading>({"unloading",
+                                            "points whose overlap does not rise: `fit` an unloading branch to them, "
+                                            "`drop` them or `refuse` them"},
+                                           Unloading::fit);
   s.mirror = t.flag(
       {"mirror",
        "true: derive the kind of contact that was not measured by symmetry (two equal particles each take half of the "
@@ -96,11 +94,15 @@ std::vector<std::size_t> drawn_points(const std::vector<ForcePoint>& points, std
 
 DrawnSample drawn(const ForceCurves& kind, const ForceCurve& s, std::size_t most) {
   DrawnSample one{kind.kind, s.name, {}, {}, {}, s.normal.size(), s.tangential.size()};
-  for (const std::size_t k : drawn_points(s.normal, most)) {
-    const ForcePoint& p = s.normal[k];
+  const auto add = [&](const ForcePoint& p) {
     one.delta.push_back(p.delta);
     one.force.push_back(p.force);
     if (kind.has_errors) one.error.push_back(p.error);
+  };
+  for (const std::size_t k : drawn_points(s.normal, most)) add(s.normal[k]);
+  for (const UnloadedCurve& u : s.unloaded) {
+    one.points = one.points.value_or(0) + u.points.size();
+    for (const std::size_t k : drawn_points(u.points, most)) add(u.points[k]);
   }
   return one;
 }
@@ -129,7 +131,10 @@ void note_thinned(const std::vector<ForceCurves>& curves, const std::vector<Draw
   std::size_t kept = 0;
   for (const ForceCurves& kind : curves) {
     samples += kind.samples.size();
-    for (const ForceCurve& s : kind.samples) points += s.normal.size();
+    for (const ForceCurve& s : kind.samples) {
+      points += s.normal.size();
+      for (const UnloadedCurve& u : s.unloaded) points += u.points.size();
+    }
   }
   for (const DrawnSample& one : drawn) kept += one.delta.size();
   if (kept < points)
@@ -140,7 +145,8 @@ void note_thinned(const std::vector<ForceCurves>& curves, const std::vector<Draw
 
 std::string force_line(const FitReport& report, const SoftParticleSpec& spec) {
   const std::string line = verdict_text(report.law) + "\n";
-  return report.law.normal.b.value <= 0.0 ? line : line + normal_law_text(report, spec);
+  if (report.law.normal.b.value <= 0.0) return line;
+  return line + normal_law_text(report, spec) + (report.law.unloading ? "  " + unloading_text(report.law) + "\n" : "");
 }
 
 /// Macro scenes ask for both kinds of contact.
@@ -152,6 +158,17 @@ void add_missing_kind(const ExperimentFit& fit, std::vector<std::string>& remark
                   "them from these "
                   "by symmetry with --set mirror=true",
                   solid ? "soft-soft" : "soft-solid"));
+}
+
+/// What a macro run takes for the friction between particles.
+std::string friction_text(const SoftParticleSpec& spec) {
+  return is_known(spec.friction)
+             ? fmt::format("friction of a macro run: mu = {:g} of the table, unless macro.mu says another",
+                           spec.friction)
+             : fmt::format(
+                   "the table gives no friction (a comment \"# mu = ...\"): a macro run takes mu = {:g}, unless "
+                   "macro.mu says another",
+                   MacroSpec{}.friction);
 }
 
 }  // namespace
@@ -186,6 +203,7 @@ ExitStatus calibrate_curves(const CommonOptions& options) {
     for (const std::string& one : implausible_forces(kind))
       summary.head.warnings.push_back(to_string(kind.kind) + ": " + one);
   add_missing_kind(fit, remarks);
+  remarks.push_back(friction_text(fit.card.spec));
   if (const std::string remark = kt_remark(fit.card); !remark.empty()) summary.head.warnings.push_back(remark);
   std::string console;
   for (const FitReport& r : fit.reports) {

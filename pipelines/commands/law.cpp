@@ -43,11 +43,12 @@ void require_fitting_options(const LawOptions& o, const FittedLaw& file) {
     refuse(o, {"--form", "--arrangement", "--partner", "--ratio", "--shallow", "--solid-fraction", "--range"},
            "goes with a law table; " + file.path + " is a law card, which knows pairs alone");
   else if (!pairs)
-    refuse(o, {"--kind"},
+    refuse(o, {"--kind", "--deepest"},
            "goes with a law card; " + file.path + " is a law table: give --partner plane, solid or soft");
   if (pairs)
     refuse(o,
-           {"--delta", "--from", "--to-delta", "--steps", "--arrangement", "--partner", "--ratio", "--shallow", "--kt"},
+           {"--delta", "--from", "--to-delta", "--steps", "--deepest", "--arrangement", "--partner", "--ratio",
+            "--shallow", "--kt"},
            "does not go with --to lammps-table, which has --kind, --ratios, --rows and --delta-max");
   else
     refuse(o, {"--ratios", "--rows", "--delta-max"}, "goes with --to lammps-table");
@@ -129,18 +130,22 @@ ValueUnits units_of(const LawOptions& o, const FittedLaw& file) {
 std::vector<ValueTable> card_tables(const LawOptions& o, const FittedLaw& file, std::int64_t steps) {
   std::vector<ValueTable> out;
   const std::vector<PairKind> wanted = kinds_of(o);
+  std::optional<double> deepest;
+  if (has(o.given, "--deepest")) deepest = positive(o, "--deepest", o.deepest, kLargestDelta);
   for (const PairKind kind : kPairKinds) {
     const PairLaw* pair = file.card()->find(kind);
     const bool named = std::ranges::find(wanted, kind) != wanted.end();
     if (wanted.empty() ? pair == nullptr || !has_numbers(pair->status) : !named) continue;
     const auto values = [&](const std::vector<double>& at) {
-      return law::card_values(*file.card(), kind, at, o.beyond);
+      return law::card_values(*file.card(), kind, at, o.beyond, deepest);
     };
     if (pair == nullptr) (void)values({});  // says what is wrong
     ValueTable t;
     t.law = to_string(kind);
     t.status = pair->status;
     t.remark = pair->reason;
+    if (deepest)
+      append_part(t.remark, fmt::format("below Delta = {:g} the contact unloads, without intervals", *deepest));
     t.beyond = o.beyond.value_or(pair->beyond);
     t.use_secant = o.tangential == TangentialSlope::secant;
     t.points = values(overlaps(o, pair->delta_max, steps));

@@ -45,6 +45,8 @@ void add_law_choices(CLI::App& app, LawOptions& o) {
          "Cards and pair tables: kind of pair; default all")
       ->option_text(alternatives<PairKind>())
       ->check(CLI::IsMember(all_enum_names<PairKind>()).description(""));
+  app.add_option("--deepest", o.deepest, "Cards: values of a contact that was pressed in so far before and unloads")
+      ->option_text("D");
   add_choice<Extrapolation>(app, "--beyond", o.beyond, "Beyond the measured range, instead of what the law says");
   app.add_option("--E", o.modulus, "Young's modulus, \"0.5 MPa\" or in Pa; default as measured. Asks for SI units")
       ->option_text("E");

@@ -40,6 +40,7 @@ struct LawOptions {
   double from = 0.0;
   double to_delta = -1.0;  ///< end of the range of overlaps, --to of eval; negative: the end of the law's range
   std::int64_t steps = 11;
+  double deepest = -1.0;        ///< --deepest: overlap from which a contact of a card unloads; negative: it is loaded
   std::vector<PairKind> kinds;  ///< --kind
   TangentialSlope tangential = TangentialSlope::initial;
   std::optional<Extrapolation> beyond;  ///< empty: what the law says

@@ -209,8 +209,8 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
         ->option_text("N")
         ->check(CLI::Range(8, 100000).description(""));
     app.add_option("--law", o.law,
-                   "Macro scenes: law card or law table of the soft particles; default that of the scene")
-        ->option_text("LAW.toml");
+                   "Macro scenes: law card, law table or press test (.csv) of the soft particles; default as the scene says")
+        ->option_text("LAW");
   }
 }
 

@@ -37,27 +37,18 @@ ForceCurveOptions assumed_values(const CsvFile& table, Findings& out) {
   return options;
 }
 
-/// An unloading branch, which calibrate refuses unless it is told to leave it out, is left out here with a warning.
-ForceCurves curves_of(const CsvFile& table, ForceCurveOptions& options, Findings& out) {
-  try {
-    return read_force_curves(table.path(), options);
-  } catch (const InputError& e) {
-    options.unloading = Unloading::drop;
-    ForceCurves curves = read_force_curves(table.path(), options);
-    out.warn(fmt::format("softgrain calibrate needs --set unloading=drop: {}", e.what()));
-    return curves;
-  }
-}
-
 void check_force_curves(const CsvFile& table, Findings& out) {
   ForceCurveOptions options = assumed_values(table, out);
-  ForceCurves curves = curves_of(table, options, out);
+  options.unloading = Unloading::fit;
+  ForceCurves curves = read_force_curves(table.path(), options);
   (void)subtract_offsets(curves);  // its remarks say it
   std::size_t points = 0;
+  std::size_t returned = 0;
   double largest_delta = 0.0;
   double largest_force = 0.0;
   for (const ForceCurve& s : curves.samples) {
     points += s.normal.size() + s.tangential.size();
+    for (const UnloadedCurve& u : s.unloaded) returned += u.points.size();
     for (const ForcePoint& p : s.normal) {
       largest_delta = std::max(largest_delta, p.delta);
       largest_force = std::max(largest_force, p.force);
@@ -67,6 +58,8 @@ void check_force_curves(const CsvFile& table, Findings& out) {
           fmt::format("{}force over overlap of an experiment; softgrain calibrate fits a law to it", kNoScene));
   out.add("samples", curves.samples.size(), fmt::format("{} samples, {} points", curves.samples.size(), points));
   out.facts["points"] = points;
+  if (returned > 0)
+    out.add("unloading_points", returned, fmt::format("{} points of unloading, to which a branch is fitted", returned));
   if (!options.kind) out.add("contact", to_string(curves.kind), "contact: " + to_string(curves.kind));
   if (!options.shell_radius)
     out.add("largest_delta", largest_delta,

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "common/contact/make_laws.h"
+#include "common/core/error.h"
 #include "pipelines/law/law_values.h"
 
 namespace softgrain::law {
@@ -9,12 +10,13 @@ namespace softgrain::law {
 namespace {
 
 /// Unit radius and modulus: what the loop computes is dimensionless.
-ContactResponse<3> ask(const SoftContact& contact, double delta) {
+ContactResponse<3> ask(const CardLaw& contact, double delta, double deepest) {
   ContactState<3> state;
   state.overlap = delta;
+  state.memory = deepest;
   state.normal[0] = 1.0;
   state.constants.a = 1.0;
-  return contact.evaluate(state);
+  return std::visit([&](const auto& law) { return law.evaluate(state); }, contact);
 }
 
 Where place(const PairLaw& law, double delta) {
@@ -27,20 +29,24 @@ Where place(const PairLaw& law, double delta) {
 }  // namespace
 
 std::vector<LawPoint> card_values(const LawCard& card, PairKind kind, const std::vector<double>& deltas,
-                                  std::optional<Extrapolation> beyond) {
-  const auto contact = [&](bool secant) { return make_soft_contact(card, kind, 1.0, 0.0, 0.0, secant, beyond); };
-  const SoftContact initial = contact(false);
-  const SoftContact secant = contact(true);
+                                  std::optional<Extrapolation> beyond, std::optional<double> deepest) {
+  const auto contact = [&](bool secant) {
+    return make_card_law(card, kind, 1.0, 0.0, 0.0, secant, beyond, deepest.has_value());
+  };
+  const CardLaw initial = contact(false);
+  const CardLaw secant = contact(true);
   const PairLaw& law = *card.find(kind);
+  if (deepest && !law.unloading) throw InputError("law card: no unloading branch of the " + to_string(kind) + " law");
+  const Extrapolation policy = beyond.value_or(law.beyond);
   std::vector<LawPoint> out;
   for (const double delta : deltas) {
     LawPoint p;
     p.delta = delta;
     p.where = place(law, delta);
-    p.refused = p.where == Where::beyond && initial.range.beyond == Extrapolation::error;
-    p.clamped = p.where == Where::beyond && initial.range.beyond == Extrapolation::clamp;
-    const ContactResponse<3> r = ask(initial, delta);
-    const bool measured = p.where != Where::beyond;
+    p.refused = p.where == Where::beyond && policy == Extrapolation::error;
+    p.clamped = p.where == Where::beyond && policy == Extrapolation::clamp;
+    const ContactResponse<3> r = ask(initial, delta, deepest.value_or(0.0));
+    const bool measured = p.where != Where::beyond && !(deepest && delta < *deepest);
     const auto quantity = [&](double value, const auto& interval, LawPart part) {
       return measured ? Quantity{value, interval(law, part, delta)} : Quantity{value, std::nullopt};
     };
@@ -49,8 +55,8 @@ std::vector<LawPoint> card_values(const LawCard& card, PairKind kind, const std:
     if (has_part(law, LawPart::tangential_initial))
       p.tangential_initial = quantity(r.tangential_stiffness, value_interval, LawPart::tangential_initial);
     if (has_part(law, LawPart::tangential_secant))
-      p.tangential_secant =
-          quantity(ask(secant, delta).tangential_stiffness, value_interval, LawPart::tangential_secant);
+      p.tangential_secant = quantity(ask(secant, delta, deepest.value_or(0.0)).tangential_stiffness, value_interval,
+                                     LawPart::tangential_secant);
     out.push_back(std::move(p));
   }
   return out;

@@ -6,6 +6,8 @@
 #include "common/core/error.h"
 #include "common/data/multi_contact_replicates.h"
 #include "common/io/scene.h"
+#include "common/io/text_file.h"
+#include "pipelines/law/press_test.h"
 
 namespace softgrain {
 
@@ -47,6 +49,7 @@ std::string kind_text(const FittedLaw& law) {
 
 FittedLaw load_law(const std::string& given) {
   const std::string path = file_in(given);
+  if (is_curve_file(path)) return {card_of_press_test(path), path, read_text(path)};
   if (std::filesystem::path(path).extension() == ".h5")
     throw InputError(path + ": give the card or table itself, the .toml beside it");
   return load_law(Scene::load(path));

@@ -35,7 +35,8 @@ std::string kind_text(const FittedLaw& law);
 
 /// Reads a card (with bands and measured curve when the .h5 is beside it), a table (without its refits), a card of the
 /// cell law, or those of a run directory (law_table.toml before law.toml and cell_law.toml). They are told apart by
-/// content: [[pair]], [[entry]], [cell]. Throws InputError with file and line for anything else, IoError.
+/// content: [[pair]], [[entry]], [cell]. A table of a press test (.csv, .tsv, .txt, .dat) becomes a card by
+/// card_of_press_test(). Throws InputError with file and line for anything else, IoError.
 FittedLaw load_law(const std::string& path);
 FittedLaw load_law(const Scene& file);
 

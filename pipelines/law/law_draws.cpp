@@ -174,8 +174,23 @@ void set_part(ThresholdPowerLaw& part, double a, double b, double delta) {
   part.c.value = -a * std::pow(delta, b);
 }
 
+// Of unloading branches, behind the numbers of all pairs: residual and exponent of each.
+constexpr std::size_t kBranchNumbers = 2;
+
+bool is_by_symmetry_of(const PairLaw* measured, const PairLaw& law) {
+  return measured != nullptr && measured->unloading &&
+         measured->unloading->residual.value == law.unloading->residual.value;
+}
+
+void set_branch(UnloadingLaw& branch, double residual, double exponent, double loading_exponent) {
+  constexpr double kMost = 0.98;  // a contact that gives back nothing has no stiffness
+  branch.residual.value = std::clamp(residual, 0.0, kMost);
+  branch.exponent.value = std::max(exponent, least_unloading_exponent(branch.residual.value, loading_exponent));
+}
+
 LawCard card_of_numbers(const LawCard& card, const std::vector<double>& numbers) {
   LawCard out = card;
+  std::size_t branch = card.pairs.size() * kPairNumbers;
   for (std::size_t k = 0; k < out.pairs.size(); ++k) {
     PairLaw& p = out.pairs[k];
     std::vector<double> n(numbers.begin() + static_cast<std::ptrdiff_t>(k * kPairNumbers),
@@ -186,8 +201,28 @@ LawCard card_of_numbers(const LawCard& card, const std::vector<double>& numbers)
     set_part(p.normal, n[0], std::max(n[1], 1.01), delta);
     if (p.has_tangential_initial) set_part(p.tangential_initial, n[3], n[4], delta);
     if (p.has_tangential_secant) set_part(p.tangential_secant, n[5], n[6], delta);
+    if (!p.unloading) continue;
+    set_branch(*p.unloading, numbers[branch], numbers[branch + 1], p.normal.b.value);
+    branch += kBranchNumbers;
   }
   return out;
+}
+
+/// Normal draws of the branch, by the half-width of its intervals, which holds Student's t; errors that are not known
+/// scatter nothing.
+std::vector<std::vector<double>> branch_draws(const UnloadingLaw& u, std::int64_t count, std::uint64_t stream) {
+  const auto deviation = [](const Estimate& e) {
+    const double above = (e.high - e.value) / kNormal95;
+    const double below = (e.value - e.low) / kNormal95;
+    const double one = std::max(std::isfinite(above) ? above : 0.0, std::isfinite(below) ? below : 0.0);
+    return one > 0.0 ? one : std::isfinite(e.standard_error) ? e.standard_error : 0.0;
+  };
+  constexpr double kMostCorrelation = 0.999;  // of two samples it is 1, which has no draws
+  const double correlation = std::clamp(u.correlation, -kMostCorrelation, kMostCorrelation);
+  const double r = deviation(u.residual);
+  const double m = deviation(u.exponent);
+  return normal_draws({u.residual.value, u.exponent.value}, {r * r, correlation * r * m, correlation * r * m, m * m},
+                      count, stream);
 }
 
 /// Normal in the logarithm of what is positive: its variance there is that of the number over its square.
@@ -261,11 +296,38 @@ std::vector<double> card_probes(const LawCard& card) {
   std::vector<double> out;
   for (const PairLaw& p : card.pairs)
     for (const double h : kProbes) out.push_back(p.normal.value(h));
+  for (const PairLaw& p : card.pairs) {
+    if (!p.unloading) continue;
+    const double length = (1.0 - p.unloading->residual.value) * (kProbes.back() - p.normal.delta.value);
+    for (const double h : kProbes) {
+      const double share = 1.0 - (kProbes.back() - h) / length;
+      const double force = p.normal.value(kProbes.back());
+      out.push_back(share > 0.0 ? force * std::pow(share, p.unloading->exponent.value) : 0.0);
+    }
+  }
   return out;
 }
 
-LawDraws card_draws(const LawCard& card, const LawSources& sources, const NamedLaws& named, const MacroSpec& spec,
+/// Adds the draws of all unloading branches; one that follows by symmetry is drawn with the other.
+void add_branches(const LawCard& card, std::int64_t count, LawDraws& out) {
+  constexpr std::uint64_t kStream = 101;  // apart from those of pairs
+  for (std::size_t k = 0; k < card.pairs.size(); ++k) {
+    const PairLaw& p = card.pairs[k];
+    if (!p.unloading) continue;
+    const PairLaw* measured = mirrored_from(card, p);
+    const bool together = is_by_symmetry_of(measured, p);
+    const std::size_t place = together ? static_cast<std::size_t>(measured - card.pairs.data()) : k;
+    const auto own = branch_draws(*p.unloading, count, kStream + place);
+    for (std::size_t r = 0; r < own.size(); ++r) out.draws[r].insert(out.draws[r].end(), own[r].begin(), own[r].end());
+    out.numbers.insert(out.numbers.end(), {p.unloading->residual.value, p.unloading->exponent.value});
+  }
+}
+
+LawDraws card_draws(const LawCard& of, const LawSources& sources, const NamedLaws& named, const MacroSpec& spec,
                     std::int64_t count) {
+  LawCard card = of;
+  if (!sources.card_unloading)
+    for (PairLaw& p : card.pairs) p.unloading.reset();
   LawDraws out;
   out.law = named;
   out.draws.resize(static_cast<std::size_t>(count));
@@ -277,14 +339,15 @@ LawDraws card_draws(const LawCard& card, const LawSources& sources, const NamedL
       if (kPairLogarithm[j]) numbers[j] = std::log(std::max(numbers[j], 1e-300));
     out.numbers.insert(out.numbers.end(), numbers.begin(), numbers.end());
   }
+  add_branches(card, count, out);
   out.origin = fmt::format("{} draws from the covariance of the law card", count);
   out.discrepancy_origin = "not known: a law card has no configurations that its fit did not see";
   const LogForces log_forces(card_probes(card));
   out.effects = [=](const std::vector<double>& numbers) {
     return log_forces(card_probes(card_of_numbers(card, numbers)));
   };
-  out.with = [=, beyond = sources.beyond](const std::vector<double>& numbers) {
-    NamedLaws law = pair_law_of(card_of_numbers(card, numbers), spec, named.name, beyond);
+  out.with = [=, beyond = sources.beyond, unloading = sources.card_unloading](const std::vector<double>& numbers) {
+    NamedLaws law = pair_law_of(card_of_numbers(card, numbers), spec, named.name, beyond, unloading);
     law.tag = law.identity.hash;
     return law;
   };

@@ -79,7 +79,21 @@ struct PairLawSummary {
   int points = 0;
   double chi2_per_dof = 0.0;
   double quality = 0.0;
+  struct Unloading {
+    Estimate residual;
+    Estimate exponent;
+    int samples = 0;
+    int points = 0;
+  };
+  std::optional<Unloading> unloading{};  ///< empty: not measured
 };
+
+void fields(auto&& visit, Of<PairLawSummary::Unloading> auto& s) {
+  estimate_fields(visit, "residual", s.residual);
+  estimate_fields(visit, "exponent", s.exponent);
+  visit("samples", s.samples);
+  visit("points", s.points);
+}
 
 void fields(auto&& visit, Of<PairLawSummary> auto& s) {
   visit("status", s.status);
@@ -92,6 +106,7 @@ void fields(auto&& visit, Of<PairLawSummary> auto& s) {
   visit("points", s.points);
   visit("chi2_per_dof", s.chi2_per_dof);
   visit("quality", s.quality);
+  visit("unloading", s.unloading, kLeftOut);
 }
 
 /// Laws of a card, by the kind of contact.

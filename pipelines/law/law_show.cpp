@@ -105,7 +105,9 @@ std::string pair_text(const PairLaw& law, const SoftParticleSpec& spec, bool utf
     text += fmt::format(", chi^2 per degree of freedom {} (probability of a larger one {})",
                         number(law.chi2_per_dof, 2), number(law.quality, 3));
   text = wrapped(text, 4) + range_text(law);
-  return text + parameters_text(law, spec) + plot_of(law, utf8);
+  text += parameters_text(law, spec);
+  if (law.unloading) text += wrapped("  " + unloading_text(law), 4);
+  return text + plot_of(law, utf8);
 }
 
 }  // namespace

@@ -42,10 +42,12 @@ struct LawPoint {
   bool clamped = false;                          ///< the law stays at the force of the end of its range
 };
 
-/// The law of a card at overlaps Delta. `beyond` instead of what the card says. Throws InputError when the card has no
-/// usable law of this kind.
+/// The law of a card at overlaps Delta. `beyond` instead of what the card says; `deepest`: the contact was pressed in
+/// so far before, and overlaps below lie on its unloading branch, without intervals. Throws InputError when the card
+/// has no usable law of this kind, or no branch where one is asked for.
 std::vector<LawPoint> card_values(const LawCard& card, PairKind kind, const std::vector<double>& deltas,
-                                  std::optional<Extrapolation> beyond = std::nullopt);
+                                  std::optional<Extrapolation> beyond = std::nullopt,
+                                  std::optional<double> deepest = std::nullopt);
 
 /// What a law of a table is asked: neighbours of one kind around a soft particle, all pressed in by Delta = h/Rs.
 struct MultiContactQuestion {

@@ -164,9 +164,13 @@ bool has_soft(const System3& s) {
   return std::ranges::find(material, 1) != material.end();  // of make_law_system
 }
 
-std::function<std::string(const System3&)> card_note(const LawCard& card, const MacroSpec& spec) {
+bool has_unloading(const LawCard& card) {
+  return std::ranges::any_of(card.pairs, [](const PairLaw& law) { return law.unloading.has_value(); });
+}
+
+std::function<std::string(const System3&)> card_note(const LawCard& card, const MacroSpec& spec, bool unloading) {
   const auto measured = measured_note(card, spec);
-  const std::string unloads = no_unloading_text(spec, "the pair law");
+  const std::string unloads = unloading && has_unloading(card) ? "" : no_unloading_text(spec, "the pair law");
   if (unloads.empty()) return measured;
   return [measured, unloads](const System3& s) {
     std::string text = measured ? measured(s) : "";
@@ -176,7 +180,15 @@ std::function<std::string(const System3&)> card_note(const LawCard& card, const 
 }
 
 /// Keys that choose among what a table offers.
-constexpr std::array kTableKeys{"solid_fraction", "range", "mu", "unloading", "rolling"};
+constexpr std::array kTableKeys{"solid_fraction", "range", "mu", "rolling"};
+
+/// A branch that the card does not have cannot be asked for.
+void require_card_unloading(const SceneTable& t, const LawSources& sources) {
+  const LawCard* card = sources.card();
+  if (card != nullptr && sources.table() == nullptr && sources.unloading && !has_unloading(*card))
+    t.add_error("unloading",
+                "unloading was not measured for the law card: a press test with an unloading branch gives it");
+}
 
 void read_table_choices(const SceneTable& t, LawSources& out) {
   if (t.has("solid_fraction"))
@@ -191,8 +203,10 @@ void read_table_choices(const SceneTable& t, LawSources& out) {
   if (t.has("mu"))
     out.friction =
         t.number({"mu", "law table: friction of soft particles", "as measured"}, Unit::none, Range::not_negative());
-  out.unloading =
-      t.flag({"unloading", "law table: true: use the unloading branch, which must have been measured"}, false);
+  out.unloading = t.flag({"unloading", "true: use the unloading branch, which must have been measured",
+                          "true for a law card that has one, else false"},
+                         false);
+  out.card_unloading = out.unloading || !t.has("unloading");
   out.rolling = t.flag({"rolling", "law table: true: use the rolling resistance, if measured"}, true);
 }
 
@@ -320,17 +334,17 @@ const SoftParticleSpec& measured_spec(const LawSources& sources) {
 }
 
 NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::string& name,
-                      std::optional<Extrapolation> beyond) {
+                      std::optional<Extrapolation> beyond, bool unloading) {
   const auto contact = [&](PairKind kind) {
-    return make_soft_contact(card, kind, spec.youngs_modulus, spec.friction, 0.0, spec.kt_secant, beyond);
+    return make_card_law(card, kind, spec.youngs_modulus, spec.friction, 0.0, spec.kt_secant, beyond, unloading);
   };
   const SoftLaws laws = pair_soft_laws(contact(PairKind::soft_solid), contact(PairKind::soft_soft), spec.wall_friction);
   return {name,
           LawForm::pair,
           laws,
           identity_of(LawForm::pair, 0.0, spec, card.spec, laws),
-          beyond ? to_string(*beyond) : "",
-          card_note(card, spec)};
+          (beyond ? to_string(*beyond) : "") + (unloading || !has_unloading(card) ? "" : "loading"),
+          card_note(card, spec, unloading)};
 }
 
 FittedLaw law_of_key(const SceneTable& table, const std::string& key, const std::string& path) {
@@ -356,6 +370,7 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
     law.refuse(kTableKeys, "goes with a law table (key table)");
   }
   for (const auto& [key, path] : files) out.laws.push_back(law_of_key(law, key, path));
+  require_card_unloading(law, out);
   require_fraction(law, out);
   return out;
 }
@@ -386,12 +401,13 @@ LawSources read_scene_law(const SceneTable& root, const std::string& path) {
   const std::string pair_alone = "goes with a law table; " + path + " is a law card, which holds the pair law alone";
   if (out.forms.front() != LawForm::pair) root.refuse({"form"}, pair_alone);
   root.refuse(kTableKeys, pair_alone);
+  require_card_unloading(root, out);
   return out;
 }
 
 NamedLaws law_of_form(const LawSources& sources, WantedForm form, const MacroSpec& spec, double contents_fraction) {
   const LawCard* card = sources.serving(form).card();
-  return card != nullptr ? pair_law_of(*card, spec, "pair", sources.beyond)
+  return card != nullptr ? pair_law_of(*card, spec, "pair", sources.beyond, sources.card_unloading)
                          : table_law_of(sources, form, spec, contents_fraction);
 }
 

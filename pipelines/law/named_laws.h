@@ -29,9 +29,10 @@ struct NamedLaws {
   std::optional<CellCard> cells{};  ///< a cell law with other numbers than that of the scene, in place of `laws`
 };
 
-/// The pair law of a card; `beyond` instead of what the card says. Throws InputError when the card has no usable law.
+/// The pair law of a card; `beyond` instead of what the card says; `unloading`: with the branches that the card has.
+/// Throws InputError when the card has no usable law.
 NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::string& name,
-                      std::optional<Extrapolation> beyond = std::nullopt);
+                      std::optional<Extrapolation> beyond = std::nullopt, bool unloading = true);
 
 /// What a law has to say about the end of a run goes to the note and the warning of its curve.
 void add_law_texts(const NamedLaws& law, const System3& end, MacroCurve& curve);
@@ -45,7 +46,8 @@ struct LawSources {
   std::optional<double> solid_fraction{};   ///< solid fraction at which the table is taken; empty: see law_fraction()
   RangePolicy range = RangePolicy::reject;  ///< policy for solid fractions outside the table
   std::optional<double> friction;           ///< mu_soft of the table's laws; empty: as measured
-  bool unloading = false;                   ///< whether the measured unloading branch is used
+  bool unloading = false;                   ///< whether the measured unloading branch of a table is used
+  bool card_unloading = true;               ///< whether the unloading branches of a card are used
   bool rolling = true;                      ///< whether the measured rolling resistance is used
   std::optional<Extrapolation> beyond{};    ///< policy beyond the range, instead of that of card or table
 

@@ -28,6 +28,7 @@ struct Pair {
   double measured = 0.0;  ///< h up to which the law was measured [m]
   std::string beyond;     ///< what the law does at larger overlaps
   std::function<Response(double)> at;
+  bool loading_alone = false;  ///< the law has an unloading branch, which no table of r can hold
 };
 
 std::string keyword(const Pair& pair) {
@@ -45,6 +46,8 @@ PairTable tabulate(const Pair& pair, const PairTableChoice& choice) {
   if (pair.deepest > pair.measured * (1.0 + 1e-12))
     t.meaning += fmt::format("; measured to {:.4g} m, {}: nothing says how far off rows with r below {:.6g} are",
                              pair.measured, pair.beyond, t.soft_radius + t.other_radius - pair.measured);
+  if (pair.loading_alone)
+    t.meaning += "; loading alone: the law unloads along a branch of its own, which a table has not";
   const double touch = t.soft_radius + t.other_radius;
   if (!(pair.deepest < std::min(t.soft_radius, t.other_radius) * 2.0) || !(pair.deepest < touch))
     throw InputError(
@@ -75,20 +78,22 @@ Pair card_pair(const LawCard& card, PairKind kind, double ratio, const PairTable
   if (wanted > law.delta_max && contact.range.beyond == Extrapolation::error)
     refuse_depth(wanted, law.delta_max, "Delta");
   const PairConstants constants = contact.pair_constants({choice.radius, choice.radius * ratio, 0.0, 0.0});
-  return {kind,
-          ratio,
-          wanted * constants.a,
-          law.delta_max * constants.a,
-          contact.range.beyond == Extrapolation::clamp ? "clamped beyond" : "extrapolated beyond",
-          [=](double overlap) {
-            ContactState<3> s;
-            s.overlap = overlap;
-            s.normal[0] = 1.0;
-            s.constants = constants;
-            const ContactResponse<3> r = contact.evaluate(s);
-            return Response{contact.stored_energy(overlap, constants), r.elastic_force,
-                            contact.is_clamped(overlap, constants.a) ? 0.0 : r.normal_stiffness};
-          }};
+  Pair out{kind,
+           ratio,
+           wanted * constants.a,
+           law.delta_max * constants.a,
+           contact.range.beyond == Extrapolation::clamp ? "clamped beyond" : "extrapolated beyond",
+           [=](double overlap) {
+             ContactState<3> s;
+             s.overlap = overlap;
+             s.normal[0] = 1.0;
+             s.constants = constants;
+             const ContactResponse<3> r = contact.evaluate(s);
+             return Response{contact.stored_energy(overlap, constants), r.elastic_force,
+                             contact.is_clamped(overlap, constants.a) ? 0.0 : r.normal_stiffness};
+           }};
+  out.loading_alone = law.unloading.has_value();
+  return out;
 }
 
 std::vector<Pair> card_pairs(const LawCard& card, const PairTableChoice& choice) {

@@ -52,6 +52,7 @@ std::string status_line(const PairLaw& law, const char* noun) {
                       format_number(law.quality, 2));
   if (law.max_overlap > 0.0)
     text += fmt::format("; largest grain overlap over the smaller radius {}", format_number(law.max_overlap, 2));
+  if (law.unloading) text += "; " + unloading_text(law);
   return paragraph(text + ".");
 }
 

@@ -262,7 +262,7 @@ TEST_F(LawTableUse, WrongMacroScenesAreRefused) {
   const std::string card = "--law '" + file("law.toml") + "'";
   expect(macro("out", "form = \"isotropic\"\n", card), 2, {"form", "goes with a law table", "law.toml is a law card"});
   expect(macro("out", "mu = 0.1\n", card), 2, {"mu", "goes with a law table"});
-  expect(macro("out", "unloading = true\n", card), 2, {"unloading", "goes with a law table"});
+  expect(macro("out", "unloading = true\n", card), 2, {"unloading was not measured for the law card"});
   expect(macro("out", "", "--law '" + file("scene.toml") + "'"), 2,
          {"scene.toml", "neither a law card", "[[pair]]", "[[entry]]"});
   expect(macro("out", "", "--law '" + file("absent.toml") + "'"), 4, {"absent.toml"});

@@ -227,7 +227,10 @@ std::vector<AnyLaw> laws() {
         if (friction || !rescaled) out.push_back(solid(friction, damped, rescaled));
   out.push_back(LinearSpring{1e6, 5e5, 0.3, 0.2});
   for (const bool both : {false, true}) {
-    for (const double damping : {0.0, 0.3}) out.push_back(soft(both, damping));
+    for (const double damping : {0.0, 0.3}) {
+      out.push_back(soft(both, damping));
+      out.push_back(SoftUnloading{soft(both, damping), {0.2, 2.5}});
+    }
     out.push_back(counting<LawForm::pair, false>(both));
     out.push_back(counting<LawForm::pair, true>(both));
     out.push_back(counting<LawForm::isotropic, false>(both));

@@ -143,8 +143,8 @@ void read_file(const Scene& scene, const SceneTable& t, InverseSetup& s) {
   options.kind_from = "contact of [target],";
   options.radius_from = "shell_radius of [packing],";
   options.modulus_from = "E of [material],";
-  options.unloading = t.choice<Unloading>(
-      {"unloading", "points whose overlap does not rise: `refuse` them or `drop` them"}, Unloading::refuse);
+  options.unloading = *parse_enum<Unloading>(t.choice(
+      {"unloading", "points whose overlap does not rise: `refuse` them or `drop` them"}, {"refuse", "drop"}, "refuse"));
   ForceCurves curves = read_force_curves(path, options);
   (void)subtract_offsets(curves);  // its remarks say it
   s.kind = curves.kind;

@@ -8,11 +8,13 @@
 
 #include "common/core/few_samples.h"
 #include "common/core/text.h"
+#include "common/data/law_words.h"
 #include "pipelines/kinds/macro/bands.h"
 #include "pipelines/kinds/macro/check.h"
 #include "pipelines/kinds/macro/lammps_stage.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/macro/summary.h"
+#include "pipelines/law/press_test.h"
 #include "pipelines/run/run.h"
 
 namespace softgrain {
@@ -206,6 +208,19 @@ ReadyMacro ready_macro(const Scene& scene, const CommonOptions& options) {
   return ready;
 }
 
+namespace {
+
+/// The law that was fitted to a press test, for other scenes, and what its fit had to say.
+void keep_fitted_law(const LawCard& card, const Run& run, MacroRunSummary& summary) {
+  save_card(card, run.path("law.toml"), run.provenance);
+  summary.head.files["law"] = run.path("law.toml");
+  for (const std::string& note : card.notes) summary.head.remarks.push_back("press test: " + note);
+  for (const PairLaw& law : card.pairs)
+    summary.head.remarks.push_back(fmt::format("press test: {}: {}", to_string(law.kind), unloading_text(law)));
+}
+
+}  // namespace
+
 ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
   const ReadyMacro ready = ready_macro(scene, options);
   const MacroScene& macro = ready.macro;
@@ -224,7 +239,6 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
                  : run_macro_stage(macro.setup, {}, {}, run, draws_of(macro, engine_of_cells(), {}), bands);
   });
   const LawIdentity identity = law ? law->identity : curves.front().law;
-
   const bool usable =
       all_carry_stress(curves) && std::ranges::all_of(curves, [](const MacroCurve& c) { return c.usable; });
   MacroRunSummary summary = summarise(macro, identity, curves, usable);
@@ -232,6 +246,7 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
   summary.band_ends = banded_ends(curves);
   summary.head.files = {
       {"macro", run.path("macro.h5")}, {"initial", run.path("macro_initial.h5")}, {"report", run.path("report.html")}};
+  if (macro.law.card() != nullptr && is_curve_file(macro.law_file)) keep_fitted_law(*macro.law.card(), run, summary);
   summary.head.sizes = summaries_of(drawn_sizes(macro.setup, run.seed));
   if (lammps) {
     summary.engine = engine_use(*lammps, lammps_directory(run.context, 0));

@@ -110,7 +110,9 @@ std::int64_t states_to_see(const MacroSpec& spec) {
   return spec.bodies <= kSmall ? kOfSmall : kKeptStates;
 }
 
-const Key kLawKey{"law", "law card, law table or card of the cell law; path relative to the scene",
+const Key kLawKey{"law",
+                  "law card, law table, card of the cell law, or the table of a press test (a law is fitted); path "
+                  "relative to the scene",
                   "-, unless `--law` names one"};
 
 MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {

@@ -1,0 +1,28 @@
+#include "pipelines/law/press_test.h"
+
+#include <algorithm>
+
+#include "calibrate/experiment_fit.h"
+#include "common/core/error.h"
+#include "common/io/text_file.h"
+
+namespace softgrain {
+
+bool is_curve_file(const std::string& path) {
+  const auto form = file_form(path);
+  return form == FileForm::csv || form == FileForm::tsv || form == FileForm::txt || form == FileForm::dat;
+}
+
+LawCard card_of_press_test(const std::string& path) {
+  ForceCurveOptions options;
+  options.unloading = Unloading::fit;
+  ExperimentFit fit = fit_experiment(read_force_curve_files({path}, options), {}, true);
+  const auto unusable =
+      std::ranges::find_if(fit.card.pairs, [](const PairLaw& law) { return !has_numbers(law.status); });
+  if (unusable != fit.card.pairs.end())
+    throw InputError(path + ": no law can be fitted: " + to_string(unusable->status) + " (" + unusable->reason + ")");
+  fit.card.notes = std::move(fit.remarks);
+  return std::move(fit.card);
+}
+
+}  // namespace softgrain
