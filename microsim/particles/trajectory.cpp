@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 
 #include "common/core/error.h"
 #include "common/core/vec.h"
 #include "common/data/columns.h"
 #include "common/data/snapshot_io.h"
+#include "common/dynamics/contact_tensors.h"
 #include "common/dynamics/force_pass.h"
 #include "common/neighbours/spatial_order.h"
 #include "common/state/system_io.h"
@@ -149,26 +151,51 @@ std::int64_t default_snapshots(std::int64_t grains) {
   return std::clamp<std::int64_t>(kGrainFrames / std::max<std::int64_t>(grains, 1), 1, kMostSnapshots);
 }
 
+namespace {
+
+/// Diameter: mean over grains by number; density: mass of all over their volume (of disks their area).
+template <int D>
+double inertial_number_of(const System<D>& s, const ContactTotals<D>& totals) {
+  const auto& p = s.particles;
+  double mass = 0.0;
+  double volume = 0.0;
+  double diameter = 0.0;
+  for (std::size_t u = 0; u < static_cast<std::size_t>(p.grains); ++u) {
+    const double r = p.sphere[u].r;
+    mass += 1.0 / p.inverse_mass[u];
+    volume += D == 3 ? kSphereVolume * cube(r) : std::numbers::pi * r * r;
+    diameter += 2.0 * r;
+  }
+  return inertial_number(totals.rate, diameter / p.grains, mass / volume, totals.pressure);
+}
+
+}  // namespace
+
 template <int D>
 ContactTotals<D> contact_totals(const System<D>& s) {
   ContactTotals<D> out;
   std::int64_t ends_at_grains = 0;
-  Matrix<D> sum;
-  for (const ContactRecord<D>& c : contact_records(s)) {
+  const std::vector<ContactRecord<D>> contacts = contact_records(s);
+  std::vector<Vec<D>> directions;
+  for (const ContactRecord<D>& c : contacts) {
     ++out.contacts;
     ends_at_grains += c.j < s.particles.grains ? 2 : 1;
-    const Vec<D> force = c.normal * c.normal_force + c.tangential_force;
-    for (int k = 0; k < D; ++k) sum[k] += force * c.branch[k];
+    if (c.j < s.particles.grains) directions.push_back(c.normal);
   }
+  out.fabric = fabric_tensor(directions);
   if (s.particles.grains > 0)
     out.coordination_number = static_cast<double>(ends_at_grains) / static_cast<double>(s.particles.grains);
   out.has_stress = std::all_of(s.cell.periodic.begin(), s.cell.periodic.end(), [](bool along) { return along; });
   if (!out.has_stress) return out;
   const double volume = s.cell.volume();
+  const Matrix<D> sum = branch_force_sum(contacts, s.particles.first_plane());
   for (int k = 0; k < D; ++k) {
     out.stress[k] = sum[k] * (-1.0 / volume);
     out.pressure -= out.stress[k][k] / static_cast<double>(D);
   }
+  out.asymmetry = asymmetry(out.stress);
+  out.rate = shear_rate(s.cell.velocity_gradient);
+  if (out.rate > 0.0) out.inertial_number = inertial_number_of(s, out);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/core/limits.h"
 #include "common/data/snapshot.h"
 #include "common/io/hdf5_file.h"
 #include "common/system.h"
@@ -66,6 +67,10 @@ struct ContactTotals {
   bool has_stress = false;           ///< the cell is periodic along all axes, so that there is a volume
   Matrix<D> stress{};                ///< see contact_totals [Pa; of disks N/m]
   double pressure = 0.0;             ///< -tr(stress)/D
+  double asymmetry = 0.0;            ///< norm of the antisymmetric part of the stress over that of all
+  Matrix<D> fabric{};                ///< mean of n (x) n over contacts between grains; zero without any
+  double rate = 0.0;                 ///< shear rate of the cell [1/s]
+  double inertial_number = kNaN;     ///< of a cell that is sheared under pressure
 };
 
 /// Stress of the contact forces, Love-Weber: sigma = -(1/V) sum_c b_c (x) f_c with b = x_i - x_j (nearest image) and f
