@@ -24,10 +24,11 @@ struct Column {
   const char* name;
   const char* unit;
   std::vector<double> Trajectory::*values;
-  std::size_t width;  ///< numbers per body; 0: one number per frame
+  std::size_t width;      ///< numbers per body; 0: one number per frame
+  bool optional = false;  ///< no data set where it is empty
 };
 
-constexpr std::array<Column, 9> kColumns{{
+constexpr std::array<Column, 12> kColumns{{
     {"time", "s", &Trajectory::time, 0},
     {"position", "m", &Trajectory::position, 3},
     {"velocity", "m/s", &Trajectory::velocity, 3},
@@ -37,6 +38,9 @@ constexpr std::array<Column, 9> kColumns{{
     {"translational_energy", "J", &Trajectory::translational_energy, 0},
     {"rotational_energy", "J", &Trajectory::rotational_energy, 0},
     {"gravitational_energy", "J", &Trajectory::gravitational_energy, 0},
+    {"stress", "Pa", &Trajectory::stress, 3, true},
+    {"fabric", "1", &Trajectory::fabric, 3, true},
+    {"inertial_number", "1", &Trajectory::inertial_number, 0, true},
 }};
 
 void append(std::vector<double>& to, const Vec3& v) { to.insert(to.end(), v.v.begin(), v.v.end()); }
@@ -91,6 +95,7 @@ void write_trajectory(const h5::Group& group, const Trajectory& t) {
   const std::size_t frames = t.time.size();
   for (const Column& c : kColumns) {
     const std::vector<double>& values = t.*c.values;
+    if (c.optional && values.empty()) continue;
     group.write(c.name, values, shape_of(c, frames, values.size()));
     group.attribute_of(c.name, "unit", c.unit);
   }
@@ -100,6 +105,7 @@ Trajectory read_trajectory(const h5::Group& group) {
   Trajectory t;
   for (const Column& c : kColumns) {
     std::vector<double>& values = t.*c.values;
+    if (c.optional && !group.has(c.name)) continue;
     values = group.doubles(c.name);
     require_unit(group, c.name, c.unit);
     require_shape(group, c.name, shape_of(c, t.time.size(), values.size()));
@@ -198,6 +204,39 @@ ContactTotals<D> contact_totals(const System<D>& s) {
   if (out.rate > 0.0) out.inertial_number = inertial_number_of(s, out);
   return out;
 }
+
+namespace {
+
+/// Row-major in three dimensions; zeros along an axis that a plane does not have.
+template <int D>
+void append_tensor(std::vector<double>& to, const Matrix<D>& tensor) {
+  for (int k = 0; k < 3; ++k) append(to, k < D ? in_space<D>(tensor[k]) : Vec3{});
+}
+
+}  // namespace
+
+template <int D>
+void record_tensors(Trajectory& t, const System<D>& s, bool contacts) {
+  const auto& periodic = s.cell.periodic;
+  if (!std::all_of(periodic.begin(), periodic.end(), [](bool along) { return along; })) return;
+  const std::size_t before = t.time.size() - 1;  // frames of a checkpoint of an earlier version have none
+  t.stress.resize(9 * before, kNaN);
+  t.fabric.resize(9 * before, kNaN);
+  t.inertial_number.resize(before, kNaN);
+  if (!contacts) {
+    t.stress.resize(9 * (before + 1), kNaN);
+    t.fabric.resize(9 * (before + 1), kNaN);
+    t.inertial_number.push_back(kNaN);
+    return;
+  }
+  const ContactTotals<D> totals = contact_totals(s);
+  append_tensor<D>(t.stress, totals.stress);
+  append_tensor<D>(t.fabric, totals.fabric);
+  t.inertial_number.push_back(totals.inertial_number);
+}
+
+template void record_tensors<2>(Trajectory&, const System<2>&, bool);
+template void record_tensors<3>(Trajectory&, const System<3>&, bool);
 
 template ContactTotals<2> contact_totals<2>(const System<2>&);
 template ContactTotals<3> contact_totals<3>(const System<3>&);
