@@ -38,7 +38,7 @@ Modulus modulus_of(StageKind way);
 const char* stress_of(Modulus modulus);
 
 /// Results of one stage of one sample. p = (sigma_x + sigma_y + sigma_z)/3, q = sqrt(3 J2), which is |sigma_z -
-/// sigma_x| where two axes bear alike; of stages that slide q has the shear stresses too. NaN where a result is not
+/// sigma_x| where two axes bear alike; of tests that slide q has the shear stresses too. NaN where a result is not
 /// defined.
 struct StageResult {
   StageRecord record;

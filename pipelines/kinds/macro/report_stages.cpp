@@ -81,7 +81,7 @@ std::string sliding_figure(std::vector<MacroCurve> curves) {
   return plot.empty() ? "" : figure(plot.svg(), "The friction that is mobilised on planes normal to z.");
 }
 
-/// Columns with their prefixes, and what a stage has in them.
+/// Columns with their prefixes, and what a stage has in them; nothing: it has no row.
 struct StageTable {
   std::vector<std::string> header;
   std::function<std::vector<std::string>(const StageMeans&)> cells;
@@ -97,7 +97,9 @@ std::string table_of(const std::vector<MacroCurve>& curves, const StageTable& wa
   for (const std::string& engine : engines)
     for (const StageMeans& s : stage_means(curves, engine)) {
       std::vector<std::string> row{s.record.name, engine_name(engine)};
-      for (std::string& one : wanted.cells(s)) row.push_back(std::move(one));
+      std::vector<std::string> cells = wanted.cells(s);
+      if (cells.empty()) continue;
+      for (std::string& one : cells) row.push_back(std::move(one));
       table.row(row);
     }
   return table.empty() ? "" : table.html();
@@ -135,6 +137,7 @@ std::string tables_of_stages(const std::vector<MacroCurve>& curves) {
   const StageTable sliding{
       {"shear strain [%]", "σxz/σz at the end", "largest σxz/σz", "angle of friction [°]"},
       [](const StageMeans& s) -> std::vector<std::string> {
+        if (!s.shear_end) return {};
         return {cell(s.shear_end, 0.01), cell(s.friction_end), cell(s.friction_peak),
                 s.friction_peak ? format_number(180.0 / std::numbers::pi * std::atan(s.friction_peak->mean), 3) : "–"};
       }};
