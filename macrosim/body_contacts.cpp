@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/core/particles.h"
+#include "common/dynamics/contact_tensors.h"
 #include "common/dynamics/force_pass.h"
 
 namespace softgrain {
@@ -149,6 +150,25 @@ double fabric_anisotropy(const MacroSystem& macro, const std::vector<ContactReco
   for (const ContactRecord<3>& c : contacts)
     if (c.i < macro.system.particles.grains && c.j < macro.system.particles.grains) directions.push_back(c.normal);
   return anisotropy(directions);
+}
+
+BodyFabric body_fabric(const MacroSystem& macro, const std::vector<BodyContact>& contacts) {
+  std::vector<Vec3> all;
+  std::vector<Vec3> strong;
+  double sum = 0.0;
+  for (const BodyContact& c : contacts) {
+    if (c.b >= macro.bodies) continue;
+    all.push_back(c.branch * (1.0 / norm(c.branch)));
+    sum += c.normal_force;
+  }
+  const double mean = all.empty() ? 0.0 : sum / static_cast<double>(all.size());
+  std::size_t k = 0;
+  for (const BodyContact& c : contacts) {
+    if (c.b >= macro.bodies) continue;
+    if (c.normal_force > mean) strong.push_back(all[k]);
+    ++k;
+  }
+  return {fabric_tensor(all), fabric_tensor(strong)};
 }
 
 double body_coordination(const MacroSystem& macro, const std::vector<BodyContact>& contacts) {

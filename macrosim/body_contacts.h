@@ -31,6 +31,14 @@ double fabric_anisotropy(const MacroSystem& macro, const std::vector<BodyContact
 /// Anisotropy of the fabric tensor of the contacts between grains. Contacts with walls and shells are left out.
 double fabric_anisotropy(const MacroSystem& macro, const std::vector<ContactRecord<3>>& contacts);
 
+/// Fabric tensor of the contacts between bodies, walls left out; and of the strong ones alone, those with more than the
+/// mean normal force of all (Radjai, Wolf, Jean, Moreau 1998, DOI 10.1103/PhysRevLett.80.61). Zero without contacts.
+struct BodyFabric {
+  Matrix<3> all{};
+  Matrix<3> strong{};
+};
+BodyFabric body_fabric(const MacroSystem& macro, const std::vector<BodyContact>& contacts);
+
 /// Mean number of bodies and walls that a body touches.
 double body_coordination(const MacroSystem& macro, const std::vector<BodyContact>& contacts);
 

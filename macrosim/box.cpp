@@ -1,5 +1,6 @@
 #include "macrosim/box.h"
 
+#include "common/dynamics/contact_tensors.h"
 #include "common/dynamics/force_pass.h"
 
 namespace softgrain {
@@ -74,15 +75,34 @@ Vec3 box_stress(const System3& s, const Box& box) {
   return out;
 }
 
-Vec3 contact_stress(const System3& s, const Box& box) {
+Matrix<3> contact_stress_tensor(const System3& s, const Box& box, const std::vector<ContactRecord<3>>& contacts) {
   const Vec3 size = box_high(s, box) - box_low(s, box);
-  Vec3 sum{};
-  for (const ContactRecord<3>& c : contact_records(s)) {
-    const Vec3 force = c.normal * c.normal_force + c.tangential_force;
-    const Vec3 branch = c.j >= s.particles.first_plane() ? c.normal * dot(c.branch, c.normal) : c.branch;
-    for (int k = 0; k < 3; ++k) sum[k] += force[k] * branch[k];
+  Matrix<3> stress = branch_force_sum(contacts, s.particles.first_plane());
+  for (int k = 0; k < 3; ++k) stress[k] = stress[k] * (1.0 / (size[0] * size[1] * size[2]));
+  return stress;
+}
+
+Vec3 contact_stress(const System3& s, const Box& box) {
+  const Matrix<3> stress = contact_stress_tensor(s, box, contact_records(s));
+  return {{stress[0][0], stress[1][1], stress[2][2]}};
+}
+
+void shear_cell(System3& s, double shear) {
+  auto& p = s.particles;
+  for (std::size_t u = 0; u < at(p.size()); ++u) p.velocity[u] = Vec3{{-shear * carried_place(s, u)[2], 0.0, 0.0}};
+  for (std::size_t u = 0; u < at(p.size()); ++u) {
+    p.sphere[u].x += Vec3(p.velocity[u]);
+    const bool turns = u < at(p.grains) && p.shell[u] < 0;
+    p.spin[u] = turns ? Vec3{{0.0, -0.5 * shear, 0.0}} : Vec3{};
   }
-  return sum * (1.0 / (size[0] * size[1] * size[2]));
+  s.cell.edges[0][2] -= shear * s.cell.edges[2][2];
+  s.cell.velocity_gradient[0][2] = -shear;  // over the unit of time that the stroke takes
+  force_pass(s, 1.0, History::advance);
+  s.cell.velocity_gradient = {};
+  for (std::size_t u = 0; u < at(p.size()); ++u) {
+    p.velocity[u] = Vec3{};
+    p.spin[u] = Vec3{};
+  }
 }
 
 }  // namespace softgrain

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
+#include "common/dynamics/force_pass.h"
 #include "common/system.h"
 
 namespace softgrain {
@@ -42,6 +44,15 @@ void strain_box(System3& system, const Box& box, const Vec3& strain);
 /// Stress on what is around the bodies [Pa], compression positive, from the last pass: mean of the normal forces of
 /// opposite planes over the area they close; of a periodic cell contact_stress().
 Vec3 box_stress(const System3& system, const Box& box);
+
+/// Stress tensor from contacts: sum of branch (x) force over the volume, compression positive [Pa]; row k is the
+/// component k of the branch. Its antisymmetric part is what moments are out of balance.
+Matrix<3> contact_stress_tensor(const System3& system, const Box& box, const std::vector<ContactRecord<3>>& contacts);
+
+/// Displaces all bodies of a periodic cell along x by -shear times their height, and the cell with them: simple shear
+/// in one stroke. The sign is that of strains here, which are positive in compression: stress xz grows with it. Bodies
+/// turn with half of it, as the material does; those inside shells move with their shell.
+void shear_cell(System3& system, double shear);
 
 /// Stress from the contacts inside: sum over contacts of force times branch over the volume [Pa]. In equilibrium it
 /// equals the stress on the box.

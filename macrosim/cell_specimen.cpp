@@ -146,7 +146,7 @@ std::string compression_only_text(const MacroSpec& spec) {
   if (spec.cells->card.memory) return "";
   const std::string names = stage_names(spec, [](const MacroStage& stage) {
     const StageKind way = stage.record.way;
-    const bool shears = way == StageKind::shear || way == StageKind::triaxial || way == StageKind::axes;
+    const bool shears = keeps_volume(way) || way == StageKind::triaxial || way == StageKind::axes;
     return stage.record.kind == StageKind::unload || (shears && stage.record.kind != StageKind::hold);
   });
   if (names.empty()) return "";

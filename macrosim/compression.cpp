@@ -1,9 +1,11 @@
 #include "macrosim/compression.h"
 
+#include <array>
 #include <optional>
 
 #include "common/core/cost.h"
 #include "common/core/error.h"
+#include "common/dynamics/contact_tensors.h"
 #include "common/dynamics/contact_watch.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/residual.h"
@@ -24,12 +26,31 @@ DampedOptions relaxation_options(const MacroSpec& spec, const MacroStage& stage,
   return options;
 }
 
+/// The tensors of the contacts, beside the axial stresses.
+void record_tensors(const MacroSystem& macro, const std::vector<ContactRecord<3>>& contacts,
+                    const std::vector<BodyContact>& between, MacroCurve& c) {
+  const Matrix<3> stress = contact_stress_tensor(macro.system, macro.box, contacts);
+  c.stress_axial_contacts.push_back(stress[2][2]);
+  c.stress_xy.push_back(0.5 * (stress[0][1] + stress[1][0]));
+  c.stress_xz.push_back(0.5 * (stress[0][2] + stress[2][0]));
+  c.stress_yz.push_back(0.5 * (stress[1][2] + stress[2][1]));
+  c.stress_asymmetry.push_back(asymmetry(stress));
+  const BodyFabric fabric = body_fabric(macro, between);
+  constexpr std::array<std::array<int, 2>, 6> kComponents{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
+  for (std::size_t k = 0; k < kComponents.size(); ++k) {
+    const auto [row, column] = kComponents[k];
+    c.fabric_tensor[k].push_back(fabric.all[row][column]);
+    c.fabric_strong[k].push_back(fabric.strong[row][column]);
+  }
+}
+
 void record_bodies(const MacroSystem& macro, MacroCurve& c) {
   const auto contacts = contact_records(macro.system);
   const auto between = body_contacts(macro, contacts);
   c.fabric.push_back(fabric_anisotropy(macro, contacts));
   c.fabric_bodies.push_back(fabric_anisotropy(macro, between));
   c.coordination_bodies.push_back(body_coordination(macro, between));
+  record_tensors(macro, contacts, between, c);
   c.body_forces.clear();
   for (const BodyContact& b : between) c.body_forces.push_back(b.normal_force);
 }
@@ -44,6 +65,24 @@ LawUse watch_bodies(CompressionState& state) {
   return c.grains > 0 || c.soft == 0 ? LawUse{} : seen.laws;
 }
 
+/// Whether increments are strained by dynamics, at a rate, instead of in one stroke.
+bool in_motion(const MacroSystem& macro, const MacroSpec& spec) {
+  return macro.dashpots && spec.twin.relaxation == TwinRelaxation::slow_dynamics;
+}
+
+/// Inertial number of the motion that led to the last point, with the mean stress there; the point itself is at rest.
+/// Zero where nothing goes by strain, and where nothing bears yet.
+void record_rate(const MacroSystem& macro, const MacroSpec& spec, const MacroStage& stage, MacroCurve& c) {
+  if (!in_motion(macro, spec)) return;
+  const auto& p = macro.system.particles;
+  double diameter = 0.0;
+  for (std::size_t u = 0; u < at(p.grains); ++u) diameter += 2.0 * p.sphere[u].r / p.grains;
+  const double pressure = (c.stress_x.back() + c.stress_y.back() + c.stress_axial.back()) / 3.0;
+  const bool first = c.strain.size() == 1;
+  const double rate = first ? 0.0 : straining_rate(macro, spec, strain_increment(stage, 1), shear_increment(stage));
+  c.inertial_number.push_back(pressure > 0.0 ? inertial_number(rate, diameter, spec.density, pressure) : 0.0);
+}
+
 void record_point(CompressionState& state, const MacroSpec& spec, const MacroStage& stage, std::int64_t number,
                   const RelaxationResult& rest) {
   const System3& s = state.macro.system;
@@ -52,21 +91,24 @@ void record_point(CompressionState& state, const MacroSpec& spec, const MacroSta
   MacroCurve& c = state.curve;
   const Vec3 size = box_high(s, state.macro.box) - box_low(s, state.macro.box);
   record_stress_strain(c, spec, number, size, stress);
-  c.stress_axial_contacts.push_back(contact_stress(s, state.macro.box)[2]);
   const auto bodies = static_cast<double>(c.grains > 0 ? s.particles.grains : c.bodies);
   c.coordination.push_back(2.0 * static_cast<double>(r.contacts) / bodies);
   c.residual.push_back(rest.residual);
   record_bodies(state.macro, c);
+  record_rate(state.macro, spec, stage, c);
   if (!spec.splits.empty()) record_grains(state.macro, spec, c);
   note_unrest(c, state.worst, stage);
 }
 
+/// `shear`: strain by which the cell slides, beside the strains of its axes.
 RelaxationResult step_of(MacroSystem& macro, const MacroSpec& spec, const MacroStage& stage, const Vec3& strain,
-                         const std::optional<Vec3>& stress) {
-  if (macro.dashpots && spec.twin.relaxation == TwinRelaxation::slow_dynamics)
-    strain_in_motion(macro, spec, strain);
-  else if (strain != Vec3{})
-    strain_box(macro.system, macro.box, strain);
+                         double shear, const std::optional<Vec3>& stress) {
+  if (in_motion(macro, spec)) {
+    strain_in_motion(macro, spec, strain, shear);
+  } else {
+    if (strain != Vec3{}) strain_box(macro.system, macro.box, strain);
+    if (shear != 0.0) shear_cell(macro.system, shear);
+  }
   DampedRelaxation<3> relaxation(relaxation_options(spec, stage, macro));
   if (!stress) return relaxation.relax(macro.system);
   if (const auto mean = mean_first(spec, stage, *stress)) {
@@ -87,7 +129,9 @@ RelaxationResult counted_step(CompressionState& state, const MacroSpec& spec, co
   MacroSystem& macro = state.macro;
   RelaxationResult rest;
   try {
-    rest = step_of(macro, spec, stage, strain, stress);
+    // The first point of all is the start at rest.
+    const double shear = state.curve.strain.empty() ? 0.0 : shear_increment(stage);
+    rest = step_of(macro, spec, stage, strain, shear, stress);
   } catch (const InputError& e) {  // a cell that has become too small: no fault of the scene
     throw UnusableResult(e.what());
   }

@@ -74,6 +74,7 @@ struct AxisDrive {
 struct MacroStage {
   StageRecord record;
   std::array<AxisDrive, 3> axis{};
+  double shear = 0.0;        ///< shear strain at the end: x displaced over the height z (slides())
   bool logarithmic = false;  ///< whether strains are logarithmic
   bool isotropic = false;    ///< whether all axes strain alike; by stress: by the mean of their stresses
   std::int64_t steps = 30;   ///< recorded points
@@ -151,8 +152,8 @@ struct MacroSpec {
   std::vector<MacroStage> stages;  ///< stages of the test "stages"; the numbers below are those of the other tests
   std::array<double, 2> modulus_stress{};  ///< stresses between which the modulus of a stage is taken that does not
                                            ///< name its own, see StageRecord [Pa]
-  double strain_end = 0.15;                ///< nominal strain at the end; shear: logarithmic
-  double preload = 0.0;                    ///< shear: isotropic nominal strain before the shear
+  double strain_end = 0.15;                ///< nominal strain at the end; shear, undrained: logarithmic
+  double preload = 0.0;                    ///< is_shear(): isotropic nominal strain before the shear
   std::int64_t preload_steps = 4;          ///< number of recorded points of the preload
   std::int64_t steps = 30;                 ///< recorded points
   std::int64_t increments_per_step = 2;    ///< relaxed strain increments per recorded point

@@ -86,7 +86,7 @@ void PressedBox::carry(System3& s, double step) {
   if (!box_.periodic) return;
   for (int k = 0; k < 3; ++k) {
     const double shrink = velocity_[k] * step;
-    s.cell.edges[k][k] *= 1.0 - shrink;
+    for (int edge = k; edge < 3; ++edge) s.cell.edges[k][edge] *= 1.0 - shrink;  // of a cell that was sheared
     s.cell.velocity_gradient[k][k] = -velocity_[k] / (1.0 - shrink);
   }
 }

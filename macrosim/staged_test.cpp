@@ -90,6 +90,8 @@ void record_stress_strain(MacroCurve& c, const MacroSpec& spec, std::int64_t sta
   c.strain_y.push_back(1.0 - size[1] / c.start.size_y);
   c.strain_z.push_back(1.0 - size[2] / c.start.size_z);
   c.stage.push_back(static_cast<double>(stage));
+  const auto stages = stages_of(spec);
+  if (any_slides(stages)) c.shear_strain.push_back(shear_at(stages, static_cast<std::int64_t>(c.strain.size())));
   const bool staged = spec.test == MacroTest::stages;
   c.strain.push_back(staged ? c.strain_z.back() : strain_at(spec, static_cast<std::int64_t>(c.strain.size())));
   c.stress_axial.push_back(stress[2]);

@@ -1,5 +1,6 @@
 #include "macrosim/test_protocol.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace softgrain {
@@ -12,11 +13,36 @@ double nominal_step(double end, std::int64_t k, std::int64_t total) {
   return 1.0 - (1.0 - at(k)) / (1.0 - at(k - 1));
 }
 
+StageKind shear_kind(MacroTest test) {
+  switch (test) {
+    case MacroTest::undrained:
+      return StageKind::undrained;
+    case MacroTest::simple_shear:
+      return StageKind::simple_shear;
+    case MacroTest::direct_shear:
+      return StageKind::direct_shear;
+    default:
+      return StageKind::shear;
+  }
+}
+
 double target(const AxisDrive& drive, int axis, const std::vector<Vec3>& starts) {
   return drive.as_at < 0 ? drive.value : starts[static_cast<std::size_t>(drive.as_at)][axis];
 }
 
 }  // namespace
+
+void drive_by_strain(MacroStage& stage, StageKind way, double strain) {
+  if (slides(way)) {
+    stage.shear = strain;
+    return;
+  }
+  stage.axis[2].value = strain;
+  if (way == StageKind::isotropic) stage.axis[0].value = stage.axis[1].value = strain;
+  if (way == StageKind::shear) stage.axis[0].value = -strain;
+  if (way == StageKind::undrained) stage.axis[0].value = stage.axis[1].value = -0.5 * strain;
+  stage.logarithmic = way == StageKind::shear || way == StageKind::undrained;
+}
 
 MacroStage short_stage(const MacroSpec& spec, StageKind kind, double strain, std::int64_t steps) {
   MacroStage stage;
@@ -24,10 +50,7 @@ MacroStage short_stage(const MacroSpec& spec, StageKind kind, double strain, std
   stage.steps = steps;
   stage.increments_per_step = spec.increments_per_step;
   stage.tolerance = spec.tolerance;
-  stage.axis[2].value = strain;
-  if (kind == StageKind::isotropic) stage.axis[0].value = stage.axis[1].value = strain;
-  if (kind == StageKind::shear) stage.axis[0].value = -strain;
-  stage.logarithmic = kind == StageKind::shear;
+  drive_by_strain(stage, kind, strain);
   return stage;
 }
 
@@ -39,7 +62,7 @@ std::vector<MacroStage> stages_of(const MacroSpec& spec) {
       return {short_stage(spec, StageKind::oedometric, spec.strain_end, spec.steps)};
     case MacroTest::isotropic:
       return {short_stage(spec, StageKind::isotropic, spec.strain_end, spec.steps)};
-    case MacroTest::shear:
+    default:
       break;
   }
   std::vector<MacroStage> stages;
@@ -48,7 +71,9 @@ std::vector<MacroStage> stages_of(const MacroSpec& spec) {
     stages.back().record.name = "preload";
     stages.back().record.modulus_stress = {};
   }
-  stages.push_back(short_stage(spec, StageKind::shear, spec.strain_end, spec.steps));
+  stages.push_back(short_stage(spec, shear_kind(spec.test), spec.strain_end, spec.steps));
+  if (spec.test == MacroTest::direct_shear)
+    stages.back().axis[2] = {true, 0.0, static_cast<std::int64_t>(stages.size()) - 1};
   return stages;
 }
 
@@ -58,7 +83,7 @@ std::int64_t recorded_points(const MacroSpec& spec) {
 }
 
 std::int64_t preload_points(const MacroSpec& spec) {
-  return spec.test == MacroTest::shear && spec.preload > 0.0 ? spec.preload_steps : 0;
+  return is_shear(spec.test) && spec.preload > 0.0 ? spec.preload_steps : 0;
 }
 
 StagePoint stage_point(const std::vector<MacroStage>& stages, std::int64_t point) {
@@ -78,6 +103,7 @@ double way_sign(const std::vector<MacroStage>& stages, std::int64_t stage) {
   while (stage > 0 &&
          stages[static_cast<std::size_t>(stage)].record.kind != stages[static_cast<std::size_t>(stage)].record.way)
     --stage;
+  if (const double shear = stages[static_cast<std::size_t>(stage)].shear; shear != 0.0) return shear < 0.0 ? -1.0 : 1.0;
   const AxisDrive& z = stages[static_cast<std::size_t>(stage)].axis[2];
   return !z.by_stress && z.value < 0.0 ? -1.0 : 1.0;
 }
@@ -98,6 +124,24 @@ Vec3 strain_increment(const MacroStage& stage, std::int64_t n) {
                                   : nominal_step(drive.value, n, total);
   }
   return strain;
+}
+
+double shear_increment(const MacroStage& stage) {
+  return stage.shear / static_cast<double>(stage.steps * stage.increments_per_step);
+}
+
+double shear_at(const std::vector<MacroStage>& stages, std::int64_t point) {
+  double sum = 0.0;
+  for (const MacroStage& stage : stages) {
+    const std::int64_t here = std::min(point, stage.steps);
+    sum += stage.shear * static_cast<double>(here) / static_cast<double>(stage.steps);
+    point -= here;
+  }
+  return sum;
+}
+
+bool any_slides(const std::vector<MacroStage>& stages) {
+  return std::any_of(stages.begin(), stages.end(), [](const MacroStage& s) { return slides(s.record.way); });
 }
 
 Vec3 stress_at(const MacroStage& stage, std::int64_t n, const std::vector<Vec3>& starts) {
@@ -127,9 +171,11 @@ MacroSpec slightly_changed(MacroSpec spec) {
   constexpr double kSlightly = 1.0 + 1e-12;
   spec.strain_end *= kSlightly;
   spec.preload *= kSlightly;
-  for (MacroStage& stage : spec.stages)
+  for (MacroStage& stage : spec.stages) {
+    stage.shear *= kSlightly;
     for (AxisDrive& axis : stage.axis)
       if (!axis.by_stress || axis.to_stress()) axis.value *= kSlightly;
+  }
   return spec;
 }
 

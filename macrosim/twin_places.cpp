@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/dynamics/contact_tensors.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/slow_dynamics.h"
 #include "common/dynamics/verlet.h"
@@ -45,18 +46,26 @@ MacroPacking packing_at(const std::vector<double>& row, const MacroPacking& pack
   return out;
 }
 
-/// The motion of a box whose edges shrink at these rates [1/s]: of its walls or cell, and of all bodies with it. What
-/// is taken off at the end is that of the places where bodies are then.
-Drive shrinking(const MacroSystem& macro, const Vec3& rate) {
-  return [&macro, rate](System3& s, double share) {
+/// Rates of a strain in motion [1/s].
+struct StrainRates {
+  Vec3 shrink{};       ///< of the edges
+  double slide = 0.0;  ///< of displacement against x over the height
+};
+
+/// The motion of a box whose edges shrink and that slides at these rates: of its walls or cell, and of all bodies with
+/// it. What is taken off at the end is that of the places where bodies are then.
+Drive straining(const MacroSystem& macro, const StrainRates& rates) {
+  return [&macro, rate = rates.shrink, slide = rates.slide](System3& s, double share) {
     const Vec3 centre = box_centre(s, macro.box);
     auto& p = s.particles;
     for (std::size_t u = 0; u < at(p.size()); ++u) {
       const Vec3 place = carried_place(s, u);
       for (int k = 0; k < 3; ++k) p.velocity[u][k] -= share * rate[k] * (place[k] - centre[k]);
+      if (slide != 0.0) p.velocity[u][0] -= share * slide * place[2];
     }
     if (!macro.box.periodic) return;
     for (int k = 0; k < 3; ++k) s.cell.velocity_gradient[k][k] = share > 0.0 ? -rate[k] : 0.0;
+    s.cell.velocity_gradient[0][2] = share > 0.0 ? -slide : 0.0;
   };
 }
 
@@ -65,6 +74,13 @@ Vec3 rates_of(const Vec3& strain, double duration, bool periodic) {
   Vec3 rate{};
   for (int k = 0; k < 3; ++k) rate[k] = (periodic ? -std::log1p(-strain[k]) : strain[k]) / duration;
   return rate;
+}
+
+/// How long an increment takes: neighbours of the largest radius come towards each other at the speed of the twin [s].
+double straining_time(const MacroSystem& macro, const MacroSpec& spec, const Vec3& strain, double shear) {
+  const double wave_speed = std::sqrt(spec.youngs_modulus / spec.density);
+  const double largest = std::max({std::abs(strain[0]), std::abs(strain[1]), std::abs(strain[2]), std::abs(shear)});
+  return largest * 2.0 * macro.largest_radius / (spec.twin.speed * wave_speed);
 }
 
 /// Planes are driven and nothing else moves them: no velocity of theirs is left behind by rounding.
@@ -123,17 +139,26 @@ void place_laws(const MacroSpec& spec, const MacroPacking& packing, double inner
 
 std::string places_column(const std::string& engine, const char* partner) { return "places_" + engine + "_" + partner; }
 
-void strain_in_motion(MacroSystem& macro, const MacroSpec& spec, const Vec3& strain) {
+void strain_in_motion(MacroSystem& macro, const MacroSpec& spec, const Vec3& strain, double shear) {
   const double wave_speed = std::sqrt(spec.youngs_modulus / spec.density);
-  const double largest = std::max({std::abs(strain[0]), std::abs(strain[1]), std::abs(strain[2])});
-  if (largest > 0.0) {
-    const double duration = largest * 2.0 * macro.largest_radius / (spec.twin.speed * wave_speed);
-    run_slow(macro, shrinking(macro, rates_of(strain, duration, macro.box.periodic)), duration, spec.twin.step_factor);
+  if (const double duration = straining_time(macro, spec, strain, shear); duration > 0.0) {
+    const StrainRates rates{rates_of(strain, duration, macro.box.periodic), shear / duration};
+    run_slow(macro, straining(macro, rates), duration, spec.twin.step_factor);
     stop_walls(macro.system);
   }
   const double settle = spec.twin.settle_time * spec.soft_radius_max / wave_speed;
   if (settle > 0.0) run_slow(macro, {}, settle, spec.twin.step_factor);
   stop_motion(macro.system.particles);
+}
+
+double straining_rate(const MacroSystem& macro, const MacroSpec& spec, const Vec3& strain, double shear) {
+  const double duration = straining_time(macro, spec, strain, shear);
+  if (!(duration > 0.0)) return 0.0;
+  const Vec3 rate = rates_of(strain, duration, macro.box.periodic);
+  Matrix<3> gradient;
+  for (int k = 0; k < 3; ++k) gradient[k][k] = -rate[k];
+  gradient[0][2] = shear / duration;
+  return shear_rate(gradient);
 }
 
 }  // namespace softgrain

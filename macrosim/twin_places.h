@@ -46,9 +46,13 @@ inline constexpr std::array kPlacesPartners{"solid", "wall", "soft"};
 
 // How a resolved twin is strained in motion.
 
-/// Strains the box by the factors 1 - strain at the twin's speed, bodies carried along as a whole at first, and lets
-/// all move on for the settling time; then nothing moves. It is left near its rest: a relaxation follows. The twin must
-/// have dashpots. Throws UnusableResult (a grain is lost) and Interrupted.
-void strain_in_motion(MacroSystem& macro, const MacroSpec& spec, const Vec3& strain);
+/// Strains the box by the factors 1 - strain and lets a periodic cell slide by `shear`, at the twin's speed, bodies
+/// carried along as a whole at first, and lets all move on for the settling time; then nothing moves. It is left near
+/// its rest: a relaxation follows. The twin must have dashpots. Throws UnusableResult (a grain is lost) and
+/// Interrupted.
+void strain_in_motion(MacroSystem& macro, const MacroSpec& spec, const Vec3& strain, double shear = 0.0);
+
+/// Rate of shear (shear_rate()) of the motion of such an increment [1/s]; 0 where nothing goes by strain.
+double straining_rate(const MacroSystem& macro, const MacroSpec& spec, const Vec3& strain, double shear = 0.0);
 
 }  // namespace softgrain

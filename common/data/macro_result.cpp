@@ -9,6 +9,7 @@
 #include "common/core/limits.h"
 #include "common/core/material.h"
 #include "common/data/columns.h"
+#include "common/data/histogram_io.h"
 
 namespace softgrain {
 
@@ -46,7 +47,25 @@ constexpr Column kOptionalColumns[] = {{"residual_largest", "1", &MacroCurve::re
                                        {"stage", "1", &MacroCurve::stage, kNotNegative},
                                        {"strain_x", "1", &MacroCurve::strain_x},
                                        {"strain_y", "1", &MacroCurve::strain_y},
-                                       {"strain_z", "1", &MacroCurve::strain_z}};
+                                       {"strain_z", "1", &MacroCurve::strain_z},
+                                       {"shear_strain", "1", &MacroCurve::shear_strain},
+                                       {"stress_xy", "Pa", &MacroCurve::stress_xy},
+                                       {"stress_xz", "Pa", &MacroCurve::stress_xz},
+                                       {"stress_yz", "Pa", &MacroCurve::stress_yz},
+                                       {"stress_asymmetry", "1", &MacroCurve::stress_asymmetry, kNotNegative},
+                                       {"inertial_number", "1", &MacroCurve::inertial_number, kNotNegative}};
+
+struct TensorColumn {
+  const char* name;  ///< "_xx", "_yy" and so on follow
+  TensorColumns MacroCurve::*values;
+
+  [[nodiscard]] std::string of(std::size_t component) const {
+    return fmt::format("{}_{}", name, kTensorComponents[component]);
+  }
+};
+
+constexpr TensorColumn kTensors[] = {{"fabric_tensor", &MacroCurve::fabric_tensor},
+                                     {"fabric_strong", &MacroCurve::fabric_strong}};
 constexpr Column kBodyForces{"body_forces", "N", &MacroCurve::body_forces};
 
 void write_quantity(const h5::Group& group, const MacroCurve& curve, const Column& c) {
@@ -56,6 +75,30 @@ void write_quantity(const h5::Group& group, const MacroCurve& curve, const Colum
 
 void write_if_any(const h5::Group& group, const MacroCurve& curve, const Column& c) {
   if (!(curve.*c.values).empty()) write_quantity(group, curve, c);
+}
+
+void write_tensors(const h5::Group& group, const MacroCurve& curve) {
+  for (const TensorColumn& t : kTensors)
+    for (std::size_t k = 0; k < kTensorComponents.size(); ++k) {
+      const std::vector<double>& values = (curve.*t.values)[k];
+      if (values.empty()) continue;
+      group.write(t.of(k), std::span<const double>(values));
+      group.attribute_of(t.of(k), "unit", "1");
+    }
+}
+
+void read_tensors(const h5::Group& group, MacroCurve& curve, std::size_t points) {
+  for (const TensorColumn& t : kTensors)
+    for (std::size_t k = 0; k < kTensorComponents.size(); ++k)
+      if (group.has(t.of(k))) (curve.*t.values)[k] = read_numbers(group, t.of(k), "1", {points});
+}
+
+constexpr const char* kForceDistribution = "force_distribution";
+
+/// P(f/<f>) of the normal forces between bodies at the end; for readers of the file, derived from body_forces.
+void write_force_distribution(const h5::Group& group, const MacroCurve& curve) {
+  if (const auto distribution = force_distribution(curve.body_forces))
+    write_histogram(group.create(kForceDistribution), *distribution);
 }
 
 constexpr const char* kStageAxes = "stage_stress_axes";
@@ -290,7 +333,9 @@ void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
   write_origin(group, curve);
   for (const Column& c : kColumns) write_quantity(group, curve, c);
   for (const Column& c : kOptionalColumns) write_if_any(group, curve, c);
+  write_tensors(group, curve);
   write_if_any(group, curve, kBodyForces);
+  write_force_distribution(group, curve);
   write_rows(group, kDrawnAxial, "Pa", curve.drawn_axial);
   write_rows(group, kPlaces, "m", curve.places);
   if (curve.more.empty()) return;
@@ -322,6 +367,7 @@ MacroCurve read_macro_curve(const h5::Group& group) {
   for (const Column& c : kColumns) read_column(group, curve, c, points);
   for (const Column& c : kOptionalColumns)
     if (group.has(c.name)) read_column(group, curve, c, points);
+  read_tensors(group, curve, points);
   if (group.has("more")) {
     const h5::Group more = group.open("more");
     for (const std::string& name : more.children()) {

@@ -53,15 +53,32 @@ inline constexpr auto enum_names<Twin> = enum_name_list<Twin>({{Twin::shelled, "
 enum class MacroTest {
   isotropic,
   oedometric,
-  shear,  ///< z shortens, x lengthens, y stands, at constant volume
-  stages  ///< what its stages say
+  shear,         ///< z shortens, x lengthens, y stands, at constant volume
+  stages,        ///< what its stages say
+  undrained,     ///< z shortens, x and y lengthen alike, at constant volume
+  simple_shear,  ///< planes of constant z slide along x, all lengths stand
+  direct_shear   ///< as simple_shear, at constant stress along z
 };
 
 template <>
 inline constexpr auto enum_names<MacroTest> = enum_name_list<MacroTest>({{MacroTest::oedometric, "oedometric"},
                                                                          {MacroTest::isotropic, "isotropic"},
                                                                          {MacroTest::shear, "shear"},
+                                                                         {MacroTest::undrained, "undrained"},
+                                                                         {MacroTest::simple_shear, "simple-shear"},
+                                                                         {MacroTest::direct_shear, "direct-shear"},
                                                                          {MacroTest::stages, "stages"}});
+
+/// Tests that change the shape after an isotropic strain, their preload.
+inline bool is_shear(MacroTest test) {
+  return test == MacroTest::shear || test == MacroTest::undrained || test == MacroTest::simple_shear ||
+         test == MacroTest::direct_shear;
+}
+
+/// Tests whose runs are compared stage by stage: not the strain of z drives them, or it goes forth and back.
+inline bool by_stages(MacroTest test) {
+  return test == MacroTest::stages || test == MacroTest::simple_shear || test == MacroTest::direct_shear;
+}
 
 /// What the axes of a box or cell do in a part of a test; the load is along z.
 enum class StageKind {
@@ -73,19 +90,33 @@ enum class StageKind {
   axes,           ///< every axis to a strain or a stress of its own
   unload,         ///< reverses the path of the last stage that was none of unload, reload and hold
   reload,         ///< repeats the path that an unloading reversed
-  hold            ///< nothing is driven
+  hold,           ///< nothing is driven
+  undrained,      ///< z shortens, x and y lengthen by half of its logarithmic strain each: constant volume
+  simple_shear,   ///< x displaced in proportion to z, all lengths stand: constant volume
+  direct_shear    ///< x displaced in proportion to z, x and y stand, z is held by stress
 };
 
 template <>
 inline constexpr auto enum_names<StageKind> = enum_name_list<StageKind>({{StageKind::oedometric, "oedometric"},
                                                                          {StageKind::isotropic, "isotropic"},
                                                                          {StageKind::shear, "shear"},
+                                                                         {StageKind::undrained, "undrained"},
+                                                                         {StageKind::simple_shear, "simple-shear"},
+                                                                         {StageKind::direct_shear, "direct-shear"},
                                                                          {StageKind::triaxial, "triaxial"},
                                                                          {StageKind::consolidation, "consolidation"},
                                                                          {StageKind::axes, "axes"},
                                                                          {StageKind::unload, "unload"},
                                                                          {StageKind::reload, "reload"},
                                                                          {StageKind::hold, "hold"}});
+
+/// Ways that hold the volume.
+inline bool keeps_volume(StageKind way) {
+  return way == StageKind::shear || way == StageKind::undrained || way == StageKind::simple_shear;
+}
+
+/// Ways that displace x in proportion to z.
+inline bool slides(StageKind way) { return way == StageKind::simple_shear || way == StageKind::direct_shear; }
 
 /// What is around the bodies.
 enum class Boundary {
@@ -132,6 +163,12 @@ struct MacroStart {
   friend bool operator==(const MacroStart&, const MacroStart&) = default;
 };
 
+/// Components of a symmetric tensor in the order in which files and reports have them.
+inline constexpr std::array<const char*, 6> kTensorComponents{"xx", "yy", "zz", "xy", "xz", "yz"};
+
+/// A symmetric tensor per point, by component.
+using TensorColumns = std::array<std::vector<double>, 6>;
+
 /// One macro run of one sample. Stresses are compressive positive [Pa], on walls or, in a periodic cell, from the sum
 /// over contacts; strain is nominal, from the start of the test, of tests in stages that of z.
 struct MacroCurve {
@@ -172,6 +209,17 @@ struct MacroCurve {
   std::vector<double> strain_x;     ///< 1 - L/L0, L0 the length at the start
   std::vector<double> strain_y;
   std::vector<double> strain_z;
+  /// Displacements against x (strains are positive in compression) over the height at which they happened, summed up;
+  /// empty where no stage slides.
+  std::vector<double> shear_strain;
+  /// Shear stresses from the contacts, symmetric part; with stress_x, stress_y and stress_axial the whole tensor [Pa].
+  std::vector<double> stress_xy;
+  std::vector<double> stress_xz;
+  std::vector<double> stress_yz;
+  std::vector<double> stress_asymmetry;  ///< norm of the antisymmetric part of the contact stress over that of all
+  TensorColumns fabric_tensor;           ///< mean of n n over contacts between bodies; trace 1, without contacts 0
+  TensorColumns fabric_strong;           ///< the same of those with more than the mean normal force
+  std::vector<double> inertial_number;   ///< of the strain that led to the point; empty: quasi-static, no rate
   std::map<std::string, std::vector<double>> more;  ///< per point, by name: what one kind of scene alone records
   std::vector<std::vector<double>> drawn_axial;  ///< per draw of the law, then per point: stress_axial with that draw
   /// Places in shelled twins, per point: low and high corner of the box, then x, y, z of every body in turn [m].

@@ -242,6 +242,10 @@ double parse_quantity(const std::string& text, Unit unit);
 /// Known word nearest to `word` by edit distance, empty when none is near.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
 
+/// "softgrain has no fluids: see README, 'What it is not for'" for a key that asks for what softgrain does not model
+/// ("fluid", "fluid_viscosity"); empty for others.
+std::string out_of_scope_text(const std::string& key);
+
 /// The range of Poisson's ratio as readers of keys take it.
 inline constexpr Range kPoissonRange{kPoissonAbove, kPoissonHighest, true, false};
 

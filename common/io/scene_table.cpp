@@ -136,9 +136,10 @@ void SceneTable::Impl::find_unknown(std::vector<SceneError>& out) const {
       const std::string near = nearest_word(key, asked);
       const std::string help =
           !near.empty() ? "nearest known key is '" + near + "'" : "known keys are " + join_text(known);
+      const std::string scope = out_of_scope_text(key);
       out.push_back({.line = line_of(node),
                      .text = where(key, node) + ": unknown key '" + key + "' " + location() +
-                             (known.empty() ? "" : "; " + help)});
+                             (known.empty() ? "" : "; " + help) + (scope.empty() ? "" : "; " + scope)});
     }
   for (const auto& [key, tables] : children)
     for (const auto& table : tables) table->find_unknown(out);
@@ -161,8 +162,9 @@ SceneTable SceneTable::table(const Key& key) const {
       [&] {
         if (impl_->find(key.name) != nullptr) return true;
         if (impl_->missing) throw BadScene(impl_->document->name, {});
-        throw BadScene(impl_->document->name,
-                       {{.line = impl_->line, .text = impl_->place + ": missing table [" + impl_->dotted(key.name) + "]"}});
+        throw BadScene(
+            impl_->document->name,
+            {{.line = impl_->line, .text = impl_->place + ": missing table [" + impl_->dotted(key.name) + "]"}});
       },
       false);
   SceneTable table = table_or_empty(key);

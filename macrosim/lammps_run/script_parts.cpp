@@ -138,24 +138,29 @@ std::string test_variables(const ScriptScene& s) {
   text += variable("n", "(v_point-1)*v_increments + v_k");
   text += "# every axis goes by strain\n" + variable("wantx", "0") + variable("wanty", "0") + variable("wantz", "0") +
           variable("over", "0");
-  if (s.spec.test == MacroTest::shear) {
-    const std::string grow = "exp(v_strain_end/" + total + ")";
+  if (is_shear(s.spec.test)) {  // tests that slide are refused
+    const bool undrained = s.spec.test == MacroTest::undrained;
+    const char* const way = undrained ? "z shortens, x and y lengthen by half of its logarithmic strain"
+                                      : "z shortens, x lengthens by equal logarithmic strains";
+    const std::string grow = fmt::format("exp({}v_strain_end/{})", undrained ? "0.5*" : "", total);
+    const std::string grow_y = undrained ? grow : "1";
     const std::string shrink = "exp(-v_strain_end/" + total + ")";
     if (preload_points(s.spec) > 0) {
       const std::string loads = "(v_preload_steps*v_increments)";
-      text += "# all axes to the nominal strain of the preload; then z shortens, x lengthens\n";
+      text += fmt::format("# all axes to the nominal strain of the preload; then z shortens, {}\n",
+                          undrained ? "x and y lengthen" : "x lengthens");
       text += variable("loading", "v_n <= " + loads);
       text += variable("load", nominal_factor("v_preload", loads));
       text += variable("fx", "v_loading*v_load + (1-v_loading)*" + grow);
-      text += variable("fy", "v_loading*v_load + (1-v_loading)");
+      text += variable("fy", "v_loading*v_load + (1-v_loading)" + (undrained ? "*" + grow_y : ""));
       text += variable("fz", "v_loading*v_load + (1-v_loading)*" + shrink);
       text += variable("since", "v_point - v_preload_steps");
       text += variable("strain",
                        "(v_since<0)*v_preload*v_since/v_preload_steps &\n  + (v_since>0)*v_strain_end*v_since/v_steps");
       return text + variable("last", "v_preload_steps + v_steps") + kept_states();
     }
-    text += "# z shortens, x lengthens by equal logarithmic strains\n";
-    text += variable("fx", grow) + variable("fy", "1") + variable("fz", shrink);
+    text += fmt::format("# {}\n", way);
+    text += variable("fx", grow) + variable("fy", grow_y) + variable("fz", shrink);
   } else {
     const bool all = s.spec.test == MacroTest::isotropic;
     text += all ? "# all axes shorten\n" : "# z shortens, x and y stand\n";

@@ -136,9 +136,10 @@ template <int D>
 void ParticlesRun<D>::record(bool with_contacts) {
   if (!scene_.record) return;
   const auto frame = static_cast<std::int64_t>(trajectory_.time.size());
-  if (with_contacts && is_snapshot(frame, scene_.frames(), scene_.snapshots))
-    record_contacts(frame_contacts_, frame, system_);
+  const bool contacts = with_contacts && is_snapshot(frame, scene_.frames(), scene_.snapshots);
+  if (contacts) record_contacts(frame_contacts_, frame, system_);
   record_frame(trajectory_, system_);
+  record_tensors(trajectory_, system_, contacts);
 }
 
 /// Grains that were neighbours drift apart; watched systems are small and keep their order.

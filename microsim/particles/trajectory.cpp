@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 
 #include "common/core/error.h"
 #include "common/core/vec.h"
 #include "common/data/columns.h"
 #include "common/data/snapshot_io.h"
+#include "common/dynamics/contact_tensors.h"
 #include "common/dynamics/force_pass.h"
 #include "common/neighbours/spatial_order.h"
 #include "common/state/system_io.h"
@@ -22,10 +24,11 @@ struct Column {
   const char* name;
   const char* unit;
   std::vector<double> Trajectory::*values;
-  std::size_t width;  ///< numbers per body; 0: one number per frame
+  std::size_t width;      ///< numbers per body; 0: one number per frame
+  bool optional = false;  ///< no data set where it is empty
 };
 
-constexpr std::array<Column, 9> kColumns{{
+constexpr std::array<Column, 12> kColumns{{
     {"time", "s", &Trajectory::time, 0},
     {"position", "m", &Trajectory::position, 3},
     {"velocity", "m/s", &Trajectory::velocity, 3},
@@ -35,6 +38,9 @@ constexpr std::array<Column, 9> kColumns{{
     {"translational_energy", "J", &Trajectory::translational_energy, 0},
     {"rotational_energy", "J", &Trajectory::rotational_energy, 0},
     {"gravitational_energy", "J", &Trajectory::gravitational_energy, 0},
+    {"stress", "Pa", &Trajectory::stress, 3, true},
+    {"fabric", "1", &Trajectory::fabric, 3, true},
+    {"inertial_number", "1", &Trajectory::inertial_number, 0, true},
 }};
 
 void append(std::vector<double>& to, const Vec3& v) { to.insert(to.end(), v.v.begin(), v.v.end()); }
@@ -89,6 +95,7 @@ void write_trajectory(const h5::Group& group, const Trajectory& t) {
   const std::size_t frames = t.time.size();
   for (const Column& c : kColumns) {
     const std::vector<double>& values = t.*c.values;
+    if (c.optional && values.empty()) continue;
     group.write(c.name, values, shape_of(c, frames, values.size()));
     group.attribute_of(c.name, "unit", c.unit);
   }
@@ -98,6 +105,7 @@ Trajectory read_trajectory(const h5::Group& group) {
   Trajectory t;
   for (const Column& c : kColumns) {
     std::vector<double>& values = t.*c.values;
+    if (c.optional && !group.has(c.name)) continue;
     values = group.doubles(c.name);
     require_unit(group, c.name, c.unit);
     require_shape(group, c.name, shape_of(c, t.time.size(), values.size()));
@@ -149,28 +157,86 @@ std::int64_t default_snapshots(std::int64_t grains) {
   return std::clamp<std::int64_t>(kGrainFrames / std::max<std::int64_t>(grains, 1), 1, kMostSnapshots);
 }
 
+namespace {
+
+/// Diameter: mean over grains by number; density: mass of all over their volume (of disks their area).
+template <int D>
+double inertial_number_of(const System<D>& s, const ContactTotals<D>& totals) {
+  const auto& p = s.particles;
+  double mass = 0.0;
+  double volume = 0.0;
+  double diameter = 0.0;
+  for (std::size_t u = 0; u < static_cast<std::size_t>(p.grains); ++u) {
+    const double r = p.sphere[u].r;
+    mass += 1.0 / p.inverse_mass[u];
+    volume += D == 3 ? kSphereVolume * cube(r) : std::numbers::pi * r * r;
+    diameter += 2.0 * r;
+  }
+  return inertial_number(totals.rate, diameter / p.grains, mass / volume, totals.pressure);
+}
+
+}  // namespace
+
 template <int D>
 ContactTotals<D> contact_totals(const System<D>& s) {
   ContactTotals<D> out;
   std::int64_t ends_at_grains = 0;
-  Matrix<D> sum;
-  for (const ContactRecord<D>& c : contact_records(s)) {
+  const std::vector<ContactRecord<D>> contacts = contact_records(s);
+  std::vector<Vec<D>> directions;
+  for (const ContactRecord<D>& c : contacts) {
     ++out.contacts;
     ends_at_grains += c.j < s.particles.grains ? 2 : 1;
-    const Vec<D> force = c.normal * c.normal_force + c.tangential_force;
-    for (int k = 0; k < D; ++k) sum[k] += force * c.branch[k];
+    if (c.j < s.particles.grains) directions.push_back(c.normal);
   }
+  out.fabric = fabric_tensor(directions);
   if (s.particles.grains > 0)
     out.coordination_number = static_cast<double>(ends_at_grains) / static_cast<double>(s.particles.grains);
   out.has_stress = std::all_of(s.cell.periodic.begin(), s.cell.periodic.end(), [](bool along) { return along; });
   if (!out.has_stress) return out;
   const double volume = s.cell.volume();
+  const Matrix<D> sum = branch_force_sum(contacts, s.particles.first_plane());
   for (int k = 0; k < D; ++k) {
     out.stress[k] = sum[k] * (-1.0 / volume);
     out.pressure -= out.stress[k][k] / static_cast<double>(D);
   }
+  out.asymmetry = asymmetry(out.stress);
+  out.rate = shear_rate(s.cell.velocity_gradient);
+  if (out.rate > 0.0) out.inertial_number = inertial_number_of(s, out);
   return out;
 }
+
+namespace {
+
+/// Row-major in three dimensions; zeros along an axis that a plane does not have.
+template <int D>
+void append_tensor(std::vector<double>& to, const Matrix<D>& tensor) {
+  for (int k = 0; k < 3; ++k) append(to, k < D ? in_space<D>(tensor[k]) : Vec3{});
+}
+
+}  // namespace
+
+template <int D>
+void record_tensors(Trajectory& t, const System<D>& s, bool contacts) {
+  const auto& periodic = s.cell.periodic;
+  if (!std::all_of(periodic.begin(), periodic.end(), [](bool along) { return along; })) return;
+  const std::size_t before = t.time.size() - 1;  // frames of a checkpoint of an earlier version have none
+  t.stress.resize(9 * before, kNaN);
+  t.fabric.resize(9 * before, kNaN);
+  t.inertial_number.resize(before, kNaN);
+  if (!contacts) {
+    t.stress.resize(9 * (before + 1), kNaN);
+    t.fabric.resize(9 * (before + 1), kNaN);
+    t.inertial_number.push_back(kNaN);
+    return;
+  }
+  const ContactTotals<D> totals = contact_totals(s);
+  append_tensor<D>(t.stress, totals.stress);
+  append_tensor<D>(t.fabric, totals.fabric);
+  t.inertial_number.push_back(totals.inertial_number);
+}
+
+template void record_tensors<2>(Trajectory&, const System<2>&, bool);
+template void record_tensors<3>(Trajectory&, const System<3>&, bool);
 
 template ContactTotals<2> contact_totals<2>(const System<2>&);
 template ContactTotals<3> contact_totals<3>(const System<3>&);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/core/limits.h"
 #include "common/data/snapshot.h"
 #include "common/io/hdf5_file.h"
 #include "common/system.h"
@@ -22,11 +23,20 @@ struct Trajectory {
   std::vector<double> translational_energy;  ///< translational energy of particles [J]
   std::vector<double> rotational_energy;     ///< rotational energy of particles [J]
   std::vector<double> gravitational_energy;  ///< -sum m g.x [J]; zero at the origin
+  // Of cells that are periodic along all axes; empty elsewhere, not a number in frames that keep no contacts.
+  std::vector<double> stress;           ///< row-major 3 x 3, as contact_totals() [Pa; of disks N/m]
+  std::vector<double> fabric;           ///< row-major 3 x 3
+  std::vector<double> inertial_number;  ///< of sheared cells under pressure
 };
 
 /// Appends the system as it is.
 template <int D>
 void record_frame(Trajectory& trajectory, const System<D>& system);
+
+/// Appends stress, fabric and inertial number of the last frame, where the cell is periodic along all axes. `contacts`:
+/// whether the frame keeps its contacts; others have no such numbers.
+template <int D>
+void record_tensors(Trajectory& trajectory, const System<D>& system, bool contacts);
 
 /// Data sets with units: time [frames], position [frames, particles, 3], ...
 void write_trajectory(const h5::Group& group, const Trajectory& trajectory);
@@ -66,6 +76,10 @@ struct ContactTotals {
   bool has_stress = false;           ///< the cell is periodic along all axes, so that there is a volume
   Matrix<D> stress{};                ///< see contact_totals [Pa; of disks N/m]
   double pressure = 0.0;             ///< -tr(stress)/D
+  double asymmetry = 0.0;            ///< norm of the antisymmetric part of the stress over that of all
+  Matrix<D> fabric{};                ///< mean of n (x) n over contacts between grains; zero without any
+  double rate = 0.0;                 ///< shear rate of the cell [1/s]
+  double inertial_number = kNaN;     ///< of a cell that is sheared under pressure
 };
 
 /// Stress of the contact forces, Love-Weber: sigma = -(1/V) sum_c b_c (x) f_c with b = x_i - x_j (nearest image) and f

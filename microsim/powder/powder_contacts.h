@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "common/core/histogram.h"
 #include "common/system.h"
-#include "microsim/powder/histogram.h"
 #include "microsim/powder/powder_interactions.h"
 
 namespace softgrain {

@@ -11,6 +11,7 @@
 #include "common/core/limits.h"
 #include "common/data/macro_band.h"
 #include "pipelines/compare/stage_match.h"
+#include "pipelines/compare/stage_results.h"
 
 namespace softgrain {
 namespace {
@@ -102,7 +103,7 @@ void compare_staged(const MacroCurve& c, const MacroCurve& r, SampleComparison& 
   s.lateral_difference =
       value_or_nan([&] { return staged_difference(stages, c.stress_lateral, r.stress_lateral, Compared::lateral); });
   s.deviator_difference =
-      value_or_nan([&] { return staged_difference(stages, c.stress_deviator, r.stress_deviator, Compared::deviator); });
+      value_or_nan([&] { return staged_difference(stages, deviators(c), deviators(r), Compared::deviator); });
   s.strain_difference = value_or_nan([&] { return strain_difference(stages, c, r); });
   s.unloading_ratio = unloading_ratio(c, r);
   for (const MatchedStage& stage : stages) s.axial_imposed = s.axial_imposed || imposed(stage.record, Compared::axial);
@@ -124,7 +125,7 @@ SampleComparison compare_sample(const MacroCurve& candidate, const MacroCurve& r
   SampleComparison s;
   s.sample = candidate.sample;
   s.test = candidate.test;
-  if (candidate.test == MacroTest::stages)
+  if (by_stages(candidate.test))
     compare_staged(candidate, reference, s);
   else
     compare_strained(candidate, reference, s);
@@ -219,7 +220,7 @@ std::vector<double> values_at_points(const MacroCurve& of, const std::vector<dou
       if (std::abs(at - here.at[k]) <= rounding) values[here.point[k]] = value_at(there, y, at);
     }
   };
-  if (points.test == MacroTest::stages) {
+  if (by_stages(points.test)) {
     for (const MatchedStage& s : match_stages(of, points)) take(s.candidate, s.reference, column, s.first, out);
     return out;
   }
@@ -248,7 +249,7 @@ double share_in_band(const MacroCurve& candidate, const MacroCurve& reference, b
 }
 
 std::vector<ComparedQuantity> headline_of(const Comparison& c) {
-  const bool staged = !c.samples.empty() && c.samples.front().test == MacroTest::stages;
+  const bool staged = !c.samples.empty() && by_stages(c.samples.front().test);
   if (!staged) return {{"stress", c.axial_difference}};
   std::vector<ComparedQuantity> out{{"deviator", c.deviator_difference},
                                     {"strain along axes that go by stress", c.strain_difference},

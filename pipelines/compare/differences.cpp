@@ -107,8 +107,7 @@ Differences differences(const MacroCurve& candidate, const MacroCurve& reference
   note(out.obstacles, "test", to_string(candidate.test), to_string(reference.test));
   note(out.obstacles, "preload of the test", candidate.preload, reference.preload);
   note(out.obstacles, "boundary", to_string(candidate.boundary), to_string(reference.boundary));
-  if (candidate.test == MacroTest::stages && reference.test == MacroTest::stages &&
-      candidate.stages != reference.stages)
+  if (by_stages(candidate.test) && by_stages(reference.test) && candidate.stages != reference.stages)
     out.obstacles.emplace_back("the tests have other stages");
   note(out.obstacles, "bodies", candidate.bodies, reference.bodies);
   note(out.obstacles, "soft particles", candidate.soft, reference.soft);

@@ -15,6 +15,7 @@
 #include "macrosim/twin_places.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/compare/stage_match.h"
+#include "pipelines/compare/stage_results.h"
 
 namespace softgrain {
 
@@ -29,10 +30,11 @@ double lateral_ratio(const MacroCurve& c) { return ratio(last(c.stress_lateral),
 /// The part of a shear test after its preload: strain from 0.
 std::pair<std::vector<double>, std::vector<double>> sheared(const MacroCurve& c) {
   std::pair<std::vector<double>, std::vector<double>> out;
-  for (std::size_t k = 0; k < std::min(c.strain.size(), c.stress_deviator.size()); ++k) {
+  const std::vector<double> deviator = deviators(c);
+  for (std::size_t k = 0; k < std::min(c.strain.size(), deviator.size()); ++k) {
     if (c.strain[k] < 0.0) continue;
     out.first.push_back(c.strain[k]);
-    out.second.push_back(c.stress_deviator[k]);
+    out.second.push_back(deviator[k]);
   }
   return out;
 }
@@ -49,9 +51,7 @@ double difference(const std::vector<double>& xa, const std::vector<double>& a, c
 
 /// NaN where curves cannot be compared, and where the test imposes it throughout.
 double stage_difference(const MacroCurve& c, const MacroCurve& twin, Compared what) {
-  const auto column = [&](const MacroCurve& of) -> const std::vector<double>& {
-    return what == Compared::axial ? of.stress_axial : of.stress_deviator;
-  };
+  const auto column = [&](const MacroCurve& of) { return what == Compared::axial ? of.stress_axial : deviators(of); };
   try {
     return staged_difference(match_stages(c, twin), column(c), column(twin), what);
   } catch (const InputError&) {
@@ -60,12 +60,12 @@ double stage_difference(const MacroCurve& c, const MacroCurve& twin, Compared wh
 }
 
 double axial_difference(const MacroCurve& c, const MacroCurve& twin) {
-  if (c.test == MacroTest::stages && twin.test == MacroTest::stages) return stage_difference(c, twin, Compared::axial);
+  if (by_stages(c.test) && by_stages(twin.test)) return stage_difference(c, twin, Compared::axial);
   return difference(c.strain, c.stress_axial, twin.strain, twin.stress_axial);
 }
 
 double strain_error(const MacroCurve& c, const MacroCurve& twin) {
-  if (c.test != MacroTest::stages || twin.test != MacroTest::stages) return kNaN;
+  if (!by_stages(c.test) || !by_stages(twin.test)) return kNaN;
   try {
     return strain_difference(match_stages(c, twin), c, twin);
   } catch (const InputError&) {
@@ -80,8 +80,8 @@ bool ends_imposed(const MacroCurve& c) {
 }
 
 double deviator_difference(const MacroCurve& c, const MacroCurve& twin) {
-  if (c.test == MacroTest::stages) return stage_difference(c, twin, Compared::deviator);
-  if (c.test != MacroTest::shear) return kNaN;
+  if (by_stages(c.test)) return stage_difference(c, twin, Compared::deviator);
+  if (!is_shear(c.test)) return kNaN;
   const auto [xa, a] = sheared(c);
   const auto [xb, b] = sheared(twin);
   return difference(xa, a, xb, b);
@@ -202,7 +202,7 @@ TwinErrors errors_against(const Pairs& pairs) {
   using C = const MacroCurve&;
   TwinErrors e;
   e.pairs = pairs.size();
-  e.staged = !pairs.empty() && pairs.front().first->test == MacroTest::stages;
+  e.staged = !pairs.empty() && by_stages(pairs.front().first->test);
   e.axial = mean_of(pairs, axial_difference);
   e.axial_of_mean = difference_of_means(pairs);
   e.axial_end = mean_of(

@@ -49,6 +49,7 @@ const std::vector<double>& stress_of(const MacroCurve& c, std::size_t axis) {
 struct Driver {
   std::optional<std::size_t> strain_of_axis;
   std::optional<std::size_t> stress_of_axis;
+  bool slides = false;  ///< the shear strain drives it
 };
 
 /// Strain since the stage began.
@@ -62,6 +63,10 @@ Driver driver_of(const StageRecord& record, const MacroCurve& c, const std::vect
   constexpr double kHeld = 0.02;  // of the largest stress: more than relaxations leave
   const std::array<bool, 3> held = stress_axes(record);
   Driver out;
+  if (slides(record.way) && record.kind != StageKind::hold && c.shear_strain.size() == c.strain.size()) {
+    out.slides = true;
+    return out;
+  }
   double farthest = kStands;
   for (const std::size_t k : {2U, 0U, 1U}) {
     const double way = std::abs(strained(c, k, points.front(), points.back()));
@@ -86,9 +91,14 @@ Driver driver_of(const StageRecord& record, const MacroCurve& c, const std::vect
 
 std::vector<double> driven(const Driver& driver, const MacroCurve& c, const std::vector<std::size_t>& points) {
   std::vector<double> out;
-  for (const std::size_t p : points)
+  for (const std::size_t p : points) {
+    if (driver.slides) {
+      out.push_back(c.shear_strain[p]);
+      continue;
+    }
     out.push_back(driver.strain_of_axis ? strained(c, *driver.strain_of_axis, points.front(), p)
                                         : stress_of(c, *driver.stress_of_axis)[p]);
+  }
   return out;
 }
 
@@ -107,7 +117,8 @@ std::vector<double> shares(std::size_t points) {
 /// False: nothing is driven, or not one way, or the two go different ways.
 bool match_by_driver(const MacroCurve& candidate, const MacroCurve& reference, MatchedStage& stage) {
   const Driver driver = driver_of(stage.record, reference, stage.reference.point);
-  if (!driver.strain_of_axis && !driver.stress_of_axis) return false;
+  if (!driver.strain_of_axis && !driver.stress_of_axis && !driver.slides) return false;
+  if (driver.slides && candidate.shear_strain.size() != candidate.strain.size()) return false;
   stage.candidate.at = driven(driver, candidate, stage.candidate.point);
   stage.reference.at = driven(driver, reference, stage.reference.point);
   const double from = stage.reference.at.front();
@@ -173,13 +184,13 @@ bool imposed(const StageRecord& stage, Compared what) {
     case Compared::lateral:
       return x && y;
     default:
-      return x && z;
+      return x && z && !slides(stage.way);
   }
 }
 
 std::vector<bool> imposed_points(const MacroCurve& c, Compared what) {
   std::vector<bool> out(c.strain.size(), false);
-  if (c.test != MacroTest::stages || c.stage.size() != out.size()) return out;
+  if (!by_stages(c.test) || c.stage.size() != out.size()) return out;
   for (std::size_t k = 0; k < out.size(); ++k)
     if (const auto stage = static_cast<std::size_t>(c.stage[k]); stage < c.stages.size())
       out[k] = imposed(c.stages[stage], what);

@@ -13,7 +13,7 @@ namespace softgrain {
 enum class Compared {
   axial,    ///< stress along z
   lateral,  ///< mean stress along x and y
-  deviator  ///< stress along z less that along x
+  deviator  ///< stress along z less that along x; where a stage slides, twice the shear stress: deviators()
 };
 
 /// Axes that a stage holds or drives by stress: as recorded; of files of earlier versions what its kind says, which

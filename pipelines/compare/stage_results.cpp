@@ -42,13 +42,17 @@ struct StressStrain {
   [[nodiscard]] bool falls() const { return stress.back() < stress.front(); }
 };
 
+/// Moduli that are taken up to half of the strength.
+bool is_fifty(Modulus modulus) {
+  return modulus == Modulus::young || modulus == Modulus::shear || modulus == Modulus::undrained;
+}
+
 /// The stresses of an interval that nobody named.
 std::array<double, 2> usual_interval(Modulus modulus, const StressStrain& s) {
   const double begin = s.stress.front();
   const double end = s.stress.back();
   if (s.falls()) return {begin, end};
-  if (modulus == Modulus::young || modulus == Modulus::shear)
-    return {begin, begin + 0.5 * (*std::max_element(s.stress.begin(), s.stress.end()) - begin)};
+  if (is_fifty(modulus)) return {begin, begin + 0.5 * (*std::max_element(s.stress.begin(), s.stress.end()) - begin)};
   return {std::max(begin, 0.5 * end), end};
 }
 
@@ -90,9 +94,23 @@ void add_secant(Modulus modulus, const StressStrain& s, StageResult& r) {
   r.modulus = stress / strain;
 }
 
-double q_of(const Vec3& s) {
+/// `shear2`: sum of the squares of the three shear stresses.
+double q_of(const Vec3& s, double shear2) {
   const Vec3 d{{s[0] - s[1], s[1] - s[2], s[2] - s[0]}};
-  return std::sqrt(0.5 * norm2(d));
+  return std::sqrt(0.5 * norm2(d) + 3.0 * shear2);
+}
+
+/// Whether a recorded point belongs to a stage that slides, with its shear stresses.
+bool point_slides(const MacroCurve& c, std::size_t k) {
+  if (c.stage.size() != c.strain.size() || c.stress_xz.size() != c.strain.size()) return false;
+  const auto stage = static_cast<std::size_t>(c.stage[k]);
+  return k > 0 && stage < c.stages.size() && slides(c.stages[stage].way);
+}
+
+/// Of tests in which a stage slides; in others they are noise.
+double shear_squares(const MacroCurve& c, std::size_t k) {
+  if (c.shear_strain.empty() || c.stress_xz.size() != c.strain.size()) return 0.0;
+  return c.stress_xy[k] * c.stress_xy[k] + c.stress_xz[k] * c.stress_xz[k] + c.stress_yz[k] * c.stress_yz[k];
 }
 
 class Reader {
@@ -142,6 +160,13 @@ class Reader {
     } else if (modulus == Modulus::shear) {
       x = [&](std::size_t k) { return ez(k) - ex(k); };
       y = [&](std::size_t k) { return 0.5 * (c_.stress_axial[k] - c_.stress_x[k]); };
+    } else if (modulus == Modulus::undrained) {
+      y = [&](std::size_t k) { return c_.stress_axial[k] - 0.5 * (c_.stress_x[k] + c_.stress_y[k]); };
+    }
+    if (slides(r.record.way)) {
+      if (!point_slides(c_, last)) return;
+      x = [&](std::size_t k) { return c_.shear_strain[k]; };
+      y = [&](std::size_t k) { return c_.stress_xz[k]; };
     }
     StressStrain points;
     for (std::size_t k = from; k <= last; ++k) {
@@ -164,6 +189,14 @@ class Reader {
       r.ratio_peak = ratio[k];
       r.ratio_peak_strain = c_.strain_z[k];
     }
+    if (!slides(r.record.way) || !point_slides(c_, last)) return;
+    const auto friction = [&](std::size_t k) {
+      return c_.stress_axial[k] > 0.0 ? std::abs(c_.stress_xz[k]) / c_.stress_axial[k] : kNaN;
+    };
+    r.shear_end = c_.shear_strain[last];
+    r.friction_end = friction(last);
+    for (std::size_t k = from + 1; k <= last; ++k)
+      if (const double f = friction(k); std::isfinite(f) && !(f <= r.friction_peak)) r.friction_peak = f;
   }
 
   const MacroCurve& c_;
@@ -186,7 +219,11 @@ Modulus modulus_of(StageKind way) {
     case StageKind::consolidation:
       return Modulus::bulk;
     case StageKind::shear:
+    case StageKind::simple_shear:
+    case StageKind::direct_shear:
       return Modulus::shear;
+    case StageKind::undrained:
+      return Modulus::undrained;
     case StageKind::axes:
       return Modulus::axial;
     default:
@@ -196,6 +233,7 @@ Modulus modulus_of(StageKind way) {
 
 const char* stress_of(Modulus modulus) {
   if (modulus == Modulus::bulk) return "mean stress";
+  if (modulus == Modulus::undrained) return "deviator";
   return modulus == Modulus::shear ? "shear stress" : "axial stress";
 }
 
@@ -209,8 +247,7 @@ std::string modulus_interval(const StageMeans& stage) {
   const bool falls = stage.modulus_from && stage.modulus_from->mean > stage.modulus_to->mean;
   if (falls || record.kind == StageKind::unload) return "whole stage";
   const Modulus modulus = modulus_of(record.way);
-  return modulus == Modulus::young || modulus == Modulus::shear ? "first half of the largest stress"
-                                                                : "upper half of the stress";
+  return is_fifty(modulus) ? "first half of the largest stress" : "upper half of the stress";
 }
 
 double secant_modulus(const std::vector<double>& strain, const std::vector<double>& stress, double from, double to) {
@@ -244,7 +281,14 @@ std::vector<double> stress_ratios(const MacroCurve& c, double bearing) {
   for (std::size_t k = 0; k < out.size(); ++k) largest = std::max(largest, pressure(k));
   for (std::size_t k = 0; k < out.size(); ++k)
     if (pressure(k) > bearing * largest)
-      out[k] = q_of({{c.stress_x[k], c.stress_y[k], c.stress_axial[k]}}) / pressure(k);
+      out[k] = q_of({{c.stress_x[k], c.stress_y[k], c.stress_axial[k]}}, shear_squares(c, k)) / pressure(k);
+  return out;
+}
+
+std::vector<double> deviators(const MacroCurve& c) {
+  std::vector<double> out = c.stress_deviator;
+  for (std::size_t k = 0; k < std::min(out.size(), c.strain.size()); ++k)
+    if (point_slides(c, k)) out[k] = 2.0 * c.stress_xz[k];
   return out;
 }
 
@@ -281,7 +325,8 @@ std::vector<StageMeans> stage_means(const std::vector<MacroCurve>& curves, const
                    mean(&StageResult::axial_end), mean(&StageResult::lateral_end), mean(&StageResult::modulus),
                    mean(&StageResult::modulus_from), mean(&StageResult::modulus_to), mean(&StageResult::modulus_begin),
                    mean(&StageResult::modulus_end), mean(&StageResult::poisson_begin), mean(&StageResult::ratio_peak),
-                   mean(&StageResult::ratio_peak_strain), mean(&StageResult::ratio_end)});
+                   mean(&StageResult::ratio_peak_strain), mean(&StageResult::ratio_end), mean(&StageResult::shear_end),
+                   mean(&StageResult::friction_peak), mean(&StageResult::friction_end)});
   }
   return out;
 }

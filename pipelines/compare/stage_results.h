@@ -16,7 +16,8 @@ enum class Modulus {
   constrained,  ///< M = d sigma_z / d eps_z, x and y standing
   young,        ///< E = d sigma_z / d eps_z, x and y at constant stress
   bulk,         ///< K = d p / d eps_v
-  shear,        ///< G = d (sigma_z - sigma_x) / (2 d (eps_z - eps_x))
+  shear,        ///< G = d (sigma_z - sigma_x) / (2 d (eps_z - eps_x)); sliding: d sigma_xz / d gamma
+  undrained,    ///< E_u = d (sigma_z - (sigma_x + sigma_y)/2) / d eps_z at constant volume
   axial,        ///< d sigma_z / d eps_z, whatever the other axes do
   none          ///< nothing is driven
 };
@@ -26,16 +27,19 @@ inline constexpr auto enum_names<Modulus> = enum_name_list<Modulus>({{Modulus::c
                                                                      {Modulus::young, "Young"},
                                                                      {Modulus::bulk, "bulk"},
                                                                      {Modulus::shear, "shear"},
+                                                                     {Modulus::undrained, "undrained Young"},
                                                                      {Modulus::axial, "axial"},
                                                                      {Modulus::none, "none"}});
 
 Modulus modulus_of(StageKind way);
 
-/// The stress whose change over the strain a modulus is: sigma_z; bulk: p; shear: (sigma_z - sigma_x)/2.
+/// The stress whose change over the strain a modulus is: sigma_z; bulk: p; shear: (sigma_z - sigma_x)/2, sliding
+/// sigma_xz; undrained: sigma_z - (sigma_x + sigma_y)/2.
 const char* stress_of(Modulus modulus);
 
 /// Results of one stage of one sample. p = (sigma_x + sigma_y + sigma_z)/3, q = sqrt(3 J2), which is |sigma_z -
-/// sigma_x| where two axes bear alike. NaN where a result is not defined.
+/// sigma_x| where two axes bear alike; of tests that slide q has the shear stresses too. NaN where a result is not
+/// defined.
 struct StageResult {
   StageRecord record;
   double strain_begin = kNaN;  ///< nominal strain of z from the start of the test
@@ -46,8 +50,8 @@ struct StageResult {
   double lateral_end = kNaN;
   /// Secant between two stresses [Pa]: those of the record; without any from half the stress at the end to the end
   /// (constrained, bulk, axial; from the begin where that is more), from the begin to half of the largest change
-  /// (Young, shear: E50), and over the whole stage where the stress falls. NaN where the stage does not go through
-  /// both.
+  /// (Young, shear, undrained: E50), and over the whole stage where the stress falls. NaN where the stage does not go
+  /// through both.
   double modulus = kNaN;
   double modulus_from = kNaN;       ///< the stress where the interval begins; see stress_of() [Pa]
   double modulus_to = kNaN;         ///< stress where the interval ends [Pa]
@@ -57,6 +61,9 @@ struct StageResult {
   double ratio_peak = kNaN;         ///< largest q/p
   double ratio_peak_strain = kNaN;  ///< strain of z at the largest q/p
   double ratio_end = kNaN;          ///< q/p at the end
+  double shear_end = kNaN;          ///< sliding: shear strain at the end, from the start of the test
+  double friction_peak = kNaN;      ///< sliding: largest |sigma_xz|/sigma_z; its arc tangent is the angle of friction
+  double friction_end = kNaN;       ///< sliding: |sigma_xz|/sigma_z at the end
 };
 
 /// Change of stress over that of strain between two stresses (the second lies behind the first), straight between
@@ -84,6 +91,9 @@ struct StageMeans {
   std::optional<MeanError> ratio_peak;
   std::optional<MeanError> ratio_peak_strain;
   std::optional<MeanError> ratio_end;
+  std::optional<MeanError> shear_end;
+  std::optional<MeanError> friction_peak;
+  std::optional<MeanError> friction_end;
 };
 
 /// Stresses between which the modulus of a stage is taken, in words without numbers where they are its own: "2 MPa to 5
@@ -98,6 +108,10 @@ std::vector<StageMeans> stage_means(const std::vector<MacroCurve>& curves, const
 
 /// Share of the largest p below which a point has no strength to speak of.
 inline constexpr double kBearingShare = 0.01;
+
+/// sigma_z - sigma_x of all recorded points; of stages that slide 2 sigma_xz, the difference of the principal stresses
+/// where sigma_x = sigma_z.
+std::vector<double> deviators(const MacroCurve& curve);
 
 /// q/p of all recorded points; NaN where p is not above this share of its largest value: what bears next to nothing has
 /// no strength to speak of. With 0 wherever p is above 0.

@@ -205,4 +205,14 @@ void add_curves(Plot& plot, const std::vector<MacroCurve>& curves, Stress member
   }
 }
 
+Series outline(const Histogram& h) {
+  const std::vector<double> density = h.density();
+  Series s{.label = "", .hover = "", .x = {}, .y = {}};
+  for (std::size_t k = 0; k < density.size(); ++k) {
+    s.x.insert(s.x.end(), {h.low + h.width() * static_cast<double>(k), h.low + h.width() * static_cast<double>(k + 1)});
+    s.y.insert(s.y.end(), {density[k], density[k]});
+  }
+  return s;
+}
+
 }  // namespace softgrain::report

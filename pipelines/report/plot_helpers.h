@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/histogram.h"
 #include "common/data/macro_result.h"
 #include "pipelines/compare/measured_stiffness.h"
 #include "pipelines/report/run_data.h"
@@ -50,6 +51,10 @@ SeriesStyle engine_style(const std::string& engine);
 
 /// One paragraph on the laws that the curves were made with; empty when they do not say.
 std::string law_paragraph(const std::vector<MacroCurve>& curves);
+
+/// Probability density of a histogram as the outline of its bins; normalised over all values, those outside included.
+/// Empty bins have density 0.
+Series outline(const Histogram& histogram);
 
 /// A column of macro curves.
 using Stress = std::vector<double> MacroCurve::*;

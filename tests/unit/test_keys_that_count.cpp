@@ -179,7 +179,7 @@ TEST_F(KeysThatCount, NoiseOfRunsInLammpsIsRefused) {
 
 TEST_F(KeysThatCount, KeysOfAnotherTestOrLawAreRefused) {
   const std::string macro = "kind = \"macro\"\n[macro]\nresolved = false\n";
-  refused(macro + "preload = 0.02\n", "goes with test = \"shear\"");
+  refused(macro + "preload = 0.02\n", "goes with test = \"shear\", \"undrained\"");
   refused(macro + "test = \"shear\"\npreload_steps = 3\n", "goes with preload");
   refused(macro + "twin_speed = 1e-4\n", "goes with a resolved twin");
   refused(comparison_stages() + "band_estimator = \"draws\"\n", "goes with bands");

@@ -112,12 +112,24 @@ MacroSpec staged_spec() {
 TEST(LammpsFiles, ScriptsAreForPeople) {
   for (const MacroSpec& spec :
        {staged_spec(), spec_of(MacroTest::oedometric), spec_of(MacroTest::isotropic), spec_of(MacroTest::shear),
-        spec_of(MacroTest::shear, 0.02), spec_of(MacroTest::oedometric, 0.0, Preparation::lammps)}) {
+        spec_of(MacroTest::shear, 0.02), spec_of(MacroTest::undrained), spec_of(MacroTest::undrained, 0.02),
+        spec_of(MacroTest::oedometric, 0.0, Preparation::lammps)}) {
     std::istringstream in(script_of(spec));
     for (std::string line; std::getline(in, line);) {
       EXPECT_LE(line.size(), 110U) << line;
       EXPECT_EQ(line.find(" /"), std::string::npos) << "a path: " << line;
     }
+  }
+}
+
+TEST(LammpsFiles, UndrainedBoxesKeepTheirVolume) {
+  for (const double preload : {0.0, 0.02}) {
+    const std::string script = script_of(spec_of(MacroTest::undrained, preload));
+    const std::string half = "exp(0.5*v_strain_end/(v_steps*v_increments))";
+    const auto first = script.find(half);
+    ASSERT_NE(first, std::string::npos);
+    EXPECT_NE(script.find(half, first + 1), std::string::npos) << "along x and y";
+    EXPECT_NE(script.find("exp(-v_strain_end/(v_steps*v_increments))"), std::string::npos);
   }
 }
 

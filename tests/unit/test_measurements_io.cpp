@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 
 #include "common/core/error.h"
 #include "common/data/fields.h"
@@ -201,6 +202,10 @@ TEST(MacroIo, LaterColumnsAreKeptAndMayBeAbsent) {
   full.stress_deviator = {5.0, 6.0};
   full.fabric = {0.1, 0.2};
   full.fabric_bodies = {0.3, 0.4};
+  full.stress_xz = {0.0, -5.0};
+  full.shear_strain = {0.0, 0.01};
+  full.inertial_number = {0.0, 1e-3};
+  full.fabric_tensor[4] = {0.0, -0.02};
   full.coordination_bodies = {4.0, 5.0};
   full.body_forces = {7.0, 8.0, 9.0};
   const std::string path = temporary("later.h5");
@@ -215,8 +220,19 @@ TEST(MacroIo, LaterColumnsAreKeptAndMayBeAbsent) {
   EXPECT_EQ(in[1].stress_deviator, full.stress_deviator);
   EXPECT_EQ(in[1].fabric, full.fabric);
   EXPECT_EQ(in[1].fabric_bodies, full.fabric_bodies);
+  EXPECT_EQ(in[1].stress_xz, full.stress_xz);
+  EXPECT_EQ(in[1].shear_strain, full.shear_strain);
+  EXPECT_EQ(in[1].inertial_number, full.inertial_number);
+  EXPECT_EQ(in[1].fabric_tensor, full.fabric_tensor);
   EXPECT_EQ(in[1].coordination_bodies, full.coordination_bodies);
   EXPECT_EQ(in[1].body_forces, full.body_forces);
+  // Forces over their mean of 8 N, in bins of 0.1: 0.875, 1, 1.125.
+  const std::vector<std::int64_t> counts =
+      h5::open_file(path).open("curves").open("curve_000001").open("force_distribution").integers("counts");
+  EXPECT_EQ(counts.size(), 100U);
+  EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}), 3);
+  EXPECT_EQ(counts[8], 1);
+  EXPECT_EQ(counts[11], 1);
   out[1].fabric.push_back(0.5);
   save_macro(out, path);
   EXPECT_THROW((void)load_macro(path), IoError);

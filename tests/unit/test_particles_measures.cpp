@@ -119,4 +119,50 @@ TEST_F(ParticlesMeasures, CostIsSplitAndNothingIsRecordedWhenNotAsked) {
   EXPECT_TRUE(same.system.particles.sphere[5].x == result.system.particles.sphere[5].x);
 }
 
+/// Every frame that keeps its contacts says stress, fabric and inertial number; a file gives them back.
+TEST_F(ParticlesMeasures, FramesOfAShearedCellSayTheirTensors) {
+  const ParticlesScene scene =
+      read("shear_rate = 0.5\n[time]\nsteps = 40\nstep = 1e-6\n[output]\nevery = 1e-5\nsnapshots = 3\n");
+  const ParticlesResult out = run_particles(scene, {});
+  ASSERT_TRUE(out.usable) << out.reason;
+  const Trajectory& t = out.trajectory;
+  ASSERT_EQ(t.time.size(), 5U);
+  ASSERT_EQ(t.stress.size(), 45U);
+  ASSERT_EQ(t.inertial_number.size(), 5U);
+  std::size_t with = 0;
+  for (std::size_t k = 0; k < 5; ++k) {
+    const bool has = std::isfinite(t.inertial_number[k]);
+    EXPECT_EQ(has, std::isfinite(t.stress[9 * k])) << k;
+    if (!has) continue;
+    ++with;
+    const double pressure = -(t.stress[9 * k] + t.stress[9 * k + 4] + t.stress[9 * k + 8]) / 3.0;
+    EXPECT_NEAR(t.inertial_number[k], 0.5 * 0.02 * std::sqrt(2500.0 / pressure), 1e-12) << k;
+    for (int a = 0; a < 3; ++a) EXPECT_NEAR(t.fabric[9 * k + 4 * static_cast<std::size_t>(a)], 1.0 / 3.0, 1e-6) << k;
+  }
+  EXPECT_EQ(with, 3U);
+  EXPECT_TRUE(std::isfinite(t.inertial_number.back()));
+  const ContactTotals<3> totals = contact_totals(out.system);
+  EXPECT_EQ(totals.inertial_number, t.inertial_number.back());
+  EXPECT_DOUBLE_EQ(totals.rate, 0.5);
+  const std::string path = directory_.file("trajectory.h5");
+  {
+    h5::AtomicFile file(path);
+    write_trajectory(file.root().create("trajectory"), t);
+    file.commit();
+  }
+  const Trajectory back = read_trajectory(h5::open_file(path).open("trajectory"));
+  EXPECT_EQ(back.fabric.back(), t.fabric.back());
+  EXPECT_EQ(back.stress.back(), t.stress.back());
+  EXPECT_EQ(back.inertial_number.back(), t.inertial_number.back());
+}
+
+TEST_F(ParticlesMeasures, WithoutShearThereIsNoInertialNumber) {
+  const ParticlesScene scene = read("[time]\nsteps = 2\nstep = 1e-6\n");
+  const ParticlesResult out = run_particles(scene, {});
+  const ContactTotals<3> totals = contact_totals(out.system);
+  EXPECT_TRUE(std::isnan(totals.inertial_number));
+  EXPECT_GT(totals.pressure, 0.0);
+  EXPECT_LT(totals.asymmetry, 1e-9);
+}
+
 }  // namespace

@@ -8,6 +8,7 @@
 #include "common/core/error.h"
 #include "common/core/law_range.h"
 #include "common/io/scene.h"
+#include "common/io/text_file.h"
 
 namespace softgrain {
 namespace {
@@ -95,6 +96,28 @@ TEST(Scene, UnknownKeyWithoutNearOneListsTheKnown) {
   (void)scene.root().number("beta", Unit::none);
   EXPECT_EQ(message_of([&] { scene.root().finish(); }),
             "scene.toml:1: unknown key 'zzzzzz' at the top level; known keys are beta");
+}
+
+TEST(Scene, WhatSoftgrainDoesNotModelIsSaidBesideTheNearestKey) {
+  const Scene scene = parse("beta = 2.0\n[packing]\naspect_ratio = 2.0\nbata = 1.0\nfluid_viscosity = 1e-3\n");
+  (void)scene.root().number("beta", Unit::none);
+  (void)scene.root().table("packing").number("beta", Unit::none, Range::any(), 1.0);
+  EXPECT_EQ(message_of([&] { scene.root().finish(); }),
+            "scene.toml:3: unknown key 'aspect_ratio' in [packing]; known keys are beta; softgrain has no "
+            "non-spherical grains: see README, 'What it is not for'\n"
+            "scene.toml:4: unknown key 'bata' in [packing]; nearest known key is 'beta'\n"
+            "scene.toml:5: unknown key 'fluid_viscosity' in [packing]; known keys are beta; softgrain has no fluids: "
+            "see README, 'What it is not for'");
+  EXPECT_NE(out_of_scope_text("STL").find("walls from meshes"), std::string::npos);
+  EXPECT_NE(out_of_scope_text("strength").find("breakage"), std::string::npos);
+  EXPECT_NE(out_of_scope_text("gravity").find("kind \"particles\""), std::string::npos);
+  for (const char* key : {"restrength", "mu_r", "bondary", "reshaped", "fluidity", ""})
+    EXPECT_EQ(out_of_scope_text(key), "") << key;
+}
+
+/// The messages point to it.
+TEST(Scene, ReadmeSaysWhatItIsNotFor) {
+  EXPECT_NE(read_text(SOFTGRAIN_SOURCE_DIR "/README.md").find("### What it is not for\n"), std::string::npos);
 }
 
 TEST(Scene, UnknownKeysAreFoundInsideElementsOfArrays) {

@@ -37,6 +37,41 @@ struct Elastic {
   }
 };
 
+TEST(StageResults, UndrainedAndSlidingStages) {
+  Elastic e;
+  e.curve.engine = "law";
+  e.curve.test = MacroTest::stages;
+  using K = StageKind;
+  e.curve.stages = {{"a", K::undrained, K::undrained}, {"b", K::direct_shear, K::direct_shear}};
+  e.add(0, {});
+  for (int k = 1; k <= 4; ++k) e.add(0, {{-0.0005 * k, -0.0005 * k, 0.001 * k}});
+  for (int k = 1; k <= 5; ++k) e.add(1, {{-0.002, -0.002, 0.004}});
+  MacroCurve& c = e.curve;
+  for (std::size_t k = 0; k < c.strain.size(); ++k) {
+    const double gamma = k < 5 ? 0.0 : 0.002 * static_cast<double>(k - 4);
+    c.shear_strain.push_back(gamma);
+    c.stress_xz.push_back(e.shear * gamma);
+    c.stress_xy.push_back(0.0);
+    c.stress_yz.push_back(0.0);
+    c.stress_deviator.push_back(c.stress_axial[k] - c.stress_x[k]);
+  }
+  c.stress_xz[8] *= 2.0;  // a peak
+  const auto results = stage_results(c);
+  ASSERT_EQ(results.size(), 2U);
+  EXPECT_EQ(modulus_of(K::undrained), Modulus::undrained);
+  EXPECT_NEAR(results[0].modulus, 3.0 * e.shear, 1e-6 * e.shear);  // 3 G at constant volume
+  EXPECT_TRUE(std::isnan(results[0].friction_peak));
+  EXPECT_NEAR(results[1].modulus_begin / e.shear, 1.0, 0.5);
+  EXPECT_NEAR(results[1].shear_end, 0.01, 1e-15);
+  EXPECT_NEAR(results[1].friction_end, e.shear * 0.01 / c.stress_axial.back(), 1e-15);
+  EXPECT_NEAR(results[1].friction_peak, e.shear * 0.016 / c.stress_axial.back(), 1e-15);
+  const double p = (c.stress_x.back() + c.stress_y.back() + c.stress_axial.back()) / 3.0;
+  const double axial = c.stress_axial.back() - c.stress_x.back();
+  EXPECT_NEAR(results[1].ratio_end, std::sqrt(axial * axial + 3.0 * std::pow(e.shear * 0.01, 2)) / p, 1e-12);
+  EXPECT_EQ(deviators(c)[4], c.stress_deviator[4]);
+  EXPECT_EQ(deviators(c).back(), 2.0 * c.stress_xz.back());
+}
+
 TEST(StageResults, ModuliAreThoseOfHooke) {
   Elastic e;
   e.curve.engine = "law";

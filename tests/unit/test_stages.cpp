@@ -14,12 +14,13 @@ namespace {
 
 using namespace softgrain;
 
-MacroSpec read(const std::string& stages, const std::string& macro = "") {
+MacroSpec read(const std::string& stages, const std::string& macro = "", Boundary boundary = Boundary::periodic) {
   const Scene scene = Scene::parse("[macro]\n" + macro + "\n" + stages, "scene.toml");
-  return scene.read([](const SceneTable& root) {
+  return scene.read([boundary](const SceneTable& root) {
     const SceneTable table = root.table("macro");
     MacroSpec spec;
     spec.steps = 7;
+    spec.boundary = boundary;
     for (const char* key : {"test", "strain", "preload", "preload_steps"}) (void)table.has(key);
     read_stages(root, table, spec);
     return spec;
@@ -61,6 +62,56 @@ TEST(Stages, EveryKindDrivesItsAxes) {
   expect_axis(axes.axis[0], false, -0.01);
   expect_axis(axes.axis[1], false, 0.0);
   expect_axis(axes.axis[2], true, 1000.0);
+}
+
+TEST(Stages, NamedPathsOfShear) {
+  const MacroStage undrained = one("kind = \"undrained\"\nstrain = 0.04");
+  expect_axis(undrained.axis[0], false, -0.02);
+  expect_axis(undrained.axis[1], false, -0.02);
+  expect_axis(undrained.axis[2], false, 0.04);
+  EXPECT_TRUE(undrained.logarithmic);
+  const MacroStage simple = one("kind = \"simple-shear\"\nstrain = 0.04");
+  for (const AxisDrive& axis : simple.axis) expect_axis(axis, false, 0.0);
+  EXPECT_EQ(simple.shear, 0.04);
+  EXPECT_DOUBLE_EQ(shear_increment(simple), 0.04 / 14.0);
+  const MacroStage direct = one("kind = \"direct-shear\"\nstrain = 0.04");
+  expect_axis(direct.axis[0], false, 0.0);
+  expect_axis(direct.axis[2], true, 0.0, 0);
+  EXPECT_EQ(direct.shear, 0.04);
+  expect_axis(one("kind = \"direct-shear\"\nstrain = 0.04\nnormal_stress = \"1 kPa\"").axis[2], true, 1000.0);
+}
+
+TEST(Stages, SlidingGoesBackAndForth) {
+  const auto s = read(
+                     "[[stage]]\nkind = \"direct-shear\"\nstrain = -0.04\n[[stage]]\nkind = \"unload\"\nstrain = 0.01\n"
+                     "[[stage]]\nkind = \"reload\"\n[[stage]]\nkind = \"cycles\"\ncount = 1\nstrain = 0.02")
+                     .stages;
+  ASSERT_EQ(s.size(), 5U);
+  EXPECT_EQ(s[1].shear, 0.01);
+  EXPECT_EQ(s[2].shear, -0.01);
+  EXPECT_EQ(s[3].shear, 0.02);
+  EXPECT_EQ(s[4].shear, -0.02);
+  for (std::size_t k = 0; k < 5; ++k) expect_axis(s[k].axis[2], true, 0.0, static_cast<std::int64_t>(k));
+}
+
+TEST(Stages, SlidingIsRefusedWhereItCannotBe) {
+  const auto message = [](const std::string& keys, Boundary boundary = Boundary::periodic) {
+    try {
+      (void)read("[[stage]]\n" + keys, "", boundary);
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  const auto expect = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  expect(message("kind = \"direct-shear\"\nstrain = 0.04", Boundary::walls), "needs boundary = \"periodic\"");
+  expect(message("kind = \"simple-shear\"\nstrain = 0.04", Boundary::walls), "needs boundary = \"periodic\"");
+  expect(message("kind = \"direct-shear\"\nstress = 100"), "normal_stress is the stress along z");
+  expect(message("kind = \"undrained\"\nstress = 100"), "goes by strain");
+  expect(message("kind = \"simple-shear\"\nstrain = 0.1\nnormal_stress = 5"), "goes with kind = \"direct-shear\"");
+  EXPECT_EQ(message("kind = \"undrained\"\nstrain = 0.04", Boundary::walls), "");
 }
 
 TEST(Stages, UnloadingGoesTheWayBackAndReloadingForth) {

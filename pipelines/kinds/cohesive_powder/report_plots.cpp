@@ -8,6 +8,7 @@
 
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
+#include "pipelines/report/plot_helpers.h"
 
 namespace softgrain::report {
 
@@ -126,17 +127,9 @@ const FittedCurve* main_curve(const PowderRun& run) {
 }  // namespace
 
 Series histogram(const std::vector<double>& values, double low, double high, int bins) {
-  std::vector<double> count(static_cast<std::size_t>(bins), 0.0);
-  const double width = (high - low) / bins;
-  for (const double v : values)
-    if (v >= low && v < high) ++count[std::min(static_cast<std::size_t>((v - low) / width), count.size() - 1)];
-  Series s{.label = "", .hover = "", .x = {}, .y = {}};
-  for (std::size_t b = 0; b < count.size(); ++b) {
-    const double density = values.empty() ? 0.0 : count[b] / (static_cast<double>(values.size()) * width);
-    s.x.insert(s.x.end(), {low + width * static_cast<double>(b), low + width * static_cast<double>(b + 1)});
-    s.y.insert(s.y.end(), {density, density});
-  }
-  return s;
+  Histogram counted(low, high, static_cast<std::size_t>(bins));
+  for (const double v : values) counted.add(v);
+  return outline(counted);
 }
 
 PowderForces powder_forces(const PowderRun& run) {

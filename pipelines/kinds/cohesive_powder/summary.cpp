@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/core/statistics.h"
+#include "common/data/histogram_io.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/svg_plot.h"
@@ -24,20 +25,6 @@ using nlohmann::json;
 constexpr std::array kHistograms{std::pair{"normal", &PowderForces::normal},
                                  std::pair{"normal_over_mean", &PowderForces::normal_over_mean},
                                  std::pair{"ratio", &PowderForces::ratio}, std::pair{"angle", &PowderForces::angle}};
-
-void add_counts(Histogram& sum, const Histogram& more) {
-  for (std::size_t k = 0; k < sum.counts.size(); ++k) sum.counts[k] += more.counts[k];
-  sum.below += more.below;
-  sum.above += more.above;
-}
-
-void write_histogram(const h5::Group& group, const Histogram& h) {
-  group.attribute("low", h.low);
-  group.attribute("high", h.high);
-  group.attribute("below", h.below);
-  group.attribute("above", h.above);
-  group.write("counts", h.counts);
-}
 
 void write_pairs(const h5::Group& group, const std::vector<PowderInteraction>& pairs) {
   constexpr std::size_t kColumns = 10;

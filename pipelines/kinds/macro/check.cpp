@@ -305,6 +305,7 @@ void warn_of_scene(const MacroSetup& setup, const BodyCounts& count, Findings& o
     for (const AxisDrive& drive : stage.axis)
       if (!drive.by_stress)
         step = std::max(step, std::abs(drive.value) / static_cast<double>(stage.steps * stage.increments_per_step));
+    step = std::max(step, std::abs(shear_increment(stage)));
     if (step > kLargeStep)
       out.warn(fmt::format(
           "{}an increment strains by {:.2g}: bodies jump by a good part of an overlap; more steps or "
@@ -328,7 +329,7 @@ AffineOverlap affine_overlap(const MacroSpec& spec) {
     const RoughStrains rough = rough_strains(spec);
     return {2.0 / 3.0 * rough.largest_volumetric, 2.0 * rough.largest_axial};
   }
-  const double strain = spec.test == MacroTest::shear ? spec.strain_end + spec.preload : spec.strain_end;
+  const double strain = is_shear(spec.test) ? spec.strain_end + spec.preload : spec.strain_end;
   const double along = 2.0 * strain;
   if (spec.test == MacroTest::isotropic) return {along, along};
   if (spec.test == MacroTest::oedometric) return {along / 3.0, along};

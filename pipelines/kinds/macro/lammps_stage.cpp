@@ -226,6 +226,11 @@ class Sample {
 
 }  // namespace
 
+void refuse_sliding(const MacroSpec& spec) {
+  if (any_slides(stages_of(spec)))
+    throw InputError("--engine lammps: simple-shear and direct-shear run in our own engine alone; leave it out");
+}
+
 std::optional<LammpsEngine> read_engine(const CommonOptions& options, std::int64_t bodies) {
   const auto engine = options.engine.empty() ? MacroEngine::softgrain : parse_enum<MacroEngine>(options.engine);
   if (!engine) {

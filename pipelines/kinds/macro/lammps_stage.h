@@ -21,6 +21,9 @@ struct LammpsEngine {
 /// our own engine. Throws InputError.
 std::optional<LammpsEngine> read_engine(const CommonOptions& options, std::int64_t bodies);
 
+/// LAMMPS strains axes alone. Throws InputError for a test that slides.
+void refuse_sliding(const MacroSpec& spec);
+
 /// What all samples share.
 struct LammpsRuns {
   MacroSetup setup;  ///< with the increments of runs by laws, law_spec()

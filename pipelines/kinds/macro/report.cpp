@@ -243,6 +243,7 @@ std::string macro_section(const RunData& run) {
     if (tests.size() > 1) body += "<h3>" + escape(to_string(test)) + "</h3>\n";
     body += figure_row({stress_figure(curves, test, true), stress_figure(curves, test, false)});
     body += stage_parts(curves, test) + figure_row({coordination_figure(curves, test)});
+    body += tensor_parts(curves, "macro-" + to_string(test));
     body += comparison_part(laws, twins) + bodies_table(curves) + law_paragraph(curves);
   }
   return section(

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -56,7 +57,31 @@ std::string slope_cell(const std::optional<MeanError>& m, double unit = 1.0) {
   return !m || is_told_from_zero(m->n, m->mean, m->error) ? cell(m, unit) : "not determined (" + cell(m, unit) + ")";
 }
 
-/// Columns with their prefixes, and what a stage has in them.
+/// The part of tests with stages that slide: shear stress over that along z, over the shear strain.
+std::string sliding_figure(std::vector<MacroCurve> curves) {
+  std::erase_if(curves, [](const MacroCurve& c) {
+    return c.shear_strain.size() != c.strain.size() || c.stress_xz.size() != c.strain.size();
+  });
+  for (MacroCurve& c : curves) c.strain = c.shear_strain;
+  constexpr Stress kPlace = &MacroCurve::stress_deviator;
+  Plot plot({.id = "macro-sliding-ratio",
+             .title = "Shear stress over normal stress",
+             .x = {.label = "shear strain [%]"},
+             .y = {.label = "σxz/σz"},
+             .height = 310.0});
+  add_curves(plot,
+             with_column(std::move(curves), kPlace,
+                         [](const MacroCurve& c) {
+                           std::vector<double> out;
+                           for (std::size_t k = 0; k < c.strain.size(); ++k)
+                             out.push_back(c.stress_axial[k] > 0.0 ? c.stress_xz[k] / c.stress_axial[k] : kNaN);
+                           return out;
+                         }),
+             kPlace, 1.0);
+  return plot.empty() ? "" : figure(plot.svg(), "The friction that is mobilised on planes normal to z.");
+}
+
+/// Columns with their prefixes, and what a stage has in them; nothing: it has no row.
 struct StageTable {
   std::vector<std::string> header;
   std::function<std::vector<std::string>(const StageMeans&)> cells;
@@ -72,7 +97,9 @@ std::string table_of(const std::vector<MacroCurve>& curves, const StageTable& wa
   for (const std::string& engine : engines)
     for (const StageMeans& s : stage_means(curves, engine)) {
       std::vector<std::string> row{s.record.name, engine_name(engine)};
-      for (std::string& one : wanted.cells(s)) row.push_back(std::move(one));
+      std::vector<std::string> cells = wanted.cells(s);
+      if (cells.empty()) continue;
+      for (std::string& one : cells) row.push_back(std::move(one));
       table.row(row);
     }
   return table.empty() ? "" : table.html();
@@ -107,12 +134,22 @@ std::string tables_of_stages(const std::vector<MacroCurve>& curves) {
                                   cell(s.ratio_end),
                                   cell(s.ratio_peak) + where};
                         }};
-  const std::string text = table_of(curves, moduli) + table_of(curves, ends);
+  const StageTable sliding{
+      {"shear strain [%]", "σxz/σz at the end", "largest σxz/σz", "angle of friction [°]"},
+      [](const StageMeans& s) -> std::vector<std::string> {
+        if (!s.shear_end) return {};
+        return {cell(s.shear_end, 0.01), cell(s.friction_end), cell(s.friction_peak),
+                s.friction_peak ? format_number(180.0 / std::numbers::pi * std::atan(s.friction_peak->mean), 3) : "–"};
+      }};
+  const bool slides = std::ranges::any_of(curves, [](const MacroCurve& c) { return !c.shear_strain.empty(); });
+  const std::string text =
+      table_of(curves, moduli) + table_of(curves, ends) + (slides ? table_of(curves, sliding) : "");
   if (text.empty()) return "";
   return text +
          paragraph(
              "Moduli are over logarithmic strains: constrained Δσz/Δεz, Young Δσz/Δεz at constant lateral stress, bulk "
-             "Δp/Δεv, shear Δ(σz − σx)/2Δ(εz − εx). The secant is taken between two values of that stress (p of bulk, "
+             "Δp/Δεv, shear Δ(σz − σx)/2Δ(εz − εx) or, sliding, Δσxz/Δγ, undrained Young Δ(σz − (σx + σy)/2)/Δεz. The "
+             "secant is taken between two values of that stress (p of bulk, "
              "(σz − σx)/2 of shear), which modulus_stress of the scene chooses. The tangent is that of a parabola "
              "through the first points; of an unloading it is the unloading modulus. The second table has what there "
              "is at the end of each stage, and the largest q/p with the axial strain where it is; q = √(3J₂), p the "
@@ -129,7 +166,7 @@ std::string stage_parts(const std::vector<MacroCurve>& curves, MacroTest test) {
                      "q/p, the strength that is mobilised.", [](const MacroCurve& c) { return stress_ratios(c); }),
          over_strain(curves, "macro-stages-volume", "Volume, stages", "volume lost [%]",
                      "Loss of volume since the start; where it falls, the packing dilates.", volumetric_strains)});
-  return out + tables_of_stages(curves);
+  return out + figure_row({sliding_figure(curves)}) + tables_of_stages(curves);
 }
 
 }  // namespace softgrain::report

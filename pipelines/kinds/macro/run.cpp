@@ -203,6 +203,7 @@ ReadyMacro ready_macro(const Scene& scene, const CommonOptions& options) {
   if (macro.setup.spec.preparation == Preparation::lammps && !lammps)
     throw InputError("key macro.preparation = \"lammps\" needs --engine lammps");
   if (macro.law.cells() != nullptr && lammps) throw InputError("--engine lammps: LAMMPS knows no cells; leave it out");
+  if (lammps) refuse_sliding(macro.setup.spec);
   if (macro.setup.bands > 0) require_draws(macro, lammps.has_value());
   require_noise(scene, macro.setup, lammps.has_value());
   return ready;

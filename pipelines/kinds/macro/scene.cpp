@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/contact/rolling_scene.h"
+#include "macrosim/test_protocol.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
@@ -139,6 +140,10 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   refuse_idle_test_keys(macro, root, {&out.setup.spec});
   if (cells != nullptr) {
     read_cells(root, macro, *cells, out.setup);
+    if (any_slides(stages_of(out.setup.spec)))
+      macro.add_error(root.has("stage") ? "stage" : "test",
+                      "cells of fines are rectangular: simple-shear and "
+                      "direct-shear go with a law of contacts");
     if (!is_known(out.spec.youngs_modulus)) require_known_modulus(root, law_file);
   } else {
     if (!law_file.empty()) root.refuse({"fines"}, "goes with a card of the cell law (see the guide)");

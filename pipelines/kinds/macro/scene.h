@@ -108,6 +108,10 @@ namespace report {
 /// Part of the section of macro scenes on stages: moduli and strength of all stages. For tests in stages it also has
 /// q/p and the change of volume over the axial strain. Empty where curves do not name their stages.
 std::string stage_parts(const std::vector<MacroCurve>& curves, MacroTest test);
+
+/// Part on the state at the end: stress over the mean stress, fabric of all contacts and of the strong ones, and the
+/// distribution of the contact forces. `id` begins the name of its plot. Empty where curves have none of these.
+std::string tensor_parts(const std::vector<MacroCurve>& curves, const std::string& id);
 }  // namespace report
 
 // Starting states that are not prepared: kept by another run, or given as a file.

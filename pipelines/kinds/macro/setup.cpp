@@ -172,17 +172,22 @@ void read_test(const SceneTable& t, MacroSpec& spec) {
   if (t.has("test"))
     spec.test = t.choice<MacroTest>(
         {"test",
-         "`\"oedometric\"` or `\"isotropic\"` compression, or `\"shear\"` at constant volume: z shortens and x "
-         "lengthens by the same logarithmic strain. `[[stage]]` tables replace it by a sequence of loadings",
+         "`\"oedometric\"` or `\"isotropic\"` compression; `\"shear\"` at constant volume: z shortens and x lengthens "
+         "by the same logarithmic strain; `\"undrained\"`: triaxial at constant volume; `\"simple-shear\"` at constant "
+         "volume; `\"direct-shear\"`: simple shear at constant stress along z. `[[stage]]` tables replace it by a "
+         "sequence of loadings",
          "\"oedometric\""},
-        {MacroTest::oedometric, MacroTest::isotropic, MacroTest::shear});
+        {MacroTest::oedometric, MacroTest::isotropic, MacroTest::shear, MacroTest::undrained, MacroTest::simple_shear,
+         MacroTest::direct_shear});
+  if (spec.test == MacroTest::simple_shear || spec.test == MacroTest::direct_shear) require_sliding(t, "test", spec);
   spec.strain_end =
       t.number({"strain", "strain at the end"}, Unit::none, Range{0.0, 0.5, true, false}, spec.strain_end);
   spec.preload =
-      t.number({"preload", "`\"shear\"`: isotropic strain before the shear, recorded as strains -`preload` to 0"},
+      t.number({"preload",
+                "`\"shear\"`, `\"undrained\"`, `\"simple-shear\"`, `\"direct-shear\"`: isotropic strain before the "
+                "shear, recorded as strains -`preload` to 0"},
                Unit::none, Range{0.0, 0.5, false, false}, spec.preload);
-  spec.preload_steps =
-      t.count({"preload_steps", "`\"shear\"`: recorded points of the preload"}, 1, 100000, spec.preload_steps);
+  spec.preload_steps = t.count({"preload_steps", "recorded points of the preload"}, 1, 100000, spec.preload_steps);
   spec.steps = t.count({"steps", "recorded points"}, 1, 100000, spec.steps);
   spec.increments_per_step = t.count({"increments_per_step", "relaxed strain increments per recorded point"}, 1, 10000,
                                      spec.increments_per_step);

@@ -177,7 +177,8 @@ RunOutcome run_task(const Stage& stage, const Kind& kind, typename Kind::State& 
 }
 
 /// Laws are asked at the places of a shelled twin.
-PointRecord places_record(const MacroPacking& packing, const Engine& engine) {
+PointRecord places_record(const MacroSpec& spec, const MacroPacking& packing, const Engine& engine) {
+  if (any_slides(stages_of(spec))) return {};  // places are those of a rectangular cell
   if (engine.laws != nullptr || engine.twin != Twin::shelled) return {};
   return [&](const MacroSystem& twin, MacroCurve& curve) { record_places(twin, packing, curve); };
 }
@@ -216,7 +217,7 @@ RunOutcome run_contacts(const Stage& stage, std::int64_t sample, const Engine& e
   const MacroPacking& packing = stage.runs.packings[static_cast<std::size_t>(sample)];
   state.curve = begin_curve(spec, packing, state.macro, engine.name, sample);
   if (laws != nullptr) state.curve.law = laws->identity;
-  RunOutcome out = run_task(stage, ContactRun{spec, places_record(packing, engine)}, state,
+  RunOutcome out = run_task(stage, ContactRun{spec, places_record(spec, packing, engine)}, state,
                             task_name(stage, sample, engine), progress);
   if (laws != nullptr && out.curve.usable) add_law_texts(*laws, state.macro.system, out.curve);
   run_again(stage, sample, engine, out.curve, progress);

@@ -117,6 +117,7 @@ class StageReader {
   static void refuse_foreign_keys(const SceneTable& t, const std::string& word) {
     const auto is = [&](StageKind kind) { return word == to_string(kind); };
     if (!is(StageKind::triaxial)) t.refuse({"lateral_stress"}, "goes with " + quoted(StageKind::triaxial));
+    if (!is(StageKind::direct_shear)) t.refuse({"normal_stress"}, "goes with " + quoted(StageKind::direct_shear));
     if (!is(StageKind::axes))
       t.refuse({"strain_x", "strain_y", "strain_z", "stress_x", "stress_y", "stress_z"},
                "goes with " + quoted(StageKind::axes));
@@ -133,8 +134,9 @@ class StageReader {
     const Range range = back ? Range{0.0, kLargestStrain, true, false} : Range::closed(-kLargestStrain, kLargestStrain);
     const double strain =
         t.number({"strain",
-                  "nominal strain from the start of the stage (`\"shear\"`: logarithmic); negative values lengthen the "
-                  "box. In `\"unload\"`, `\"reload\"` and `\"cycles\"`: amount of strain, above 0"},
+                  "nominal strain from the start of the stage (`\"shear\"`, `\"undrained\"`: logarithmic; "
+                  "`\"simple-shear\"`, `\"direct-shear\"`: shear strain); negative values lengthen the box. In "
+                  "`\"unload\"`, `\"reload\"` and `\"cycles\"`: amount of strain, above 0"},
                  Unit::none, range);
     if (strain == 0.0) t.add_error("strain", "must not be 0: kind = \"hold\" keeps the box as it is");
     return strain;
@@ -167,25 +169,22 @@ class StageReader {
                   strain ? "contradicts strain: give one of both" : "missing; give strain or stress");
       return;
     }
-    if (stress && way == StageKind::shear) {
-      t.add_error("stress", "shear at constant volume goes by strain");
+    if (stress && (way == StageKind::shear || way == StageKind::undrained || slides(way))) {
+      t.add_error("stress", way == StageKind::direct_shear
+                                ? "direct shear goes by strain; normal_stress is the stress along z that it holds"
+                                : "shear at constant volume goes by strain");
       return;
     }
     if (stress) {
       const double value = t.number(kStressKey, Unit::pressure, Range::positive());
       by_stress(stage, way, {{value, value, value}});
     } else {
-      by_strain(stage, way, sign * read_strain(t, stage.record.kind != stage.record.way));
+      drive_by_strain(stage, way, sign * read_strain(t, stage.record.kind != stage.record.way));
+      stage.isotropic = way == StageKind::isotropic;
     }
     if (way == StageKind::triaxial) hold_sides(t, stage);
-  }
-
-  static void by_strain(MacroStage& stage, StageKind way, double strain) {
-    stage.axis[2].value = strain;
-    if (way == StageKind::isotropic) stage.axis[0].value = stage.axis[1].value = strain;
-    if (way == StageKind::shear) stage.axis[0].value = -strain;
-    stage.logarithmic = way == StageKind::shear;
-    stage.isotropic = way == StageKind::isotropic;
+    if (way == StageKind::direct_shear) hold_normal_stress(t, stage);
+    if (slides(way)) require_sliding(t, "kind", spec_);
   }
 
   static void by_stress(MacroStage& stage, StageKind way, const Vec3& stress) {
@@ -203,6 +202,17 @@ class StageReader {
                                            Unit::pressure, Range::positive())
                                 : 0.0;
     for (const std::size_t k : {0U, 1U}) stage.axis[k] = {true, stress, given ? -1 : here()};
+  }
+
+  /// Holds the stress along z at its value at the start of the stage, or takes it to `normal_stress` where that is
+  /// given.
+  void hold_normal_stress(const SceneTable& t, MacroStage& stage) const {
+    const bool given = t.has("normal_stress");
+    const double stress = given ? t.number({"normal_stress", "of `\"direct-shear\"`: stress along z",
+                                            "the stress along z when the stage begins"},
+                                           Unit::pressure, Range::positive())
+                                : 0.0;
+    stage.axis[2] = {true, stress, given ? -1 : here()};
   }
 
   static void read_axes(const SceneTable& t, MacroStage& stage) {
@@ -275,6 +285,7 @@ class StageReader {
   /// The way of the unloading, the other way round.
   void turn_back(const MacroStage& unload, std::int64_t from, MacroStage& stage) const {
     stage.axis = unload.axis;
+    stage.shear = -unload.shear;
     stage.logarithmic = unload.logarithmic;
     stage.isotropic = unload.isotropic;
     for (AxisDrive& drive : stage.axis) {
@@ -326,12 +337,20 @@ double strain_under(double stress, const MacroSpec& spec) {
 
 }  // namespace
 
+void require_sliding(const SceneTable& t, const char* key, const MacroSpec& spec) {
+  if (spec.boundary == Boundary::walls)
+    t.add_error(key,
+                "planes of particles slide over each other along x, which side walls would stop: needs boundary = "
+                "\"periodic\"");
+}
+
 void read_modulus_stress(const SceneTable& t, std::array<double, 2>& interval) {
   if (!t.has("modulus_stress")) return;
   const std::vector<double> ends =
       t.numbers({"modulus_stress",
                  "two stresses between which moduli are taken, the lower one first: axial stress; mean stress for "
-                 "`\"isotropic\"` and `\"consolidation\"`; (σz - σx)/2 for `\"shear\"`",
+                 "`\"isotropic\"` and `\"consolidation\"`; (σz - σx)/2 for `\"shear\"`; σz - (σx + σy)/2 for "
+                 "`\"undrained\"`; σxz for `\"simple-shear\"` and `\"direct-shear\"`",
                  "depends on the kind of test; in a stage that of the whole test"},
                 Unit::pressure, Range::not_negative());
   if (ends.size() != 2 || !(ends[0] < ends[1]))
@@ -392,9 +411,11 @@ void refuse_idle_test_keys(const SceneTable& t, const SceneTable& stages, const 
   const auto refuse = [&](const char* key, const char* problem) {
     if (t.has(key)) t.add_error(key, problem);
   };
-  if (none([](const MacroSpec& s) { return s.test == MacroTest::shear; }))
+  if (none([](const MacroSpec& s) { return is_shear(s.test); }))
     for (const char* key : {"preload", "preload_steps"})
-      refuse(key, "goes with test = \"shear\": other tests have nothing before them (a test in [[stage]] has)");
+      refuse(key,
+             "goes with test = \"shear\", \"undrained\", \"simple-shear\" or \"direct-shear\": other tests have "
+             "nothing before them (a test in [[stage]] has)");
   else if (none([](const MacroSpec& s) { return preload_points(s) > 0; }))
     refuse("preload_steps", "goes with preload, the strain before the shear");
   if (none([](const MacroSpec& s) { return s.test != MacroTest::stages; })) {
@@ -428,6 +449,7 @@ RoughStrains rough_strains(const MacroSpec& spec) {
         now[k] = strain_under(drive.value, spec) / 3.0;
       largest = std::max(largest, std::abs(now[k] - before));
     }
+    largest = std::max(largest, std::abs(stage.shear));
     rough.way += largest;
     rough.largest_axial = std::max({rough.largest_axial, now[0], now[2]});
     rough.largest_volumetric = std::max(rough.largest_volumetric, now[0] + now[1] + now[2]);

@@ -31,6 +31,9 @@ void refuse_idle_test_keys(const SceneTable& t, const SceneTable& stages, const 
 /// their own. `part`: what parts are called.
 void refuse_idle_stages(const SceneTable& root, const char* part, const std::vector<SceneTable>& parts);
 
+/// Requires a periodic cell for a test or stage that slides, said at `key`.
+void require_sliding(const SceneTable& t, const char* key, const MacroSpec& spec);
+
 /// Whether `t` says this key of a test itself, or in each of its tables `stage`.
 bool says_in_test(const SceneTable& t, const std::string& key);
 

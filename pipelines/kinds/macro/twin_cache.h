@@ -43,7 +43,7 @@ SOFTGRAIN_EVERY_MEMBER(PreparationProtocol, start_fraction, inertial_number, fri
 SOFTGRAIN_EVERY_MEMBER(RollingResistance, friction, stiffness, damping)
 SOFTGRAIN_EVERY_MEMBER(AxisDrive, by_stress, value, as_at)
 SOFTGRAIN_EVERY_MEMBER(StageRecord, name, kind, way, modulus_stress, by_stress)
-SOFTGRAIN_EVERY_MEMBER(MacroStage, record, axis, logarithmic, isotropic, steps, increments_per_step, tolerance)
+SOFTGRAIN_EVERY_MEMBER(MacroStage, record, axis, shear, logarithmic, isotropic, steps, increments_per_step, tolerance)
 SOFTGRAIN_EVERY_MEMBER(TwinMotion, relaxation, speed, step_factor, settle_time, restitution)
 SOFTGRAIN_EVERY_MEMBER(MacroSpec, boundary, construction, bodies, preparation, protocol, soft_share, exponent,
                        solid_radius_max, solid_polydispersity, soft_radius_max, soft_polydispersity, solid_sizes,

@@ -105,8 +105,8 @@ std::string facts_of(const std::vector<ComparedScene>& scenes, const std::string
 }
 
 std::string scene_part(const std::vector<ComparedScene>& compared, const ComparedCurves& scene) {
-  const bool shear = !scene.curves.empty() &&
-                     (scene.curves.front().test == MacroTest::shear || scene.curves.front().test == MacroTest::stages);
+  const bool shear =
+      !scene.curves.empty() && (is_shear(scene.curves.front().test) || scene.curves.front().test == MacroTest::stages);
   std::string body = "<h3>" + escape(scene.name) + "</h3>\n";
   body += figure_row({stress_figure(scene, &MacroCurve::stress_axial, "axial"),
                       shear ? stress_figure(scene, &MacroCurve::stress_deviator, "deviator")

@@ -18,7 +18,7 @@ namespace softgrain {
 namespace {
 
 /// Where the volume is held q/p is what is predicted; elsewhere the pressure is, which may grow a thousandfold.
-double bearing_share(const MacroCurve& c) { return c.stages.front().kind == StageKind::shear ? kBearingShare : 0.0; }
+double bearing_share(const MacroCurve& c) { return keeps_volume(c.stages.front().kind) ? kBearingShare : 0.0; }
 
 ResponseCurve response_of(const MacroCurve& c, const std::string& group) {
   ResponseCurve out{group, {}, mean_stresses(c), {}, stress_ratios(c, bearing_share(c))};
@@ -31,8 +31,10 @@ ResponseCurve response_of(const MacroCurve& c, const std::string& group) {
   return out;
 }
 
-/// A whole test in one stage.
-bool of_one_stage(const MacroCurve& c) { return c.usable && c.stages.size() == 1 && c.more.contains(kSolidFraction); }
+/// A whole test in one stage, whose axes strain.
+bool of_one_stage(const MacroCurve& c) {
+  return c.usable && c.stages.size() == 1 && !slides(c.stages.front().way) && c.more.contains(kSolidFraction);
+}
 
 /// A whole test in one stage, with a number at every point.
 bool predictable(const MacroCurve& c) {
@@ -285,11 +287,11 @@ std::string prediction_text(const std::vector<PredictionSummary>& predictions) {
       text += fmt::format("    strain {:.3g} %: ", 100.0 * e);
       if (s.kind == StageKind::isotropic)
         text += value_text("1000 p/E", p.pressure, kThousand);
-      else if (s.kind == StageKind::shear)
+      else if (keeps_volume(s.kind))
         text += value_text("q/p", p.deviator, 1.0);
       else
         text += value_text("1000 axial/E", p.axial, kThousand) + "; " + value_text("lateral", p.lateral, kThousand);
-      text += p.beyond && s.kind != StageKind::shear ? "; beyond the pressures that were fitted\n" : "\n";
+      text += p.beyond && !keeps_volume(s.kind) ? "; beyond the pressures that were fitted\n" : "\n";
     }
   }
   return text.empty() ? text : "predicted from smaller spans:\n" + text;

@@ -215,17 +215,17 @@ std::string equation_part(const std::vector<Variant>& variants, const RunData& r
 }
 
 PredictedValue value_of(const PredictedPoint& p, StageKind kind) {
-  return kind == StageKind::shear ? p.deviator : kind == StageKind::isotropic ? p.pressure : p.axial;
+  return keeps_volume(kind) ? p.deviator : kind == StageKind::isotropic ? p.pressure : p.axial;
 }
 
 std::string quantity(StageKind kind) {
-  return kind == StageKind::shear ? "q/p" : kind == StageKind::isotropic ? "p/E" : "axial stress over E";
+  return keeps_volume(kind) ? "q/p" : kind == StageKind::isotropic ? "p/E" : "axial stress over E";
 }
 
 /// Bands of all spans under one loading, and dots where there is a variant of that span.
 std::string prediction_figure(const std::vector<const PredictionSummary*>& spans, std::size_t number) {
   const PredictionSummary& first = *spans.front();
-  const bool shear = first.kind == StageKind::shear;
+  const bool shear = keeps_volume(first.kind);
   Plot plot({.id = fmt::format("material-predicted-{}", number),
              .title = "Predicted from smaller spans" + (first.loading.empty() ? "" : ", " + first.loading),
              .x = {.label = "axial strain [%]"},
@@ -272,13 +272,12 @@ std::string prediction_part(const RunData& run) {
     groups[{s.family, s.loading}].push_back(&s);
     const PredictedPoint& p = point_near(s, 0.05);
     const PredictedValue v = value_of(p, s.kind);
-    table.row(
-        {s.family, s.loading, format_number(s.span, 5), format_number(100.0 * p.strain, 3), quantity(s.kind),
-         interval_cell(v) + (p.beyond && s.kind != StageKind::shear ? ", beyond the pressures that were fitted" : ""),
-         v.measured ? format_with_error(v.measured->mean, v.measured->error_or_zero()) : "–",
-         !v.measured  ? "–"
-         : v.inside() ? "yes"
-                      : "no"});
+    table.row({s.family, s.loading, format_number(s.span, 5), format_number(100.0 * p.strain, 3), quantity(s.kind),
+               interval_cell(v) + (p.beyond && !keeps_volume(s.kind) ? ", beyond the pressures that were fitted" : ""),
+               v.measured ? format_with_error(v.measured->mean, v.measured->error_or_zero()) : "–",
+               !v.measured  ? "–"
+               : v.inside() ? "yes"
+                            : "no"});
   }
   std::vector<std::string> figures;
   for (const auto& [key, spans] : groups) figures.push_back(prediction_figure(spans, figures.size()));
@@ -296,10 +295,11 @@ std::string material_section(const RunData& run) {
   body += figure_row({ratio_figure(variants), rattler_figure(variants)});
   body += equation_part(variants, run);
   body += prediction_part(run);
-  for (const Variant& v : variants) {
+  for (std::size_t k = 0; k < variants.size(); ++k) {
+    const Variant& v = variants[k];
     if (v.curves.empty()) continue;
     if (variants.size() > 1) body += "<h3>" + escape(v.name) + "</h3>\n";
-    body += stage_parts(v.curves, MacroTest::oedometric);
+    body += stage_parts(v.curves, MacroTest::oedometric) + tensor_parts(v.curves, fmt::format("material-{}", k + 1));
   }
   return section("material", "Material",
                  "Stress against strain of the material with every grain resolved, for each variant.",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "common/core/error.h"
@@ -147,6 +148,8 @@ void require_engine(const MaterialScene& scene, const std::optional<LammpsEngine
   for (const MaterialVariant& v : scene.variants)
     if (v.setup.spec.preparation == Preparation::lammps && !lammps)
       throw InputError("key packing.preparation = \"lammps\" needs --engine lammps");
+  if (lammps)
+    for (const MaterialVariant& v : scene.variants) refuse_sliding(v.setup.spec);
 }
 
 }  // namespace
@@ -205,11 +208,34 @@ void reject_failures(const std::vector<VariantFailure>& failures, SummaryHead& h
   for (const VariantFailure& f : failures) head.mark_unusable(f.problem);
 }
 
+namespace {
+
+struct TensorName {
+  const char* name;
+  std::vector<double> MacroCurve::*values;
+};
+
+/// Beside the stresses of the axes; the shear strain of tests that slide.
+constexpr std::array kTensorNames{
+    TensorName{"stress_xy [Pa]", &MacroCurve::stress_xy}, TensorName{"stress_xz [Pa]", &MacroCurve::stress_xz},
+    TensorName{"stress_yz [Pa]", &MacroCurve::stress_yz}, TensorName{"stress_asymmetry", &MacroCurve::stress_asymmetry},
+    TensorName{"shear_strain", &MacroCurve::shear_strain}};
+
+/// Empty where it was not recorded, as by LAMMPS.
+std::string cell_of(const std::vector<double>& column, std::size_t k) {
+  return k < column.size() ? fmt::format("{:.8g}", column[k]) : "";
+}
+
+}  // namespace
+
 TextTable points_of(const std::vector<VariantResult>& results) {
   TextTable table{{"variant", "sample", "stage", "strain_x", "strain_y", "strain_z", "stress_x [Pa]", "stress_y [Pa]",
                    "stress_z [Pa]", "p/E", "q/p", "coordination", "residual"},
                   {}};
   for (const auto& [name, values] : results.front().curves.front().more) table.header.push_back(name);
+  for (const TensorName& t : kTensorNames) table.header.emplace_back(t.name);
+  for (const char* name : {"fabric_tensor", "fabric_strong"})
+    for (const char* component : kTensorComponents) table.header.push_back(fmt::format("{}_{}", name, component));
   for (const VariantResult& r : results)
     for (const MacroCurve& c : r.curves) {
       const std::vector<double> p = mean_stresses(c);
@@ -222,6 +248,9 @@ TextTable points_of(const std::vector<VariantResult>& results) {
               p[k] / c.start.youngs_modulus, ratio[k], c.coordination[k], c.residual[k]})
           row.push_back(std::isfinite(x) ? fmt::format("{:.8g}", x) : "");
         for (const auto& [name, values] : c.more) row.push_back(fmt::format("{:.6g}", values[k]));
+        for (const TensorName& t : kTensorNames) row.push_back(cell_of(c.*t.values, k));
+        for (const TensorColumns* tensor : {&c.fabric_tensor, &c.fabric_strong})
+          for (const std::vector<double>& component : *tensor) row.push_back(cell_of(component, k));
         table.rows.push_back(std::move(row));
       }
     }

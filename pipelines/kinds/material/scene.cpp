@@ -407,6 +407,7 @@ std::string stage_text(const MacroStage& stage) {
   std::string text = stage.record.name;
   for (const AxisDrive& axis : stage.axis)
     text += fmt::format(" {}{:g}", axis.by_stress ? "stress " : "", axis.as_at >= 0 ? 0.0 : axis.value);
+  if (stage.shear != 0.0) text += fmt::format(" shear {:g}", stage.shear);
   return text + fmt::format(" in {} x {}, tolerance {:g}", stage.steps, stage.increments_per_step, stage.tolerance);
 }
 

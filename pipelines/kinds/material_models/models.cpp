@@ -16,6 +16,7 @@
 #include "macrosim/body_contacts.h"
 #include "macrosim/cell_specimen.h"
 #include "macrosim/constructed_packing.h"
+#include "macrosim/test_protocol.h"
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/run/result_cache.h"
@@ -98,6 +99,7 @@ std::int64_t bodies_for(MacroSpec spec, double cut, std::size_t coarse, std::uin
 }
 
 MacroCurve cells_of(const OneSample& one, std::size_t sample) {
+  if (any_slides(stages_of(spec_of(one.truth)))) throw UnusableResult("cells are rectangular: they do not slide");
   const MaterialModel& m = one.model;
   const MacroPacking& whole = one.truth.packings->at(sample);
   const CoarseAndFine parts = parted_or_refused(whole, cut_of(m, one.truth));
@@ -181,7 +183,7 @@ MacroCurve mean_field_of(const OneSample& one, std::size_t sample) {
   const MacroCurve& truth = one.truth.curves[sample];
   const double pressure = spec_of(one.truth).start_pressure;
   const CellCard& card = *one.model.card;
-  if (truth.test == MacroTest::shear) throw UnusableResult("the mean field knows no shear");
+  if (is_shear(truth.test)) throw UnusableResult("the mean field knows no shear");
   if (truth.test == MacroTest::stages) throw UnusableResult("the mean field knows no way back");
   double onset = kNaN;
   if (one.model.start == ModelStart::density) {

@@ -191,7 +191,7 @@ ModelScore score(const ModelRun& run, bool blind) {
   s.axial_at_2 = free(two) ? excess(m, t, two) : kNaN;
   s.axial_at_end = free(end) ? excess(m, t, end) : kNaN;
   s.truth_error = error_at(truth, end);
-  if (run.truth->variant->setup.spec.test == MacroTest::shear) {
+  if (is_shear(run.truth->variant->setup.spec.test)) {
     const auto q_truth = mean_of(truth, ratio_of);
     const auto q_model = mean_of(pairs.model, ratio_of);
     s.ratio_at_2 = excess(q_model, q_truth, two);

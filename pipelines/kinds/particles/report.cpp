@@ -68,6 +68,72 @@ FrameEnergies load_energies(const std::string& path) {
   return e;
 }
 
+/// Stress and inertial number of the recorded frames of a cell that is periodic along all axes.
+struct FrameStresses {
+  std::vector<double> time;
+  std::vector<double> pressure;  ///< compression positive [Pa; of disks N/m]
+  std::vector<double> shear;     ///< xy [the same]
+  std::vector<double> inertial_number;
+};
+
+FrameStresses load_stresses(const std::string& path) {
+  const h5::Group root = h5::open_file(path);
+  const h5::Group frames = root.open("trajectory");
+  FrameStresses s;
+  if (!frames.has("stress") || !frames.has("inertial_number")) return s;
+  const std::vector<double> time = frames.doubles("time");
+  const std::vector<double> stress = frames.doubles("stress");
+  const std::vector<double> inertial = frames.doubles("inertial_number");
+  if (stress.size() != 9 * time.size() || inertial.size() != time.size())
+    throw IoError(path + ": as many stresses as times are needed");
+  const bool plane = root.has_attribute("dimension") && root.integer("dimension") == 2;
+  for (std::size_t k = 0; k < time.size(); ++k) {
+    const double* t = &stress[9 * k];
+    if (!std::isfinite(t[0])) continue;  // a frame without its contacts
+    s.time.push_back(time[k]);
+    s.inertial_number.push_back(inertial[k]);
+    s.pressure.push_back(plane ? -(t[0] + t[4]) / 2.0 : -(t[0] + t[4] + t[8]) / 3.0);
+    s.shear.push_back(0.5 * (t[1] + t[3]));
+  }
+  return s;
+}
+
+std::string stress_figure(const FrameStresses& s) {
+  double largest = 0.0;
+  for (const auto* values : {&s.pressure, &s.shear})
+    for (const double v : *values)
+      if (std::isfinite(v)) largest = std::max(largest, std::abs(v));
+  if (s.time.size() < 2 || largest == 0.0) return "";
+  const SiPrefix prefix = si_prefix(largest);
+  Plot plot({.id = "particles-stress",
+             .title = "Stress over time",
+             .x = {.label = "time [s]"},
+             .y = {.label = "stress [" + prefix.symbol + "Pa]"}});
+  std::size_t color = 0;
+  for (const auto& [label, values] : {std::pair{"pressure", &s.pressure}, {"shear stress xy", &s.shear}}) {
+    Series line{.label = label, .hover = "", .x = s.time, .y = *values, .style = {.color = palette::cycle(color++)}};
+    for (double& v : line.y) v /= prefix.factor;
+    plot.add(std::move(line));
+  }
+  return figure(plot.svg(),
+                "From the contacts of the periodic cell; of disks N/m instead of Pa. Pressure is positive in "
+                "compression, shear stress along the shear.");
+}
+
+std::string inertial_figure(const FrameStresses& s) {
+  if (s.time.size() < 2 || std::ranges::none_of(s.inertial_number, [](double i) { return i > 0.0; })) return "";
+  Plot plot({.id = "particles-inertial-number",
+             .title = "Inertial number over time",
+             .x = {.label = "time [s]"},
+             .y = {.label = "I = rate d √(density/p)", .scale = Scale::logarithmic}});
+  plot.add({.label = "",
+            .hover = "inertial number",
+            .x = s.time,
+            .y = s.inertial_number,
+            .style = {.color = palette::blue}});
+  return figure(plot.svg(), "d: mean diameter by number; below 1e-3 a flow counts as quasi-static.");
+}
+
 std::string energy_figure(const FrameEnergies& e) {
   double largest = 0.0;
   for (const auto* values : {&e.translational, &e.rotational, &e.gravitational})
@@ -96,6 +162,15 @@ std::string energies_section(const RunData& run) {
   const FrameEnergies* energies = run.file<FrameEnergies>("run.h5", load_energies);
   const std::string drawn = energies == nullptr ? "" : energy_figure(*energies);
   return drawn.empty() ? "" : section("energy", "Energies", "Energies of the recorded frames.", figure_row({drawn}));
+}
+
+std::string stresses_section(const RunData& run) {
+  const FrameStresses* stresses = run.file<FrameStresses>("run.h5", load_stresses);
+  if (stresses == nullptr) return "";
+  const std::string stress = stress_figure(*stresses);
+  return stress.empty() ? ""
+                        : section("stress", "Stress", "Stress of the contacts in the recorded frames.",
+                                  figure_row({stress, inertial_figure(*stresses)}));
 }
 
 std::string particles_section(const RunData& run) {
@@ -306,6 +381,7 @@ std::vector<RunValue> values_of(const report::RunData& run) {
   if (scene.particles.empty()) return out;
   out.push_back({"kinetic energy at the end", "J", scene.kinetic_energy});
   for (const auto& [key, name, unit] : {std::tuple{"coordination_number", "coordination number at the end", ""},
+                                        {"inertial_number", "inertial number at the end", ""},
                                         {"pressure", "pressure", scene.dimension == 2 ? "N/m" : "Pa"}})
     if (const auto at = scene.contact_state.find(key); at != scene.contact_state.end() && at->is_number())
       out.push_back({name, unit, at->get<double>()});
@@ -332,7 +408,9 @@ KindResults particles_results() {
                      .check = check_particles_file,
                      .visit = visit_particles},
                     {.names = "run(_contacts)?\\.xdmf"}},
-          .sections = {{Part::states, report::energies_section}, {Part::states, report::particles_section}},
+          .sections = {{Part::states, report::energies_section},
+                       {Part::states, report::stresses_section},
+                       {Part::states, report::particles_section}},
           .lines = lines_of,
           .values = values_of,
           .next = next_of};

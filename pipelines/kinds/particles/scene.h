@@ -35,6 +35,7 @@ void visit_particles(const std::string& path, SnapshotChoice choice, const Visit
 
 namespace report {
 std::string energies_section(const RunData& run);   ///< energies of the recorded frames over time
+std::string stresses_section(const RunData& run);   ///< stress and inertial number over time, of periodic cells
 std::string particles_section(const RunData& run);  ///< final states and contacts
 }  // namespace report
 

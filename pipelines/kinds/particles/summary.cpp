@@ -114,12 +114,21 @@ std::vector<std::string> guard_remarks(const GuardSpec& spec, const GuardReport&
 
 /// The state of all contacts at the end; see ContactTotals.
 template <int D>
+json rows_json(const Matrix<D>& tensor) {
+  json out = json::array();
+  for (const Vec<D>& row : tensor.row) out.push_back(row.v);
+  return out;
+}
+
+template <int D>
 json contact_state_json(const ContactTotals<D>& totals) {
   json out = {{"contacts", totals.contacts}, {"coordination_number", totals.coordination_number}};
+  if (totals.contacts > 0) out["fabric"] = rows_json(totals.fabric);
   if (!totals.has_stress) return out;
   out["pressure"] = totals.pressure;
-  out["stress"] = json::array();
-  for (const Vec<D>& row : totals.stress.row) out["stress"].push_back(row.v);
+  out["stress"] = rows_json(totals.stress);
+  out["stress_asymmetry"] = totals.asymmetry;
+  if (std::isfinite(totals.inertial_number)) out["inertial_number"] = totals.inertial_number;
   return out;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace softgrain {
@@ -41,5 +42,18 @@ struct Histogram {
     return out;
   }
 };
+
+/// Distribution of contact forces over their mean, f/<f>, in bins of 0.1 from 0 to 10 (Radjai, Jean, Moreau, Roux 1996,
+/// DOI 10.1103/PhysRevLett.77.274: exponential above the mean). Forces of any unit; empty where their mean is not
+/// positive.
+inline std::optional<Histogram> force_distribution(const std::vector<double>& forces) {
+  double sum = 0.0;
+  for (const double f : forces) sum += f;
+  if (!(sum > 0.0)) return std::nullopt;
+  const double mean = sum / static_cast<double>(forces.size());
+  Histogram out(0.0, 10.0, 100);
+  for (const double f : forces) out.add(f / mean);
+  return out;
+}
 
 }  // namespace softgrain
