@@ -20,7 +20,12 @@ MaterialLaw fit_coarsest(const RecipeScene& scene, const std::vector<VariantResu
   MaterialLawScene law{
       scene.material,
       pair_of(scene.levels[0], scene.levels[1], fines_over_coarse(scene, 0) / (1.0 + fines_over_coarse(scene, 0))),
-      cut_of_pair(scene.levels[0], scene.levels[1]), scene.mixtures, scene.cells, false, false, {}};
+      cut_of_pair(scene.levels[0], scene.levels[1]),
+      scene.mixtures,
+      scene.cells,
+      false,
+      false,
+      {}};
   std::vector<VariantResult> some{results[scene.slice[1]], results[kSheared], results[scene.slice[0]]};
   for (const std::size_t v : scene.mixed[0]) some.push_back(results[v]);
   return fit_material_law(law, some, states, seed);
@@ -93,9 +98,13 @@ std::size_t nearest_mixture(const RecipeScene& scene) {
 
 }  // namespace
 
+std::size_t packing_of_ratio(const RecipeScene& scene) {
+  return scene.checked ? *scene.checked : nearest_mixture(scene);
+}
+
 ResponseShape shape_of(const RecipeScene& scene, const std::vector<VariantResult>& results, const StateFit& states) {
   std::vector<OneShape> all;
-  const std::size_t chosen = scene.checked ? *scene.checked : nearest_mixture(scene);
+  const std::size_t chosen = packing_of_ratio(scene);
   ResponseShape out;
   for (std::size_t v = 0; v < results.size(); ++v) {
     if (results[v].variant->setup.spec.test != MacroTest::oedometric) continue;
