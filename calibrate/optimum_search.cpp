@@ -18,7 +18,7 @@ namespace softgrain {
 
 namespace {
 
-using Place = std::vector<double>;
+using BoxPoint = std::vector<double>;
 
 constexpr int kReplicates = 400;
 
@@ -37,10 +37,10 @@ double best_of_quadratic(const std::function<double(double)>& f) {
 }
 
 /// Stationary point of a surface of two inputs inside the box.
-std::optional<Place> stationary_point(const ResponseSurface& surface) {
-  const Place g = surface.gradient({0.0, 0.0});
-  const Place by_x = surface.gradient({1.0, 0.0});
-  const Place by_y = surface.gradient({0.0, 1.0});
+std::optional<BoxPoint> stationary_point(const ResponseSurface& surface) {
+  const BoxPoint g = surface.gradient({0.0, 0.0});
+  const BoxPoint by_x = surface.gradient({1.0, 0.0});
+  const BoxPoint by_y = surface.gradient({0.0, 1.0});
   const double xx = by_x[0] - g[0];
   const double xy = by_x[1] - g[1];
   const double yy = by_y[1] - g[1];
@@ -49,19 +49,19 @@ std::optional<Place> stationary_point(const ResponseSurface& surface) {
   const double x = (-g[0] * yy + g[1] * xy) / determinant;
   const double y = (-g[1] * xx + g[0] * xy) / determinant;
   const bool inside = x > 0.0 && x < 1.0 && y > 0.0 && y < 1.0;
-  return inside ? std::optional(Place{x, y}) : std::nullopt;
+  return inside ? std::optional(BoxPoint{x, y}) : std::nullopt;
 }
 
-double distance(const Place& a, const Place& b) {
+double box_distance(const BoxPoint& a, const BoxPoint& b) {
   double square = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) square += (a[k] - b[k]) * (a[k] - b[k]);
   return std::sqrt(square);
 }
 
 /// Surface through some of the points.
-ResponseSurface surface_of(const std::vector<Place>& points, const std::vector<double>& values,
+ResponseSurface surface_of(const std::vector<BoxPoint>& points, const std::vector<double>& values,
                            const std::vector<std::size_t>& some) {
-  std::vector<Place> at;
+  std::vector<BoxPoint> at;
   std::vector<std::vector<double>> z;
   for (const std::size_t p : some) {
     at.push_back(points[p]);
@@ -70,17 +70,18 @@ ResponseSurface surface_of(const std::vector<Place>& points, const std::vector<d
   return {at, z, std::vector<double>(some.size(), 1.0)};
 }
 
-std::vector<std::size_t> nearest_points(const std::vector<Place>& points, const Place& to, std::size_t count) {
+std::vector<std::size_t> nearest_points(const std::vector<BoxPoint>& points, const BoxPoint& to, std::size_t count) {
   std::vector<std::size_t> order(points.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return distance(points[a], to) < distance(points[b], to); });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return box_distance(points[a], to) < box_distance(points[b], to);
+  });
   order.resize(std::min(count, order.size()));
   std::sort(order.begin(), order.end());
   return order;
 }
 
-bool is_inside(const Place& u) {
+bool is_inside(const BoxPoint& u) {
   return std::all_of(u.begin(), u.end(), [](double x) { return x > 0.0 && x < 1.0; });
 }
 
@@ -104,8 +105,8 @@ std::vector<double> drawn_values(const SearchedPoints& data, const OptimumEstima
 }
 
 /// Fits `out` to the points near the optimum, which the window follows.
-SurfaceOptimum fit_window(const std::vector<Place>& points, const std::vector<double>& means, std::size_t coefficients,
-                          bool maximise, OptimumEstimate& out) {
+SurfaceOptimum fit_window(const std::vector<BoxPoint>& points, const std::vector<double>& means,
+                          std::size_t coefficients, bool maximise, OptimumEstimate& out) {
   const std::size_t count = std::max(coefficients + 2, (points.size() + 1) / 2);
   out.fitted = nearest_points(points, points.front(), points.size());
   SurfaceOptimum best = optimum_of(surface_of(points, means, out.fitted), maximise);
@@ -127,7 +128,8 @@ double widening_of(const SearchedPoints& data, const OptimumEstimate& fit) {
   return student_over_normal(static_cast<double>(fit.fitted.size() - coefficients));
 }
 
-Estimate estimated(double value, const std::vector<double>& replicates, double factor, double least, double most) {
+Estimate interval_estimate(double value, const std::vector<double>& replicates, double factor, double least,
+                           double most) {
   if (!std::isfinite(factor)) return {value, kInfinity, least, most};
   const auto [from, to] = interval95(replicates);
   const auto [low, high] = widened(value, std::min(from, value), std::max(to, value), factor, false);
@@ -140,8 +142,8 @@ SurfaceOptimum optimum_of(const ResponseSurface& surface, bool maximise) {
   if (surface.dimensions() < 1 || surface.dimensions() > 2 || surface.quantities() != 1)
     throw InputError("optimum of a surface: one or two inputs and one quantity");
   const double sign = maximise ? 1.0 : -1.0;
-  const auto height = [&](const Place& u) { return sign * surface.value(u)[0]; };
-  std::vector<Place> candidates;
+  const auto height = [&](const BoxPoint& u) { return sign * surface.value(u)[0]; };
+  std::vector<BoxPoint> candidates;
   if (surface.dimensions() == 1) {
     candidates.push_back({best_of_quadratic([&](double x) { return height({x}); })});
   } else {
@@ -152,7 +154,7 @@ SurfaceOptimum optimum_of(const ResponseSurface& surface, bool maximise) {
     }
   }
   const auto best = std::max_element(candidates.begin(), candidates.end(),
-                                     [&](const Place& a, const Place& b) { return height(a) < height(b); });
+                                     [&](const BoxPoint& a, const BoxPoint& b) { return height(a) < height(b); });
   return {*best, sign * height(*best)};
 }
 
@@ -180,8 +182,8 @@ OptimumEstimate find_optimum(const SearchedPoints& data, bool maximise, std::uin
     out.inside += is_inside(top.u) ? 1.0 / kReplicates : 0.0;
   }
   const double factor = widening_of(data, out);
-  for (std::size_t k = 0; k < inputs; ++k) out.u.push_back(estimated(best.u[k], places[k], factor, 0.0, 1.0));
-  out.value = estimated(best.value, values, factor, -kInfinity, kInfinity);
+  for (std::size_t k = 0; k < inputs; ++k) out.u.push_back(interval_estimate(best.u[k], places[k], factor, 0.0, 1.0));
+  out.value = interval_estimate(best.value, values, factor, -kInfinity, kInfinity);
   out.usable = true;
   out.message = "";
   return out;
@@ -189,7 +191,7 @@ OptimumEstimate find_optimum(const SearchedPoints& data, bool maximise, std::uin
 
 std::vector<std::vector<double>> first_search_points(std::size_t inputs) {
   if (inputs == 1) return {{0.0}, {0.25}, {0.5}, {0.75}, {1.0}};
-  std::vector<Place> out;
+  std::vector<BoxPoint> out;
   for (const double x : {0.0, 0.5, 1.0})
     for (const double y : {0.0, 0.5, 1.0}) out.push_back({x, y});
   return out;
@@ -198,15 +200,15 @@ std::vector<std::vector<double>> first_search_points(std::size_t inputs) {
 std::vector<std::vector<double>> next_search_points(const std::vector<double>& optimum,
                                                     const std::vector<std::vector<double>>& there, int round) {
   const double step = (optimum.size() == 1 ? 0.25 : 0.5) * std::pow(0.5, round);
-  std::vector<Place> wanted{optimum};
+  std::vector<BoxPoint> wanted{optimum};
   for (std::size_t k = 0; k < optimum.size(); ++k)
     for (const double side : {-step, step}) {
       wanted.push_back(optimum);
       wanted.back()[k] = std::clamp(optimum[k] + side, 0.0, 1.0);
     }
-  std::vector<Place> out;
-  for (const Place& u : wanted) {
-    const auto near = [&](const Place& known) { return distance(known, u) < 0.25 * step; };
+  std::vector<BoxPoint> out;
+  for (const BoxPoint& u : wanted) {
+    const auto near = [&](const BoxPoint& known) { return box_distance(known, u) < 0.25 * step; };
     if (std::none_of(there.begin(), there.end(), near) && std::none_of(out.begin(), out.end(), near)) out.push_back(u);
   }
   return out;

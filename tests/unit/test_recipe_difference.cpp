@@ -87,7 +87,7 @@ TEST(CompressibleModel, BeginsAtGrainsOfOneSize) {
   EXPECT_LT(wide.vibrated_pressed, 1.0);
 }
 
-std::string constituents(const std::string& sand, const std::string& filler) {
+std::string mix_text(const std::string& sand, const std::string& filler) {
   return R"(kind = "recipe"
 [grains]
 count = 900
@@ -109,7 +109,7 @@ sizes = { form = "power-law", exponent = 3.5, radius_min = "0.4 mm", radius_max 
 
 TEST(RecipeConstituents, MassesGiveTheSameSharesInAnyUnit) {
   const auto read = [](const std::string& sand, const std::string& filler) {
-    return read_recipe_scene(Scene::parse(constituents(sand, filler), "s"));
+    return read_recipe_scene(Scene::parse(mix_text(sand, filler), "s"));
   };
   const RecipeScene shares = read("mass_share = 0.6", "mass_share = 0.4");
   const RecipeScene masses = read("mass = 900", "mass = 600");

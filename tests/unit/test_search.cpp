@@ -11,7 +11,7 @@
 namespace softgrain {
 namespace {
 
-CommonOptions asked(const std::vector<std::string>& over, const std::string& maximise = "density") {
+CommonOptions search_options(const std::vector<std::string>& over, const std::string& maximise = "density") {
   CommonOptions options;
   options.inputs = {"scene.toml"};
   options.over = over;
@@ -61,7 +61,7 @@ SetSummary searched(const CommonOptions& options, bool whole, const std::functio
 }
 
 TEST(Search, FindsTheTopOfOneKeyBetweenItsPoints) {
-  CommonOptions options = asked({"constituent.1.mass=100..300"});
+  CommonOptions options = search_options({"constituent.1.mass=100..300"});
   options.points = 11;
   const SetSummary set = searched(options, false, [](double x, double) { return 0.7 - std::abs(x - 171.0) / 500.0; });
   ASSERT_TRUE(set.search && set.search->usable);
@@ -74,7 +74,7 @@ TEST(Search, FindsTheTopOfOneKeyBetweenItsPoints) {
 }
 
 TEST(Search, OfTwoKeysIsExactForAQuadraticResult) {
-  CommonOptions options = asked({"a=0..2", "b=1e-3..10:log"}, "");
+  CommonOptions options = search_options({"a=0..2", "b=1e-3..10:log"}, "");
   options.minimise = "density";
   const SetSummary set = searched(
       options, false, [](double a, double b) { return std::pow(a - 1.3, 2) + 0.2 * std::pow(std::log10(b) + 1.2, 2); });
@@ -85,7 +85,8 @@ TEST(Search, OfTwoKeysIsExactForAQuadraticResult) {
 }
 
 TEST(Search, OfWholeNumbersRunsNoneTwice) {
-  const SetSummary set = searched(asked({"n=1..6"}), true, [](double n, double) { return -std::pow(n - 4.0, 2); });
+  const SetSummary set =
+      searched(search_options({"n=1..6"}), true, [](double n, double) { return -std::pow(n - 4.0, 2); });
   std::vector<std::string> names;
   for (const RunEntry& run : set.runs) names.push_back(run.name);
   std::sort(names.begin(), names.end());
@@ -94,31 +95,31 @@ TEST(Search, OfWholeNumbersRunsNoneTwice) {
 }
 
 TEST(Search, AnOptimumAtAnEndIsSaid) {
-  const SetSummary set = searched(asked({"a=0..2"}), false, [](double a, double) { return a; });
+  const SetSummary set = searched(search_options({"a=0..2"}), false, [](double a, double) { return a; });
   EXPECT_DOUBLE_EQ(set.search->keys[0].value, 2.0);
   ASSERT_FALSE(set.head.warnings.empty());
   EXPECT_NE(set.head.warnings.front().find("widen the range"), std::string::npos);
 }
 
 TEST(Search, RefusesWhatDoesNotGoTogether) {
-  CommonOptions sampled = asked({"a=0..1"});
+  CommonOptions sampled = search_options({"a=0..1"});
   sampled.sample = "lhs:4";
   EXPECT_NE(refusal_of(sampled).find("--sample"), std::string::npos);
-  EXPECT_NE(refusal_of(asked({})).find("one or two keys"), std::string::npos);
-  EXPECT_NE(refusal_of(asked({"a=0..1", "b=0..1", "c=0..1"})).find("one or two keys"), std::string::npos);
-  EXPECT_NE(refusal_of(asked({"a=1,2"})).find("range"), std::string::npos);
-  EXPECT_EQ(refusal_of(asked({"a=0..1"})), "");
-  CommonOptions few = asked({"a=0..1"});
+  EXPECT_NE(refusal_of(search_options({})).find("one or two keys"), std::string::npos);
+  EXPECT_NE(refusal_of(search_options({"a=0..1", "b=0..1", "c=0..1"})).find("one or two keys"), std::string::npos);
+  EXPECT_NE(refusal_of(search_options({"a=1,2"})).find("range"), std::string::npos);
+  EXPECT_EQ(refusal_of(search_options({"a=0..1"})), "");
+  CommonOptions few = search_options({"a=0..1"});
   few.points = 4;
   EXPECT_NE(refusal_of(few).find("5 points"), std::string::npos);
-  CommonOptions both = asked({"a=0..1"});
+  CommonOptions both = search_options({"a=0..1"});
   both.minimise = "density";
   EXPECT_NE(refusal_of(both).find("--minimise"), std::string::npos);
 }
 
 TEST(Search, AnUnknownResultIsAnsweredWithAllNames) {
   try {
-    (void)searched(asked({"a=0..1"}, "strength"), false, [](double a, double) { return a; });
+    (void)searched(search_options({"a=0..1"}, "strength"), false, [](double a, double) { return a; });
     FAIL();
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("coordination; density at the start"), std::string::npos) << e.what();
