@@ -7,6 +7,7 @@
 #include "common/io/text_file.h"
 #include "pipelines/compare/compare_inputs.h"
 #include "pipelines/report/report.h"
+#include "pipelines/report/run_data.h"
 #include "pipelines/run/run_context.h"
 #include "pipelines/runs/set_text.h"
 
@@ -17,12 +18,17 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Writes the summary to standard output alone, or also to --out with a report.
-ExitStatus finish(const CommonOptions& options, json summary, const std::string& console) {
+/// Writes the summary to standard output alone, or also to --out with a report and the differences as CSV.
+ExitStatus finish(const CommonOptions& options, json summary, const std::string& console,
+                  const std::optional<PairedSummary>& paired = {}) {
   const bool usable = is_good(summary.value("status", ""));
   if (!options.out.empty()) {
     const RunContext context(options, "compare", "compare");
     summary["files"] = {{"report", context.path("report.html")}};
+    if (paired) {
+      write_text_atomic(context.path("differences.csv"), as_csv(table_of(*paired)));
+      summary["files"]["differences"] = context.path("differences.csv");
+    }
     context.finish(summary, console + "report: " + context.path("report.html"));
     write_report(context.directory());
   } else {
@@ -93,6 +99,21 @@ void add_norms(const CompareResult& result, const std::string& run, SetSummary& 
   }
 }
 
+/// Differences of two runs of one kind that offers them.
+std::optional<PairedSummary> paired_of(const CommonOptions& options, const SetSummary& set) {
+  if (options.inputs.size() != 2) return std::nullopt;
+  for (const std::string& path : options.inputs)
+    if (!fs::is_directory(path)) return std::nullopt;
+  const report::RunData a = report::load_run(options.inputs.front());
+  const report::RunData b = report::load_run(options.inputs.back());
+  std::vector<std::string> keys;
+  for (const SweptKey& one : set.differences) keys.push_back(one.key);
+  for (const KindResults& kind : results_of_kinds())
+    if (kind.differences != nullptr && a.kind() == kind.kind && b.kind() == kind.kind)
+      return kind.differences(a, b, keys);
+  return std::nullopt;
+}
+
 /// Error norms of a candidate, as far as there are any.
 struct Norms {
   std::optional<CompareResult> result;
@@ -100,17 +121,16 @@ struct Norms {
 };
 
 Norms norms_of(const std::optional<CompareSide>& candidate, const std::optional<CompareSide>& reference,
-               const CommonOptions& options) {
+               const CommonOptions& options, bool required) {
   Norms out;
   if (!candidate || !reference) {
     out.reason = "no curves that could be compared";
     return out;
   }
-  const bool two = options.inputs.size() == 2;
   try {
     out.result = compare_sides(*candidate, *reference, options.different);
   } catch (const InputError& e) {
-    if (two) throw;  // it was all that was asked for
+    if (required) throw;  // it was all that was asked for
     out.reason = e.what();
   }
   return out;
@@ -126,13 +146,14 @@ std::string in_one_line(const std::string& text) {
 
 ExitStatus compare_several(const CommonOptions& options) {
   SetSummary set = set_of(options);
+  set.paired = paired_of(options, set);
   const std::optional<CompareSide> reference = side_of(options.inputs.back(), set.runs.back());
   const bool two = options.inputs.size() == 2;
   json comparisons = json::array();
   std::string details;
   for (std::size_t k = 0; k + 1 < options.inputs.size(); ++k) {
     const RunEntry& run = set.runs[k];
-    const Norms norms = norms_of(side_of(options.inputs[k], run), reference, options);
+    const Norms norms = norms_of(side_of(options.inputs[k], run), reference, options, two && !set.paired);
     if (!norms.result) {
       set.norms.push_back({run.name, "", kNaN, kNaN, in_one_line(norms.reason)});
       continue;
@@ -153,8 +174,10 @@ ExitStatus compare_several(const CommonOptions& options) {
   for (const std::string& one : set.head.remarks) remarks += two ? "" : "undefined: " + one + "\n";
   const bool any = std::any_of(set.runs.begin(), set.runs.end(), has_numbers);
   return finish(options, std::move(summary),
-                differences_text(set) + details + (any ? numbers_text(set) : "") + (two ? "" : norms_text(set)) +
-                    remarks + curves_text(set, options.out.empty() ? "" : options.out));
+                (set.paired ? paired_text(*set.paired) : "") + differences_text(set) + details +
+                    (any ? numbers_text(set) : "") + (two ? "" : norms_text(set)) + remarks +
+                    curves_text(set, options.out.empty() ? "" : options.out),
+                set.paired);
 }
 
 }  // namespace

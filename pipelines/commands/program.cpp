@@ -32,6 +32,7 @@ namespace {
 constexpr int kMostThreads = 4096;
 constexpr std::int64_t kMostRanks = 1'000'000;
 constexpr int kMostCompared = 100;
+constexpr std::int64_t kMostSearchPoints = 1000;
 
 struct Command {
   const char* name;
@@ -147,6 +148,15 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
            "or saltelli:N, N (keys + 2) runs for Sobol indices")
         ->option_text("FORM:N");
   if (sweeps) {
+    app.add_option(
+           "--maximise", o.maximise,
+           "Searches the ranges of one or two keys, --over KEY=LOW..HIGH, for the largest value of this result: "
+           "--maximise \"solid fraction\"")
+        ->option_text("RESULT");
+    app.add_option("--minimise", o.minimise, "The same for the smallest value")->option_text("RESULT");
+    app.add_option("--points", o.points, "Points of a search; default 9, with two keys 18")
+        ->option_text("N")
+        ->transform(whole_number("--points", 1, kMostSearchPoints));
     app.add_option("--jobs", o.jobs, "Runs so many members of the set at once, each with its share of the threads")
         ->option_text("N")
         ->transform(whole_number("--jobs", 1, kMostThreads));

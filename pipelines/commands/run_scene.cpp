@@ -10,6 +10,7 @@
 #include "pipelines/kinds/kinds.h"
 #include "pipelines/run/run_context.h"
 #include "pipelines/runs/run_set.h"
+#include "pipelines/runs/search.h"
 
 namespace softgrain {
 
@@ -56,6 +57,14 @@ ExitStatus command_sweep(const CommonOptions& options) {
   if (options.jobs > 1 && (options.slurm || !options.only.empty()))
     throw InputError("--jobs: cannot be combined with --slurm or --only");
   if (options.slurm && !options.only.empty()) throw InputError("--slurm: goes without --only");
+  if (!options.maximise.empty() || !options.minimise.empty()) {
+    const SearchGoal goal = search_goal(options);
+    const Scene scene = Scene::load(options.inputs.front(), options.overrides);
+    const TakesWholeNumbers takes_whole = takes_whole_numbers(options);
+    return run_set(options, search_plan(options, takes_whole), "sweep", "search",
+                   search_rounds(goal, takes_whole, options.seed_given ? options.seed : scene_seed(scene)));
+  }
+  if (options.points > 0) throw InputError("--points: goes with --maximise or --minimise");
   const auto plan = [&] {
     if (options.sample.empty()) return make_plan(options.over, options.seeds, options.overrides, options.seed_given);
     const Scene scene = Scene::load(options.inputs.front(), options.overrides);

@@ -154,10 +154,11 @@ std::string runs_section(const RunData& run) {
   std::vector<std::string> figures = run_curve_figures(run, set);
   const std::vector<std::string> dependent = dependence_figures(set, numbers);
   if (figures.empty() && dependent.empty()) figures.push_back(by_run_figure(set, numbers));
-  return section(
-      "runs", "Runs side by side", "Curves of several runs in one plot, and the keys and numbers that differ.",
-      differences_table(set) + runs_table(set, numbers) + other_numbers_table(set, numbers) + norms_table(set) +
-          links(run, set) + figure_row(figures) + figure_row(dependent) + sensitivity_part(set) + seeds_table(set));
+  return section("runs", "Runs side by side",
+                 "Curves of several runs in one plot, and the keys and numbers that differ.",
+                 search_part(set) + differences_part(set) + differences_table(set) + runs_table(set, numbers) +
+                     other_numbers_table(set, numbers) + norms_table(set) + links(run, set) + figure_row(figures) +
+                     figure_row(dependent) + sensitivity_part(set) + seeds_table(set));
 }
 
 std::vector<HeadLine> set_lines(const RunData& run) {
@@ -167,6 +168,13 @@ std::vector<HeadLine> set_lines(const RunData& run) {
   const auto good = std::ranges::count_if(set.runs, [](const RunEntry& r) { return r.status == RunStatus::good; });
   const std::string kind = run.kind().empty() ? "" : " of a scene of kind " + run.kind();
   lines.emplace_back("Runs", fmt::format("{} runs{}, {} of them good.", set.runs.size(), kind, good));
+  if (set.search && set.search->usable)
+    for (const SearchedKey& key : set.search->keys)
+      lines.emplace_back(
+          kResultLabel,
+          fmt::format("{} {} at {} = {}{} (95 %: {} to {}).", set.search->maximise ? "Largest" : "Smallest",
+                      set.search->number, key.key, format_number(key.value, 4), key.unit.empty() ? "" : " " + key.unit,
+                      format_number(key.low, 4), format_number(key.high, 4)));
   for (const SweptKey& one : set.over) lines.emplace_back("Varied", one.key + " = " + values_text(one) + ".");
   for (const PointEntry& point : set.points) {
     if (set.seeds.size() < 2 || point.numbers.empty() || set.points.size() > kColumns) continue;

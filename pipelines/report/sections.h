@@ -49,6 +49,12 @@ std::vector<std::string> run_curve_figures(const RunData& run, const SetSummary&
 /// The first of the numbers over every key whose values are numbers of one unit.
 std::vector<std::string> dependence_figures(const SetSummary& set, const std::vector<RunValue>& numbers);
 
+/// Differences of two runs with their errors; empty where the summary has none.
+std::string differences_part(const SetSummary& set);
+
+/// Optimum of a search with its curve; empty without one.
+std::string search_part(const SetSummary& set);
+
 /// How much each number depends on each key, with intervals; empty where nothing is determined.
 std::string sensitivity_part(const SetSummary& set);
 

@@ -12,6 +12,7 @@
 #include "common/data/snapshot.h"
 #include "common/io/hdf5_file.h"
 #include "common/io/json_record.h"
+#include "pipelines/results/paired_summary.h"
 
 namespace softgrain {
 
@@ -107,6 +108,10 @@ struct KindResults {
   /// Numbers by which a run is set beside others, those that matter most first; null: none.
   std::vector<RunValue> (*values)(const report::RunData& run) = nullptr;
   std::vector<RunCurve> (*curves)(const report::RunData& run) = nullptr;
+  /// In what two runs of this kind differ, with paired errors where they can be paired, else with those of independent
+  /// runs and the reason; `keys`: the keys of their scenes, and "seed", that differ. Null: not offered. Throws IoError.
+  PairedSummary (*differences)(const report::RunData& a, const report::RunData& b,
+                               const std::vector<std::string>& keys) = nullptr;
   /// Next steps for the end of the report of a run of this kind; `run`: its directory.
   NextSteps (*next)(const report::RunData& run) = nullptr;
   const char* kind = "";  ///< value of the key `kind` in scenes

@@ -9,6 +9,7 @@
 
 #include "common/core/sensitivity.h"
 #include "pipelines/results/kind_results.h"
+#include "pipelines/results/search_summary.h"
 #include "pipelines/results/summary.h"
 
 namespace softgrain {
@@ -156,6 +157,8 @@ struct SetSummary {
   std::vector<RunNorm> norms;  ///< norms of every run but the reference
   std::optional<DesignEntry> design{};
   std::vector<KeyEffect> sensitivity{};
+  std::optional<PairedSummary> paired{};  ///< differences of two runs of one kind
+  std::optional<SearchSummary> search{};
 };
 
 void fields(auto&& visit, Of<SetSummary> auto& s) {
@@ -169,6 +172,8 @@ void fields(auto&& visit, Of<SetSummary> auto& s) {
   visit("norms", s.norms, kLeftOut);
   visit("design", s.design, kLeftOut);
   visit("sensitivity", s.sensitivity, kLeftOut);
+  visit("paired_differences", s.paired, kLeftOut);
+  visit("search", s.search, kLeftOut);
 }
 
 /// Every number that one of the runs has, once, in the order in which they first appear.

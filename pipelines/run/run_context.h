@@ -56,6 +56,9 @@ struct CommonOptions {
   bool member = false;
   std::string to;            ///< file format, --to vtp, lammps-dump, lammps-data or csv (export)
   std::string command_line;  ///< command line as given, for provenance
+  std::string maximise;      ///< --maximise RESULT (sweep): a search for its largest value
+  std::string minimise;      ///< --minimise RESULT (sweep)
+  std::int64_t points = 0;   ///< --points N of a search; 0: not given
 };
 
 /// Thrown where a run that is one of several is found to have ended: its results are those that it would make again.

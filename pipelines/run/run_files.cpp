@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 /// Names of the files that every kind of run leaves.
 const std::regex& common_names() {
   static const std::regex names(
-      "summary\\.json|report\\.html|table\\.(md|csv)|checkpoint\\.h5(\\.previous)?|work|\\.run");
+      "summary\\.json|report\\.html|(table|search)\\.(md|csv)|differences\\.csv|checkpoint\\.h5(\\.previous)?|work|\\."
+      "run");
   return names;
 }
 

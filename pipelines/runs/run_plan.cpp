@@ -280,6 +280,21 @@ std::vector<std::string> RunPlan::overrides(const PlannedRun& run) const {
   return out;
 }
 
+RunPlan plan_of_points(const RunPlan& keys, const std::vector<Texts>& points) {
+  RunPlan plan = keys;
+  plan.runs.clear();
+  for (SweptKey& key : plan.over) key.values.clear();
+  for (const Texts& point : points) {
+    plan.runs.push_back({.name = "", .values = point, .seed = {}});
+    for (std::size_t k = 0; k < point.size(); ++k)
+      if (std::ranges::find(plan.over[k].values, point[k]) == plan.over[k].values.end())
+        plan.over[k].values.push_back(point[k]);
+  }
+  plan.runs = with_seeds(plan, std::move(plan.runs));
+  name_runs(plan);
+  return plan;
+}
+
 RunPlan make_plan(const Texts& over, const std::string& seeds, const Texts& set, bool one_seed,
                   const std::optional<SampleDesign>& design, const TakesWholeNumbers& takes_whole) {
   Texts problems;

@@ -21,6 +21,7 @@
 #include "pipelines/run/run_context.h"
 #include "pipelines/runs/job_array.h"
 #include "pipelines/runs/member_process.h"
+#include "pipelines/runs/search.h"
 #include "pipelines/runs/set_sensitivity.h"
 #include "pipelines/runs/set_text.h"
 
@@ -49,6 +50,9 @@ CommonOptions options_of(const CommonOptions& all, const RunPlan& plan, const Pl
   }
   options.over.clear();
   options.sample.clear();
+  options.maximise.clear();
+  options.minimise.clear();
+  options.points = 0;
   options.jobs = 1;
   options.only.clear();
   options.slurm = false;
@@ -176,7 +180,8 @@ void keep_names(const RunContext& context, const RunPlan& plan, bool all) {
 /// What an earlier part of a set that goes on said of all its runs: no longer true while runs are added.
 void forget_summary(const RunContext& context) {
   std::error_code ignored;
-  for (const char* file : {"summary.json", "report.html", "table.csv"}) fs::remove(context.path(file), ignored);
+  for (const char* file : {"summary.json", "report.html", "table.csv", "search.csv"})
+    fs::remove(context.path(file), ignored);
 }
 
 RunEntry entry_of(const RunPlan& plan, const PlannedRun& planned) {
@@ -219,6 +224,23 @@ std::vector<RunEntry> make_runs(const std::vector<ReadyRun>& ready, const RunPla
     if (make_run(run, context.directory(), entries.back())) context.say(run.planned->name + ": has ended before");
   }
   return entries;
+}
+
+/// Adds the rounds that the set asks for after its first runs, which `all` and `entries` then hold too.
+void make_rounds(const CommonOptions& options, const RunRounds& rounds, const RunContext& context, RunPlan& all,
+                 std::vector<RunEntry>& entries) {
+  while (rounds.next) {
+    const RunPlan more = rounds.next(all, entries);
+    if (more.runs.empty()) return;
+    all.runs.insert(all.runs.end(), more.runs.begin(), more.runs.end());
+    for (std::size_t k = 0; k < all.over.size(); ++k)
+      for (const std::string& value : more.over[k].values)
+        if (std::ranges::find(all.over[k].values, value) == all.over[k].values.end())
+          all.over[k].values.push_back(value);
+    keep_names(context, all, false);
+    const std::vector<RunEntry> added = make_runs(ready_runs(options, more), more, context);
+    entries.insert(entries.end(), added.begin(), added.end());
+  }
 }
 
 /// The same with several at once.
@@ -313,7 +335,7 @@ TakesWholeNumbers takes_whole_numbers(const CommonOptions& options) {
 }
 
 ExitStatus run_set(const CommonOptions& options, const RunPlan& plan, const std::string& command,
-                   const std::string& suffix) {
+                   const std::string& suffix, const RunRounds& rounds) {
   const Scene scene = Scene::load(options.inputs.front(), options.overrides);
   const std::string name = fs::path(scene.path()).stem().string() + "_" + suffix;
   if (!options.only.empty())
@@ -330,11 +352,19 @@ ExitStatus run_set(const CommonOptions& options, const RunPlan& plan, const std:
     context.finish(json_of(head), provenance, next);
     return ExitStatus::good;
   }
-  SetSummary summary = summarise(
-      scene, plan, options.jobs > 1 ? make_side_by_side(options, plan, context) : make_runs(ready, plan, context));
+  RunPlan all = plan;
+  std::vector<RunEntry> entries =
+      options.jobs > 1 ? make_side_by_side(options, plan, context) : make_runs(ready, plan, context);
+  make_rounds(options, rounds, context, all, entries);
+  SetSummary summary = summarise(scene, all, std::move(entries));
+  if (rounds.conclude) rounds.conclude(all, summary);
   forget_member_entries(context.directory());
   for (const char* file : {"report.html", "table.csv"}) summary.head.files[file] = context.path(file);
   write_text_atomic(context.path("table.csv"), as_csv(table_of(summary)));
+  if (summary.search && !summary.search->curve.x.empty()) {
+    write_text_atomic(context.path("search.csv"), as_csv(search_table(*summary.search)));
+    summary.head.files["search.csv"] = context.path("search.csv");
+  }
   const bool good = summary.head.status == RunStatus::good;
   context.finish(json_of(summary), provenance, set_text(summary) + "report: " + context.path("report.html"));
   write_report(context.directory());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +41,17 @@ RunPlan make_plan(
     bool one_seed = false, const std::optional<SampleDesign>& design = {},
     const TakesWholeNumbers& takes_whole = [](const auto&, const auto&) { return false; });
 
+/// Runs of these points (values by key), with every seed of the plan, and its keys with these values.
+RunPlan plan_of_points(const RunPlan& keys, const std::vector<std::vector<std::string>>& points);
+
+/// Rounds of a set whose next runs depend on what came out so far.
+struct RunRounds {
+  /// Runs that are added; none: the set is complete.
+  std::function<RunPlan(const RunPlan& all, const std::vector<RunEntry>& entries)> next{};
+  /// What is said of all of them.
+  std::function<void(const RunPlan& all, SetSummary& summary)> conclude{};
+};
+
 /// The seed that the scene says.
 std::uint64_t scene_seed(const Scene& scene);
 
@@ -51,11 +63,11 @@ TakesWholeNumbers takes_whole_numbers(const CommonOptions& options);
 /// one that was interrupted goes on where its kind can; runs that the plan has in addition are made. At the end writes
 /// summary.json, table.csv and the report of the set. Status not_usable when a run failed or is not usable. With --jobs
 /// several runs are made at once, with the same results; with --only one run of the plan alone is made, and with
-/// --slurm none: a job array is written.
+/// --slurm none: a job array is written. `rounds` add runs until they have no more.
 ///
 /// Throws InputError with all that is wrong with any of the scenes before anything is run; IoError and Interrupted
 /// where a run ends so: those before it are kept.
 ExitStatus run_set(const CommonOptions& options, const RunPlan& plan, const std::string& command,
-                   const std::string& suffix);
+                   const std::string& suffix, const RunRounds& rounds = {});
 
 }  // namespace softgrain

@@ -9,6 +9,7 @@
 #include "common/core/text.h"
 #include "pipelines/law/terminal_plot.h"
 #include "pipelines/report/sections.h"
+#include "pipelines/runs/search.h"
 #include "pipelines/runs/set_sensitivity.h"
 
 namespace softgrain {
@@ -102,7 +103,7 @@ std::string varied_text(const SetSummary& summary) {
 }
 
 std::string set_text(const SetSummary& summary) {
-  return differences_text(summary) + numbers_text(summary) + sensitivity_text(summary);
+  return search_text(summary) + differences_text(summary) + numbers_text(summary) + sensitivity_text(summary);
 }
 
 std::string differences_text(const SetSummary& summary) {

@@ -388,6 +388,24 @@ TEST_F(RunSet, ARunThatDoesNotConvergeIsToldByStatusAndSummary) {
   EXPECT_NE(read_text(file("out") + "/report.html").find("Do not use this result as it is"), std::string::npos);
 }
 
+TEST_F(RunSet, ASearchAddsRoundsAndRepeatsNoRunWhenItGoesOn) {
+  const std::string asked = "--over macro.wall_mu=0.0..0.4 --maximise 'axial stress' --out " + quoted("found");
+  expect(program("sweep", asked + "--points 6"), 0, {"largest axial stress at the end [Pa] at macro.wall_mu ="});
+  const json first = summary_of(file("found"));
+  EXPECT_EQ(first["runs"].size(), 6U);
+  EXPECT_EQ(first["search"]["points"], 6);
+  EXPECT_TRUE(first["search"]["usable"].get<bool>());
+  EXPECT_TRUE(fs::exists(file("found") + "/search.csv"));
+  EXPECT_NE(read_text(file("found") + "/report.html").find("Optimum"), std::string::npos);
+  const fs::file_time_type before = fs::last_write_time(file("found") + "/wall_mu=0/summary.json");
+  expect(program("sweep", asked + "--points 7 --resume"), 0);
+  const json second = summary_of(file("found"));
+  ASSERT_EQ(second["runs"].size(), 7U);
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(second["runs"][k]["numbers"], first["runs"][k]["numbers"]) << k;
+  EXPECT_EQ(fs::last_write_time(file("found") + "/wall_mu=0/summary.json"), before);
+  expect(program("sweep", asked + "--jobs 2"), 2, {"--maximise: goes without --jobs"});
+}
+
 TEST_F(RunSet, ComparisonsSayFirstWhatDiffersAndMakeNoDirectoryUnasked) {
   for (const char* bodies : {"6", "7", "8"})
     expect(program("macrosim", std::string("--set macro.bodies=") + bodies + " --out " + quoted(bodies)), 0);

@@ -391,6 +391,7 @@ KindResults material_results() {
           .lines = lines_of,
           .values = values_of,
           .curves = curves_of_run,
+          .differences = material_differences,
           .next = next_of};
 }
 

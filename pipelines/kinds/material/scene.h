@@ -81,6 +81,10 @@ inline constexpr const char* kMaterialEngine = "material";
 
 KindResults material_results();
 
+/// See KindResults::differences: paired by sample where the seed and the numbers of samples and grains are the same.
+PairedSummary material_differences(const report::RunData& a, const report::RunData& b,
+                                   const std::vector<std::string>& keys);
+
 /// p = (sigma_x + sigma_y + sigma_z)/3 at every point [Pa].
 std::vector<double> mean_stresses(const MacroCurve& curve);
 

@@ -98,9 +98,13 @@ std::size_t nearest_mixture(const RecipeScene& scene) {
 
 }  // namespace
 
+std::size_t packing_of_ratio(const RecipeScene& scene) {
+  return scene.checked ? *scene.checked : nearest_mixture(scene);
+}
+
 ResponseShape shape_of(const RecipeScene& scene, const std::vector<VariantResult>& results, const StateFit& states) {
   std::vector<OneShape> all;
-  const std::size_t chosen = scene.checked ? *scene.checked : nearest_mixture(scene);
+  const std::size_t chosen = packing_of_ratio(scene);
   ResponseShape out;
   for (std::size_t v = 0; v < results.size(); ++v) {
     if (results[v].variant->setup.spec.test != MacroTest::oedometric) continue;

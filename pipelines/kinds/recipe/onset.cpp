@@ -9,7 +9,6 @@
 #include <memory>
 
 #include "calibrate/bootstrap.h"
-#include "calibrate/rod_packing.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/core/statistics.h"
@@ -73,13 +72,9 @@ struct LevelForms::Parts {
       rods.emplace_back(v, RodCurve(*variants[v].setup.spec.solid_sizes));
     }
     const auto gap_of = [&](const Onsets& onsets) {
-      return least_of(
-          [&](double gap) {
-            double sum = 0.0;
-            for (const auto& [v, curve] : rods) sum += std::pow((onsets[v] - curve.at(gap)) / error[v], 2);
-            return sum;
-          },
-          RodCurve::kLeastGap, RodCurve::kLargestGap);
+      std::vector<RodOnset> packings;
+      for (const auto& [v, curve] : rods) packings.push_back({&curve, onsets[v], error[v]});
+      return fitted_gap(packings);
     };
     gap = gap_of(estimate);
     for (const Onsets& r : replicates) gaps.push_back(gap_of(r));
@@ -133,24 +128,48 @@ double straight(const std::vector<double>& x, const std::vector<double>& y, doub
   return y[k - 1] + (y[k] - y[k - 1]) * (at - x[k - 1]) / (x[k] - x[k - 1]);
 }
 
+double fitted_gap(const std::vector<RodOnset>& packings) {
+  return least_of(
+      [&](double gap) {
+        double sum = 0.0;
+        for (const RodOnset& p : packings) sum += std::pow((p.onset - p.curve->at(gap)) / p.error, 2);
+        return sum;
+      },
+      RodCurve::kLeastGap, RodCurve::kLargestGap);
+}
+
 LevelForms::LevelForms(const RecipeScene& scene, const StateFit& fit) : parts_(std::make_unique<Parts>(scene, fit)) {}
 LevelForms::~LevelForms() = default;
+
+FormReplicates LevelForms::by_both_forms(std::size_t first, std::size_t count) const {
+  FormReplicates out;
+  if (count == 1) {
+    out.levels = out.rods = own_onset(first);
+    for (const Onsets& r : parts_->replicates) out.by_levels.push_back(r[parts_->scene.slice[first]]);
+    out.by_rods = out.by_levels;
+    return out;
+  }
+  // Chords of four decades: so many that the finest are among them.
+  constexpr std::size_t kRods = 20000;
+  const RodCurve rods(joined(parts_->scene.levels, first, count), kRods);
+  out.levels = parts_->by_levels(first, count, parts_->estimate);
+  out.rods = rods.at(parts_->gap);
+  for (std::size_t r = 0; r < parts_->replicates.size(); ++r) {
+    out.by_levels.push_back(parts_->by_levels(first, count, parts_->replicates[r]));
+    out.by_rods.push_back(rods.at(parts_->gaps[r]));
+  }
+  return out;
+}
 
 OnsetByForms LevelForms::joined_onset(std::size_t first, std::size_t count, double widen) const {
   if (count == 1) {
     const Estimate& own = parts_->measured[parts_->scene.slice[first]];
     return {own.value, own.value, own};
   }
-  // Chords of four decades: so many that the finest are among them.
-  constexpr std::size_t kRods = 20000;
-  const RodCurve rods(joined(parts_->scene.levels, first, count), kRods);
-  OnsetByForms out{parts_->by_levels(first, count, parts_->estimate), rods.at(parts_->gap), {}};
-  std::vector<double> levels;
-  std::vector<double> by_rods;
-  for (std::size_t r = 0; r < parts_->replicates.size(); ++r) {
-    levels.push_back(parts_->by_levels(first, count, parts_->replicates[r]));
-    by_rods.push_back(rods.at(parts_->gaps[r]));
-  }
+  const FormReplicates both = by_both_forms(first, count);
+  const std::vector<double>& levels = both.by_levels;
+  const std::vector<double>& by_rods = both.by_rods;
+  OnsetByForms out{both.levels, both.rods, {}};
   Estimate& e = out.onset;
   e.value = out.levels + parts_->share_of_rods * (out.rods - out.levels);
   if (levels.empty() || parts_->degrees < 1) {

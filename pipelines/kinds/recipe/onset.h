@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calibrate/equation_of_state_fit.h"
+#include "calibrate/rod_packing.h"
 #include "pipelines/kinds/recipe/scene.h"
 #include "pipelines/kinds/recipe/summary.h"
 
@@ -13,6 +14,24 @@ namespace softgrain {
 
 /// Value of a curve with rising x by linear interpolation; the first or last value beyond its ends.
 double straight(const std::vector<double>& x, const std::vector<double>& y, double at);
+
+/// Onset of a packing with its error, beside what rods of its sizes fill.
+struct RodOnset {
+  const RodCurve* curve = nullptr;
+  double onset = 0.0;
+  double error = 1.0;
+};
+
+/// The gap with which rods come nearest to the onsets (least squares in units of the errors).
+double fitted_gap(const std::vector<RodOnset>& packings);
+
+/// phi_J of joined levels by both forms, and by the replicates of a fit.
+struct FormReplicates {
+  double levels = 0.0;
+  double rods = 0.0;
+  std::vector<double> by_levels;
+  std::vector<double> by_rods;
+};
 
 /// phi_J of joined levels by two forms, each fitted to all packings that were measured (the check apart):
 /// - levels: from the finest up, a level of solid volume V_c added to finer ones of V_f and void ratio e_f leaves
@@ -34,6 +53,8 @@ class LevelForms {
   /// `count` levels from `first` on, as they are in the whole; `widen`: both ends of the interval by as much. One
   /// alone is as it was measured.
   [[nodiscard]] OnsetByForms joined_onset(std::size_t first, std::size_t count, double widen = 0.0) const;
+  /// The same by both forms, with every replicate of the fit.
+  [[nodiscard]] FormReplicates by_both_forms(std::size_t first, std::size_t count) const;
   /// Moves the value of all that follows towards the form that comes nearer to what `count` levels from the coarsest on
   /// were measured to be: the share t of rods is the least of (phi - phi_levels - t (phi_rods - phi_levels))^2/s^2 + (t
   /// - 1/2)^2/tau^2, within 0 and 1, s the error of the measurement and the deviation of rods together, tau = 0.3.

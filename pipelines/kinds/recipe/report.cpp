@@ -8,6 +8,8 @@
 #include "common/data/law_words.h"
 #include "pipelines/kinds/law_table/scene.h"
 #include "pipelines/kinds/material_law/scene.h"
+#include "pipelines/kinds/recipe/compressible_model.h"
+#include "pipelines/kinds/recipe/difference.h"
 #include "pipelines/kinds/recipe/run.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
@@ -130,6 +132,9 @@ std::string whole_text(const RecipeOutcome& r) {
       format_number(r.gap, 3), format_number(r.rods_deviation, 2), format_number(r.solid_fraction->value, 4),
       range_of(r.solid_fraction->low, r.solid_fraction->high, 4), format_number(r.lateral_ratio.value, 3),
       range_of(r.lateral_ratio.low, r.lateral_ratio.high));
+  if (r.compressible_model)
+    text += " The compressible packing model (de Larrard 1999), a model of others, gives " +
+            compressible_model_text(*r.compressible_model) + ".";
   text += fmt::format(
       " A cubic metre holds {} grains; a sample with a hundred of them above a third of the largest diameter {}, which "
       "would take about {} contact evaluations, by what grains took here.",
@@ -188,10 +193,17 @@ std::vector<RunValue> values_of(const report::RunData& run) {
   const auto r = run.summary_as<RecipeSummary>().recipe;
   std::vector<RunValue> out;
   if (r.onset) out.push_back({"onset of the whole", "", r.onset->value, r.onset->standard_error});
+  if (r.solid_fraction)
+    out.push_back({"solid fraction at the start", "", r.solid_fraction->value, r.solid_fraction->standard_error});
   for (const RecipeCurve& c : r.curves)
     if (!c.axial.empty()) out.push_back({"axial stress over E at the end, " + c.name, "", c.axial.back()});
   for (const RecipeCurve& c : r.curves)
     if (c.modulus) out.push_back({"constrained modulus over E, " + c.name, "", c.modulus->value});
+  if (r.onset) out.push_back({"K0 at the end", "", r.lateral_ratio.value, r.lateral_ratio.standard_error});
+  if (r.compressible_model) {
+    out.push_back({"compressible packing model, K = 4.1", "", r.compressible_model->poured});
+    out.push_back({"compressible packing model, K = 9", "", r.compressible_model->vibrated_pressed});
+  }
   return out;
 }
 
@@ -226,6 +238,7 @@ KindResults recipe_results() {
           .lines = lines_of,
           .values = values_of,
           .curves = curves_of,
+          .differences = recipe_differences,
           .next = next_of};
 }
 

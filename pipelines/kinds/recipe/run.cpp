@@ -12,6 +12,7 @@
 #include "common/io/text_file.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/material_law/scene.h"
+#include "pipelines/kinds/recipe/compressible_model.h"
 #include "pipelines/kinds/recipe/law.h"
 #include "pipelines/run/typed_kind.h"
 
@@ -87,6 +88,7 @@ class RecipeRun {
     head().files["material_card"] = run_.path(kMaterialCardFile);
     out().onset = law_.onset;
     out().solid_fraction = solid_fraction_of(law_);
+    out().compressible_model = compressible_model(scene_.sizes, forms.gap());
     count_grains();
     load(forms, *states, widen);
   }
@@ -313,6 +315,9 @@ std::string recipe_text(const RecipeSummary& s) {
       fmt::format("the whole, span {:.3g}: phi_J = {} (levels {:.4f}, rods {:.4f}), solid fraction at the start {}\n",
                   r.span, interval_text(*r.onset), r.levels.front().with_finer.levels, r.levels.front().with_finer.rods,
                   interval_text(*r.solid_fraction));
+  if (r.compressible_model)
+    text += "  beside it the compressible packing model (de Larrard 1999), a model of others: " +
+            compressible_model_text(*r.compressible_model) + "\n";
   for (const RecipeCurve& c : r.curves) {
     if (c.axial.empty()) continue;
     text += fmt::format("  {}: axial stress {:.3g} E{} at a strain of {:.3g}", c.name, c.axial.back(),

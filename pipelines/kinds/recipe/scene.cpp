@@ -35,12 +35,23 @@ void refuse_own_material(const SceneTable& t) {
                   "measured, all grains have one E, nu and mu (their mean, by volume)");
 }
 
+/// The share, or a mass, of which read_constituents() makes the share.
+double read_mass(const SceneTable& t) {
+  if (!t.has("mass"))
+    return t.number({"mass_share", "share in the mass of all constituents; the shares add up to 1"}, Unit::none,
+                    Range{0.0, 1.0, true, false});
+  t.refuse({"mass_share"}, "goes without mass, of which the shares are made");
+  return t.number({"mass",
+                   "mass in the mix, in one unit for all (kg in a cubic metre, parts), instead of `mass_share`: other "
+                   "masses keep their ratios when one is changed"},
+                  Unit::none, Range::positive());
+}
+
 Constituent read_constituent(const SceneTable& t, double density) {
   Constituent c;
   t.section([&] {
     c.name = t.text({"name", "name of the constituent"});
-    c.mass_share = t.number({"mass_share", "share in the mass of all constituents; the shares add up to 1"}, Unit::none,
-                            Range{0.0, 1.0, true, false});
+    c.mass_share = read_mass(t);
     c.density = t.number({"density", "density of its grains", "that of `[material]`"}, Unit::density, Range::positive(),
                          density);
     refuse_own_material(t);
@@ -61,15 +72,23 @@ void refuse_idle_density(const SceneTable& root) {
 std::vector<Constituent> read_constituents(const SceneTable& root, double density) {
   std::vector<Constituent> out;
   double sum = 0.0;
+  std::size_t by_mass = 0;
   for (const SceneTable& t :
        root.tables({"constituent", "one of the constituents, instead of one size distribution in `[grains]`"})) {
     out.push_back(read_constituent(t, density));
     sum += out.back().mass_share;
+    by_mass += t.has("mass") ? 1 : 0;
     if (std::count_if(out.begin(), out.end(), [&](const Constituent& c) { return c.name == out.back().name; }) > 1)
       t.add_error("name", "is used twice");
   }
   if (out.empty() || root.has_errors()) return out;
-  if (std::abs(sum - 1.0) > 1e-6)
+  if (by_mass > 0 && by_mass < out.size()) {
+    root.add_error("constituent", "either all of them give mass, or all give mass_share");
+    return out;
+  }
+  if (by_mass == out.size())
+    for (Constituent& c : out) c.mass_share /= sum;
+  else if (std::abs(sum - 1.0) > 1e-6)
     root.add_error("constituent", fmt::format("the mass shares add up to {:g}; they must add up to 1", sum));
   double volume = 0.0;
   for (const Constituent& c : out) volume += c.mass_share / c.density;

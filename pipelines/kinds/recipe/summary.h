@@ -140,6 +140,20 @@ void fields(auto&& visit, Of<ShellLevelSummary> auto& s) {
   visit("grains", s.grains);
 }
 
+/// The compressible packing model (de Larrard 1999) for the sizes of the whole, which is a model of others: solid
+/// fraction with a beta for which grains of one size pack as they do here.
+struct CompressibleModelSummary {
+  double one_size = 0.0;          ///< solid fraction of grains of one size, by rods with the gap of the packings here
+  double poured = 0.0;            ///< solid fraction of the whole with K = 4.1
+  double vibrated_pressed = 0.0;  ///< solid fraction of the whole with K = 9
+};
+
+void fields(auto&& visit, Of<CompressibleModelSummary> auto& s) {
+  visit("solid_fraction_of_one_size", s.one_size);
+  visit("solid_fraction_K_4_1", s.poured);
+  visit("solid_fraction_K_9", s.vibrated_pressed);
+}
+
 struct RecipeOutcome {
   std::vector<ConstituentSummary> constituents;
   std::vector<RecipeLevelSummary> levels;
@@ -155,6 +169,7 @@ struct RecipeOutcome {
   std::optional<RecipeCheckSummary> check;
   std::vector<RecipeCurve> curves;
   std::vector<ShellLevelSummary> shells;
+  std::optional<CompressibleModelSummary> compressible_model;
 };
 
 void fields(auto&& visit, Of<RecipeOutcome> auto& s) {
@@ -172,6 +187,7 @@ void fields(auto&& visit, Of<RecipeOutcome> auto& s) {
   visit("check", s.check, kLeftOut);
   visit("curves", s.curves);
   visit("shells", s.shells);
+  visit("compressible_packing_model", s.compressible_model, kLeftOut);
 }
 
 struct RecipeSummary {

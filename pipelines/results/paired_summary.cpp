@@ -1,0 +1,101 @@
+#include "pipelines/results/paired_summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/error.h"
+#include "common/core/few_samples.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr std::size_t kShownDifferences = 3;
+
+std::string line_of(const PairedNumber& n) {
+  const std::string of = n.name + (n.unit.empty() ? "" : " [" + n.unit + "]");
+  std::string text = fmt::format("  {}: {:.5g} - {:.5g}: difference {:.3g}", of, n.a, n.b, n.difference);
+  if (!std::isfinite(n.error)) return text + " (no error: too few samples)\n";
+  text += fmt::format(" +- {:.2g} (95 %: {:.3g} to {:.3g})", n.error, n.low, n.high);
+  if (n.pairs > 0 && std::isfinite(n.unpaired_error) && n.error > 0.0)
+    text += fmt::format("; unpaired +- {:.2g}, {:.2g} times as much", n.unpaired_error, n.unpaired_error / n.error);
+  if (std::isfinite(n.low) && (n.low > 0.0 || n.high < 0.0)) return text + "\n";
+  return text + "; not told from 0\n";
+}
+
+}  // namespace
+
+double PairedNumber::over_one() const {
+  const double one = 0.5 * (error_a + error_b);
+  return std::isfinite(error) && one > 0.0 && std::isfinite(one) ? error / one : kNaN;
+}
+
+PairedNumber paired_number(const std::string& name, const std::string& unit, const std::vector<double>& a,
+                           const std::vector<double>& b) {
+  if (a.size() != b.size())
+    throw InputError(fmt::format("{}: {} and {} values cannot be paired", name, a.size(), b.size()));
+  std::vector<double> differences;
+  for (std::size_t k = 0; k < a.size(); ++k) differences.push_back(a[k] - b[k]);
+  const MeanError of_a = mean_error(a);
+  const MeanError of_b = mean_error(b);
+  const Estimate d = mean_estimate(mean_error(differences));
+  return {.name = name,
+          .unit = unit,
+          .a = of_a.mean,
+          .b = of_b.mean,
+          .difference = d.value,
+          .error = d.standard_error,
+          .low = d.low,
+          .high = d.high,
+          .error_a = of_a.error,
+          .error_b = of_b.error,
+          .unpaired_error = std::hypot(of_a.error, of_b.error),
+          .pairs = static_cast<std::int64_t>(a.size())};
+}
+
+PairedNumber unpaired_number(const std::string& name, const std::string& unit, const Estimate& a, const Estimate& b) {
+  const double error = std::hypot(a.standard_error, b.standard_error);
+  const double difference = a.value - b.value;
+  return {.name = name,
+          .unit = unit,
+          .a = a.value,
+          .b = b.value,
+          .difference = difference,
+          .error = error,
+          .low = difference - kNormal95 * error,
+          .high = difference + kNormal95 * error,
+          .error_a = a.standard_error,
+          .error_b = b.standard_error,
+          .unpaired_error = error,
+          .pairs = 0};
+}
+
+std::string paired_text(const PairedSummary& summary) {
+  if (summary.numbers.empty()) return "";
+  std::string text = "A - B, the error of the difference:\n";
+  const std::size_t shown = std::min(summary.numbers.size(), kShownDifferences);
+  for (std::size_t k = 0; k < shown; ++k) text += line_of(summary.numbers[k]);
+  text += summary.paired ? "  paired: " + summary.method + "\n"
+                         : "  not paired, errors as of independent runs: " + summary.reason + "\n";
+  if (summary.numbers.size() > shown)
+    text += fmt::format("  {} more differences in summary and differences.csv (--out DIR)\n",
+                        summary.numbers.size() - shown);
+  return text;
+}
+
+TextTable table_of(const PairedSummary& summary) {
+  TextTable out{
+      {"number", "unit", "A", "B", "A - B", "standard error", "low (95 %)", "high (95 %)", "standard error of A",
+       "standard error of B", "unpaired standard error", "error over that of one value", "pairs"},
+      {}};
+  const auto text = [](double x) { return std::isfinite(x) ? fmt::format("{:.8g}", x) : std::string(); };
+  for (const PairedNumber& n : summary.numbers)
+    out.rows.push_back({n.name, n.unit, text(n.a), text(n.b), text(n.difference), text(n.error), text(n.low),
+                        text(n.high), text(n.error_a), text(n.error_b), text(n.unpaired_error), text(n.over_one()),
+                        std::to_string(n.pairs)});
+  return out;
+}
+
+}  // namespace softgrain
