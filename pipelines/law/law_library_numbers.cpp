@@ -90,7 +90,7 @@ Estimate estimate_of(const LibraryNumber& n, double least, double share) {
 }
 
 /// What stands in where too few materials have a number: as fit_sides() does.
-void stand_in(LawTableEntry& entry) {
+void substitute_slides(LawTableEntry& entry) {
   if (!entry.slide_plane.measured)
     entry.slide_plane.kt_ratio = entry.slide_plane.friction = {0.3, kInfinity, -kInfinity, kInfinity};
   if (!entry.slide_plane.measured) entry.slide_plane.friction.value = entry.spec.friction;
@@ -218,7 +218,7 @@ void set_side_numbers(const std::vector<LibraryNumber>& numbers, LawTableEntry& 
     measured = false;
   }
   entry.slide_plane.has_unloading = false;  // that of planes is LawTableEntry::unloading
-  stand_in(entry);
+  substitute_slides(entry);
   set_form_numbers(numbers.data() + kSideNumbers.size(), entry, law);
 }
 

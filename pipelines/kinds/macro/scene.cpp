@@ -6,6 +6,7 @@
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
+#include "pipelines/law/law_library_scene.h"
 
 namespace softgrain {
 
@@ -107,8 +108,11 @@ std::int64_t states_to_see(const MacroSpec& spec) {
   return spec.bodies <= kSmall ? kOfSmall : kKeptStates;
 }
 
-const Key kLawKey{"law", "law card, law table or card of the cell law; path relative to the scene",
-                  "-, unless `--law` names one"};
+const Key kLawKey{
+    "law",
+    "law card, law table or card of the cell law; path relative to the scene. `library`: the law of `[library]`, from "
+    "the library of the program",
+    "-, unless `--law` names one"};
 
 MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   (void)root.choice(kKindKey, {"macro"});
@@ -161,7 +165,7 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
 MacroScene read_macro_scene(const Scene& scene, const std::string& law) {
   return scene.read([&](const SceneTable& root) {
     const std::string written = root.text(kLawKey, "");
-    return read_with_law(root, !law.empty() || written.empty() ? law : scene.resolve(written));
+    return read_with_law(root, !law.empty() || written.empty() ? law : law_path(scene, written));
   });
 }
 
