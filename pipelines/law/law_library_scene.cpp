@@ -26,17 +26,18 @@ LibraryMatter read_library_matter(const SceneTable& t) {
       t.number({"E", "Young's modulus of the grains"}, Unit::pressure, Range::positive(), m.youngs_modulus);
   m.poisson_ratio = t.number({"nu", "Poisson's ratio"}, Unit::none, kPoissonRange, m.poisson_ratio);
   m.density = t.number({"density", "density of the grains"}, Unit::density, Range::positive(), m.density);
-  m.shell_radius = t.number({"shell_radius", "radius Rs of the soft particle that the packings in twins are made for"},
-                            Unit::length, Range::positive(), m.shell_radius);
   return m;
 }
 
+SceneTable library_table(const SceneTable& root) {
+  return root.table({"library", "with `law = \"library\"`: the material whose law is interpolated"});
+}
+
 FittedLaw library_law(const SceneTable& root, const LawLibrary& library) {
-  const SceneTable t =
-      root.table({"library", "law = \"library\": the material whose law is interpolated in the library"});
+  const SceneTable t = library_table(root);
   const LibraryPoint at = read_library_point(t);
   const LibraryMatter matter = read_library_matter(t);
-  if (t.has_errors()) t.throw_error("solid_fraction", "goes with errors above");
+  if (t.has_errors()) t.throw_error("solid_fraction", "is not looked up before the errors of [library] are mended");
   try {
     FittedLaw law;
     const LibraryAnswer answer = ask_library(library, at);
@@ -66,6 +67,12 @@ bool asks_library(const std::string& path) {
 FittedLaw law_at(const SceneTable& root, const std::string& path) {
   if (!asks_library(path)) return load_law(path);
   return library_law(root, load_library(path == kShipped ? shipped_library() : path));
+}
+
+void read_library_keys(const SceneTable& root) {
+  const SceneTable t = library_table(root);
+  (void)read_library_point(t);
+  (void)read_library_matter(t);
 }
 
 void refuse_idle_library(const SceneTable& root, const std::vector<std::string>& paths) {

@@ -19,6 +19,9 @@ bool asks_library(const std::string& path);
 /// [library] of `root` describes. Throws InputError, IoError.
 FittedLaw law_at(const SceneTable& root, const std::string& path);
 
+/// Reads table [library] alone, for scenes that are read without their law. Throws InputError.
+void read_library_keys(const SceneTable& root);
+
 /// Refuses table [library] where none of the laws at these paths is a library.
 void refuse_idle_library(const SceneTable& root, const std::vector<std::string>& paths);
 

@@ -173,6 +173,7 @@ MacroScene read_macro_scene_alone(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     (void)root.text(kLawKey, "");
     if (root.has("fines")) (void)read_fines(root);
+    if (root.has("library")) read_library_keys(root);
     return read_with_law(root, "");
   });
 }
