@@ -45,7 +45,12 @@ inline LawTableEntry library_entry(const LibraryPoint& p, double noise, std::uin
     numbers[0] = force / (std::pow(0.35, b) - std::pow(delta, b)) / (1.0 - poisson_ratio * poisson_ratio);
     numbers[1] = b;
     numbers[2] = delta;
-    for (std::size_t k = 6; k + 1 < numbers.size(); k += 2) numbers[k] *= std::exp(noise * random.normal());
+    const double solid = 0.1 * noise * random.normal();  // all sizes of a kind have one exponent
+    const double soft = 0.1 * noise * random.normal();
+    for (std::size_t k = 0; k < law.partners.size(); ++k) {
+      numbers[6 + 2 * k] *= std::exp(noise * random.normal());
+      numbers[7 + 2 * k] += law.partners[k].kind == PartnerKind::solid ? solid : soft;
+    }
   };
   std::vector<double> numbers = multi_contact_numbers(law);
   put(numbers);

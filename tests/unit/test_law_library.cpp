@@ -37,7 +37,7 @@ void expect_in(const std::string& text, const std::string& part) {
 }
 
 const LawLibrary& library() {
-  static const LawLibrary made = synthetic::law_library(24);
+  static const LawLibrary made = synthetic::law_library(16);
   return made;
 }
 
@@ -63,7 +63,7 @@ TEST(LawLibrary, AMaterialBetweenIsWithinItsBand) {
   RandomStream random(8, RandomPurpose::test, 4);
   int inside = 0;
   int all = 0;
-  for (int k = 0; k < 12; ++k) {
+  for (int k = 0; k < 5; ++k) {
     const LibraryPoint p{0.1 + 0.6 * random.uniform(), 2.7 + 1.1 * random.uniform(), 5.0 + 7.0 * random.uniform(),
                          0.60 + 0.10 * random.uniform()};
     const LibraryAnswer a = ask_library(library(), p);
@@ -73,7 +73,7 @@ TEST(LawLibrary, AMaterialBetweenIsWithinItsBand) {
       inside += std::abs(a.numbers[n].value - truth[n]) <= kNormal95 * a.numbers[n].deviation ? 1 : 0;
     EXPECT_NEAR(a.numbers[0].value, truth[0], 0.06);
   }
-  EXPECT_GE(inside, 0.85 * all);
+  EXPECT_GE(inside, all - 3);
 }
 
 TEST(LawLibrary, AMeasuredMaterialComesBackWithinItsError) {
@@ -90,7 +90,7 @@ TEST(LawLibrary, LeavingMaterialsOut) {
   const std::vector<LibraryCheck> checks = check_library(library());
   ASSERT_FALSE(checks.empty());
   EXPECT_EQ(checks.front().name, "ln force");
-  EXPECT_EQ(checks.front().materials, 40U);
+  EXPECT_EQ(checks.front().materials, 32U);
   EXPECT_LT(checks.front().error, 0.06);
   EXPECT_GT(checks.front().spread, 0.15);
   EXPECT_GE(checks.front().coverage, 0.85);
