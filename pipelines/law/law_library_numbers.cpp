@@ -124,7 +124,8 @@ void set_form_numbers(const LibraryNumber* n, LawTableEntry& entry, MultiContact
   if (std::isfinite(n[2].value)) law.errors.push_back(form_error("library, sheared", n[2].value, n[3].value, false));
   double sum = 0.0;
   for (const ConfigurationError& e : law.errors) sum += e.error * e.error;
-  if (!law.errors.empty()) law.error_held_out = std::sqrt(sum / static_cast<double>(law.errors.size()));
+  if (!law.errors.empty())
+    law.error_fitted = law.error_held_out = std::sqrt(sum / static_cast<double>(law.errors.size()));
   if (std::isfinite(n[4].value)) entry.spec.trials = std::max<std::int64_t>(1, std::llround(std::exp(n[4].value)));
 }
 
