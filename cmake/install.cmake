@@ -64,6 +64,7 @@ foreach(law published/law.toml law_table/law_table.toml law_table/law_table.h5 h
   get_filename_component(folder ${law} DIRECTORY)
   install(FILES results/${law} DESTINATION ${softgrain_scenes}/results/${folder})
 endforeach()
+install(FILES results/law_library/library.toml DESTINATION ${softgrain_scenes}/results/law_library OPTIONAL)
 
 # The texts refer to each other and to pictures by their places in the tree, which they keep.
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -410,7 +410,9 @@ void require_files(const LawOptions& o, std::size_t most) {
 
 ExitStatus command_law(const LawOptions& options) {
   if (options.action == LawAction::none)
-    throw InputError("law: give show, eval, export or plan and a law (see softgrain law --help)");
+    throw InputError("law: give show, eval, export, plan, library or get (see softgrain law --help)");
+  if (options.action == LawAction::get) return get_law(options);
+  if (options.action == LawAction::library) return make_library(options);
   require_files(options, options.action == LawAction::show ? 2 : 1);
   if (options.action == LawAction::show) return show(options);
   if (options.action == LawAction::plan) return plan_next(options);

@@ -93,6 +93,24 @@ void add_plan(CLI::App& app, LawOptions& o) {
   app.add_flag("--toml", o.as_scene, "The plan as [[plan]] tables, to be appended to the law-table scene");
 }
 
+void add_get(CLI::App& app, LawOptions& o) {
+  app.add_flag("--json", o.json, "One JSON object on standard output");
+  app.add_option("--mu", o.friction, "Coulomb friction of the grains")->option_text("MU");
+  app.add_option("--exponent", o.exponent, "Exponent b of the size distribution r^-b")->option_text("B");
+  app.add_option("--ratio", o.ratio, "Size ratio rmax/rmin of the grains")->option_text("Q");
+  app.add_option("--solid-fraction", o.solid_fraction, "Volume of grains over that of the shell")->option_text("PHI");
+  app.add_option("--nu", o.poisson_ratio, "Poisson's ratio; default 0.3")->option_text("NU");
+  app.add_option("--E", o.modulus, "Young's modulus, \"0.5 MPa\" or in Pa; default 0.5 MPa")->option_text("E");
+  app.add_option("--radius", o.radius, "Radius of the soft particle, \"16 mm\" or in m; default 16 mm")
+      ->option_text("R");
+  app.add_option("--library", o.library, "Library; default that of the program")->option_text("FILE");
+  app.add_option("--own", o.own, "Law table of own packings of this material, with its .h5: corrects the answer")
+      ->option_text("TABLE");
+  app.add_option("--draws", o.draws, "Draws of the law for error bars of macro runs; default 64")->option_text("N");
+  app.add_option("--out", o.out, "Law table to write, and an .h5 beside it; default: numbers alone, on the terminal")
+      ->option_text("FILE.toml");
+}
+
 /// Names of the options that stand on the command line.
 std::vector<std::string> given_options(const CLI::App& app) {
   std::vector<std::string> names;
@@ -135,6 +153,14 @@ void add_law_command(CLI::App& app, LawOptions& options) {
                        "the error bars of a macro scene most per second");
   add_files(*plan, options, "law table or run directory, with its refits (.h5)");
   add_plan(*plan, options);
+  CLI::App* library = add(LawAction::library,
+                          "Collects law tables of many materials in a library, and says how well the others predict "
+                          "each of them");
+  add_files(*library, options, "directories with law_table.toml at any depth, or a library");
+  library->add_option("--out", options.out, "Library to write; default: what is found, on the terminal")
+      ->option_text("FILE.toml");
+  add_get(*add(LawAction::get, "The law table of a material that was not measured, from a library, in a second"),
+          options);
 }
 
 }  // namespace softgrain

@@ -1,4 +1,4 @@
-// Command line of softgrain law: show, eval, export and plan.
+// Command line of softgrain law: show, eval, export, plan, library and get.
 #pragma once
 
 #include <optional>
@@ -15,14 +15,16 @@ class App;
 
 namespace softgrain {
 
-enum class LawAction { none, show, eval, export_law, plan };
+enum class LawAction { none, show, eval, export_law, plan, library, get };
 
 template <>
 inline constexpr auto enum_names<LawAction> = enum_name_list<LawAction>({{LawAction::none, "none"},
                                                                          {LawAction::show, "show"},
                                                                          {LawAction::eval, "eval"},
                                                                          {LawAction::export_law, "export"},
-                                                                         {LawAction::plan, "plan"}});
+                                                                         {LawAction::plan, "plan"},
+                                                                         {LawAction::library, "library"},
+                                                                         {LawAction::get, "get"}});
 
 enum class LawFormat { lammps_table, csv, json };
 
@@ -61,11 +63,18 @@ struct LawOptions {
   std::int64_t rows = 1001;
   double delta_max = -1.0;  ///< negative: the end of the range
 
-  std::string target;          ///< scene of plan, --for: macro scene, or a run of one
-  std::string measure;         ///< --measure: law-table scene with the configurations that could be measured
-  std::int64_t packings = 8;   ///< --packings: added at a time
-  double narrow = 0.5;         ///< --narrow: wanted width over what it is
-  bool as_scene = false;       ///< --toml of plan: as tables of a law-table scene
+  std::string target;         ///< scene of plan, --for: macro scene, or a run of one
+  std::string measure;        ///< --measure: law-table scene with the configurations that could be measured
+  std::int64_t packings = 8;  ///< --packings: added at a time
+  double narrow = 0.5;        ///< --narrow: wanted width over what it is
+  bool as_scene = false;      ///< --toml of plan: as tables of a law-table scene
+
+  std::string library;         ///< --library of get: the library; empty: that of the program
+  double friction = -1.0;      ///< --mu of get
+  double exponent = -1.0;      ///< --exponent of get
+  double poisson_ratio = 0.3;  ///< --nu of get
+  std::string own;             ///< --own of get: a measured table, by which the answer is corrected
+  std::int64_t draws = 64;     ///< --draws of get
   std::string command_line{};  ///< command line as given, for provenance
 
   std::vector<std::string> given;  ///< names of the options on the command line, for those that do not go together
@@ -76,6 +85,12 @@ void add_law_command(CLI::App& app, LawOptions& options);
 
 /// What to measure next, see pipelines/kinds/law_table/law_plan.h. Throws Error.
 ExitStatus plan_next(const LawOptions& options);
+
+/// Collects the law tables below directories in a library, and says how well it predicts each material. Throws Error.
+ExitStatus make_library(const LawOptions& options);
+
+/// The law table of a material from a library. Throws Error.
+ExitStatus get_law(const LawOptions& options);
 
 /// Does what was asked. Throws Error.
 ExitStatus command_law(const LawOptions& options);

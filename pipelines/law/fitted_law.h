@@ -24,6 +24,7 @@ struct FittedLaw {
   std::string path{};  ///< empty: not of a file
   std::string text{};  ///< content of the file
   LawOrigin origin{};
+  std::string remark{};  ///< what to know of it; of a library: which measured material is nearest
 
   [[nodiscard]] const LawCard* card() const { return std::get_if<LawCard>(&content); }
   [[nodiscard]] const LawTable* table() const { return std::get_if<LawTable>(&content); }

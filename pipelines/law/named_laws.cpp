@@ -16,6 +16,7 @@
 #include "common/dynamics/force_pass.h"
 #include "common/io/text_file.h"
 #include "macrosim/curve_notes.h"
+#include "pipelines/law/law_library_scene.h"
 
 namespace softgrain {
 
@@ -348,7 +349,7 @@ NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::str
 }
 
 FittedLaw law_of_key(const SceneTable& table, const std::string& key, const std::string& path) {
-  FittedLaw law = load_law(path);
+  FittedLaw law = law_at(table, path);
   if (key == "card" ? law.card() == nullptr : law.table() == nullptr)
     table.throw_error(key, path + " is no law " + key + " but a " + kind_text(law));
   return law;
@@ -359,7 +360,7 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
   std::vector<std::pair<std::string, std::string>> files;  // by key; read when all choices are known
   for (const Key& key : {Key{"card", "law card (pair law, as published)"},
                          Key{"table", "law table; `table`, `card` or both must be given"}})
-    if (law.has(key.name)) files.emplace_back(key.name, scene.resolve(law.text(key)));
+    if (law.has(key.name)) files.emplace_back(key.name, law_path(scene, law.text(key)));
   const bool with_table = law.has("table");
   if (files.empty()) law.throw_error("table", "give a law table, a law card, or both");
   if (law.has("forms")) out.forms = read_forms(law, with_table);
@@ -369,8 +370,13 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
     law.refuse({"form"}, "goes with a law table; a card holds the pair law alone");
     law.refuse(kTableKeys, "goes with a law table (key table)");
   }
-  for (const auto& [key, path] : files) out.laws.push_back(law_of_key(law, key, path));
+  std::vector<std::string> paths;
+  for (const auto& [key, path] : files) {
+    out.laws.push_back(law_of_key(law, key, path));
+    paths.push_back(path);
+  }
   require_card_unloading(law, out);
+  refuse_idle_library(law, paths);
   require_fraction(law, out);
   return out;
 }
@@ -386,7 +392,8 @@ void read_law_choices(const SceneTable& root, LawSources& out) {
 LawSources read_scene_law(const SceneTable& root, const std::string& path) {
   LawSources out;
   read_law_choices(root, out);
-  out.laws = {load_law(path)};
+  out.laws = {law_at(root, path)};
+  refuse_idle_library(root, {path});
   const bool asks_cells = root.has("form") && root.text("form") == "cell";
   if (out.cells() != nullptr) {
     if (!asks_cells) root.refuse({"form"}, path + " is a card of the cell law: \"cell\"");

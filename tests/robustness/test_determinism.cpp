@@ -117,6 +117,9 @@ std::vector<SmallForm> small_forms() {
             {{"configuration=[" + plane + "," + two + "," + soft + "]", "calibrate.replicates=2", "variant=[]",
               "multi_contact.orientations=2", R"(plan=[{configuration="opposite-plane",depth=0.6,packings=5}])"}}),
        0, false},
+      {"law_library.toml", "run",
+       with(multi_contact, {{"configuration=[" + plane + "," + two + "," + soft + "]", "calibrate.replicates=2"}}), 0,
+       false},
       {"macro_vs_resolved.toml", "run",
        with(
            {"packing.polydispersity=4", "packing.trials=300", "packing.count=2", "macro.bodies=8", "macro.samples=2"},

@@ -436,6 +436,8 @@ void check_macro_scene(const MacroScene& macro, Findings& out) {
     return;
   }
   out.add("law_file", macro.law_file, "law from " + macro.law_file);
+  for (const FittedLaw& law : macro.law.laws)
+    if (!law.remark.empty()) out.add("law_library", law.remark, "law library: " + law.remark);
   check_macro(macro.setup,
               macro.setup.twins.empty() ? MacroContent{} : content_of(macro.spec, macro.contents, macro.seed),
               &macro.law, macro.seed, out);

@@ -8,6 +8,7 @@
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
+#include "pipelines/law/law_library_scene.h"
 
 namespace softgrain {
 
@@ -113,7 +114,7 @@ std::int64_t states_to_see(const MacroSpec& spec) {
 
 const Key kLawKey{"law",
                   "law card, law table, card of the cell law, or the table of a press test (a law is fitted); path "
-                  "relative to the scene",
+                  "relative to the scene. `library`: the law of `[library]`, from the library of the program",
                   "-, unless `--law` names one"};
 
 MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
@@ -171,7 +172,7 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
 MacroScene read_macro_scene(const Scene& scene, const std::string& law) {
   return scene.read([&](const SceneTable& root) {
     const std::string written = root.text(kLawKey, "");
-    return read_with_law(root, !law.empty() || written.empty() ? law : scene.resolve(written));
+    return read_with_law(root, !law.empty() || written.empty() ? law : law_path(scene, written));
   });
 }
 
@@ -179,6 +180,7 @@ MacroScene read_macro_scene_alone(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     (void)root.text(kLawKey, "");
     if (root.has("fines")) (void)read_fines(root);
+    if (root.has("library")) read_library_keys(root);
     return read_with_law(root, "");
   });
 }

@@ -3,13 +3,14 @@
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/law/law_fit.h"
+#include "pipelines/law/law_library_scene.h"
 
 namespace softgrain {
 
 namespace {
 
 LawSources read_multi_contact_law(const Scene& scene, const SceneTable& law) {
-  const std::string path = scene.resolve(law.text({"table", "existing law table (path relative to the scene)"}));
+  const std::string path = law_path(scene, law.text({"table", "existing law table (path relative to the scene)"}));
   LawSources out = read_scene_law(law, path);
   if (out.table() == nullptr)
     law.throw_error("table", path + " is no law table (the pair law is the one that this run measures)");

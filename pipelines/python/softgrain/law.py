@@ -80,6 +80,21 @@ class Law(Drawn):
         file, law = laws.load(os.fspath(path))
         return CardLaw(file, law) if isinstance(law, laws.Card) else TableLaw(file, law)
 
+    @staticmethod
+    def from_library(out, *, mu, exponent, ratio, solid_fraction, nu=0.3, library=None, own=None):
+        """The law table of a material, interpolated between measured ones, written to `out` (.toml) and loaded.
+
+        mu: friction of the grains; exponent, ratio: b and rmax/rmin of their sizes, P(r) ~ r^-b; solid_fraction: of the grains in
+        their shell; nu: Poisson's ratio. library: another than that of the program; own: a law table of own packings that corrects
+        it. InputError, with the measured ranges, for a material outside them; IoError for files."""
+        from softgrain.running import _raise_for, execute
+        options = {"--mu": mu, "--exponent": exponent, "--ratio": ratio, "--solid-fraction": solid_fraction, "--nu": nu,
+                   "--library": library, "--own": own, "--out": os.fspath(out)}
+        ended = execute(["law", "get", *(str(x) for name, value in options.items() if value is not None for x in (name, value))])
+        if ended.status != 0:
+            _raise_for(ended, None, None)
+        return Law.load(out)
+
     def __reduce__(self):  # in another process the file is read again
         return Law.load, (str(self.path.resolve()),)
 

@@ -1,0 +1,197 @@
+// softgrain law library and softgrain law get: laws of many materials collected, and that of one in between.
+#include "pipelines/law/law_library.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "common/contact/make_laws.h"
+#include "common/core/error.h"
+#include "common/core/text.h"
+#include "common/io/scene.h"
+#include "common/io/text_file.h"
+#include "pipelines/commands/law_options.h"
+#include "pipelines/law/value_output.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+Provenance provenance_of(const LawOptions& o) {
+  Provenance p = build_provenance();
+  p.command = o.command_line;
+  return p;
+}
+
+/// The law tables below a directory, in the order of their names.
+std::vector<std::string> law_tables_below(const std::string& directory) {
+  std::error_code error;
+  if (!fs::is_directory(directory, error)) throw InputError("law library: " + directory + " is no directory");
+  std::vector<std::string> out;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(directory))
+    if (entry.path().filename() == "law_table.toml") out.push_back(entry.path().string());
+  if (out.empty()) throw InputError("law library: no law_table.toml below " + directory);
+  std::ranges::sort(out);
+  return out;
+}
+
+/// A library of all tables; what was left out is said in `text`.
+LawLibrary collected(const std::vector<std::string>& directories, std::string& text) {
+  LawLibrary library;
+  for (const std::string& directory : directories)
+    for (const std::string& path : law_tables_below(directory)) {
+      FittedLaw law = load_law(path);
+      read_refits(law);
+      for (const LawTableEntry& entry : law.table()->entries) {
+        std::string why;
+        const std::string source = fs::path(path).parent_path().lexically_relative(directory).string();
+        const std::string name = (fs::path(directory).filename() / source).lexically_normal().string();
+        if (auto row = library_row(library, entry, name, why))
+          library.materials.push_back(std::move(*row));
+        else
+          text += fmt::format("left out: {}: {}\n", path, why);
+      }
+    }
+  return library;
+}
+
+std::string check_text(const std::vector<LibraryCheck>& checks) {
+  std::string text = fmt::format("{:<26} {:>9} {:>10} {:>12} {:>11}\n", "each left out in turn", "materials", "off by",
+                                 "over spread", "within 95 %");
+  for (const LibraryCheck& c : checks)
+    text += fmt::format("  {:<24} {:>9} {:>10.3g} {:>12.2f} {:>9.0f} %\n", c.name, c.materials, c.error,
+                        c.spread > 0.0 ? c.error / c.spread : 0.0, 100.0 * c.coverage);
+  return text;
+}
+
+std::string check_csv(const std::vector<LibraryCheck>& checks) {
+  std::string text = "number,materials,root mean square error,standard deviation over materials,share within 95 %\n";
+  for (const LibraryCheck& c : checks)
+    text += fmt::format("\"{}\",{},{:.6g},{:.6g},{:.6g}\n", c.name, c.materials, c.error, c.spread, c.coverage);
+  return text;
+}
+
+json check_json(const std::vector<LibraryCheck>& checks) {
+  json out = json::array();
+  for (const LibraryCheck& c : checks)
+    out.push_back({{"number", c.name},
+                   {"materials", c.materials},
+                   {"error", c.error},
+                   {"spread", c.spread},
+                   {"coverage", c.coverage}});
+  return out;
+}
+
+double given(const LawOptions& o, const char* name, double value, double low, double high) {
+  if (std::ranges::find(o.given, name) == o.given.end())
+    throw InputError(
+        fmt::format("law get: {} is needed: --mu, --exponent, --ratio and --solid-fraction say which material", name));
+  if (std::isfinite(value) && value >= low && value <= high) return value;
+  throw InputError(fmt::format("law get: {} {}: must be from {} to {}", name, value, low, high));
+}
+
+double si_quantity(const char* name, const std::string& text, Unit unit, double fallback) {
+  if (text.empty()) return fallback;
+  try {
+    const double value = parse_quantity(text, unit);
+    if (std::isfinite(value) && value > 0.0) return value;
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("law get: {} \"{}\": {}", name, text, e.what()));
+  }
+  throw InputError(fmt::format("law get: {} \"{}\": must be above 0", name, text));
+}
+
+LibraryMatter matter_of(const LawOptions& o) {
+  LibraryMatter out;
+  if (!(o.poisson_ratio > kPoissonAbove && o.poisson_ratio <= kPoissonHighest))
+    throw InputError(fmt::format("law get: --nu {}: must be {}", o.poisson_ratio, range_text(kPoissonRange)));
+  out.poisson_ratio = o.poisson_ratio;
+  out.youngs_modulus = si_quantity("--E", o.modulus, Unit::pressure, out.youngs_modulus);
+  out.shell_radius = si_quantity("--radius", o.radius, Unit::length, out.shell_radius);
+  return out;
+}
+
+/// Corrected by own packings, where there are some.
+LibraryAnswer answer_of(const LawOptions& o, const LawLibrary& library, std::vector<std::string>& remarks) {
+  const LibraryPoint at{given(o, "--mu", o.friction, 0.0, 10.0), given(o, "--exponent", o.exponent, 0.0, 50.0),
+                        given(o, "--ratio", o.ratio, 1.0, 1e6),
+                        given(o, "--solid-fraction", o.solid_fraction, 0.0, 1.0)};
+  const LibraryAnswer answer = ask_library(library, at);
+  remarks.push_back(nearest_text(library, answer));
+  if (o.own.empty()) return answer;
+  FittedLaw own = load_law(o.own);
+  if (own.table() == nullptr) throw InputError("law get: --own " + o.own + " is no law table");
+  read_refits(own);
+  return corrected(library, answer, main_entry(*own.table()), remarks);
+}
+
+json answer_json(const LibraryAnswer& answer, const std::vector<std::string>& remarks, const std::string& written) {
+  json out{{"command", "law get"}, {"status", "good"}, {"distance", answer.distance}, {"remarks", remarks}};
+  for (const LibraryVariable& v : kLibraryVariables) out["material"][v.name] = answer.at.*v.value;
+  for (const LibraryNumber& n : answer.numbers)
+    if (std::isfinite(n.value)) out["numbers"][n.name] = {n.value, n.deviation};
+  if (!written.empty()) out["written"] = written;
+  return out;
+}
+
+std::string answer_text(const LibraryAnswer& answer, const std::vector<std::string>& remarks) {
+  std::string text = point_text(answer.at) + "\n";
+  for (const LibraryNumber& n : answer.numbers)
+    if (std::isfinite(n.value)) text += fmt::format("  {:<24} {:>9.4g} +- {:.2g}\n", n.name, n.value, n.deviation);
+  for (const std::string& r : remarks) text += r + "\n";
+  return text;
+}
+
+}  // namespace
+
+ExitStatus make_library(const LawOptions& o) {
+  if (o.files.empty()) throw InputError("law library: give directories with law tables (see softgrain law library -h)");
+  std::string text;
+  const bool there = o.files.size() == 1 && fs::is_regular_file(o.files.front());
+  const LawLibrary library = there ? load_library(o.files.front()) : collected(o.files, text);
+  const std::vector<LibraryCheck> checks = check_library(library);
+  if (!o.out.empty()) {
+    write_text_atomic(o.out, library_text(library, provenance_of(o)));
+    write_text_atomic(fs::path(o.out).replace_filename("leave_one_out.csv").string(), check_csv(checks));
+  }
+  if (o.json) {
+    json out{{"command", "law library"},
+             {"status", "good"},
+             {"materials", library.materials.size()},
+             {"leave_one_out", check_json(checks)}};
+    if (!o.out.empty()) out["written"] = o.out;
+    write_standard_output(out.dump(2) + "\n");
+    return ExitStatus::good;
+  }
+  text += fmt::format("{} materials\n", library.materials.size()) + check_text(checks);
+  if (!o.out.empty()) text += "written: " + o.out + "\n";
+  write_standard_output(text);
+  return ExitStatus::good;
+}
+
+ExitStatus get_law(const LawOptions& o) {
+  constexpr std::int64_t kMostDraws = 10000;
+  if (o.draws < 10 || o.draws > kMostDraws)
+    throw InputError(fmt::format("law get: --draws {}: must be a whole number from 10 to {}", o.draws, kMostDraws));
+  if (!o.out.empty() && fs::path(o.out).extension() != ".toml")
+    throw InputError("law get: --out " + o.out + ": a law table ends with .toml");
+  const LibraryMatter matter = matter_of(o);
+  const LawLibrary library = load_library(o.library.empty() ? shipped_library() : o.library);
+  std::vector<std::string> remarks;
+  const LibraryAnswer answer = answer_of(o, library, remarks);
+  if (!o.out.empty())
+    save_law_table(table_of(library, answer, matter, static_cast<int>(o.draws)), o.out, provenance_of(o));
+  if (o.json)
+    write_standard_output(answer_json(answer, remarks, o.out).dump(2) + "\n");
+  else
+    write_standard_output(answer_text(answer, remarks) + (o.out.empty() ? "" : "written: " + o.out + "\n"));
+  return ExitStatus::good;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,135 @@
+// A library of law tables: the isotropic law of many materials, measured, and that of a material in between.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/data/multi_contact_law.h"
+#include "common/io/provenance.h"
+#include "pipelines/law/fitted_law.h"
+
+namespace softgrain {
+
+/// What the law of a soft particle depends on, besides E/(1 - nu^2), which scales it.
+struct LibraryPoint {
+  double friction = 0.0;        ///< mu of the grains
+  double exponent = 0.0;        ///< b of the size distribution P(r) ~ r^-b
+  double polydispersity = 0.0;  ///< rmax/rmin
+  double solid_fraction = 0.0;  ///< volume of grains over that of the shell
+};
+
+struct LibraryVariable {
+  const char* name;
+  double LibraryPoint::*value;
+  bool logarithm = false;  ///< whether the laws change evenly with its logarithm
+};
+inline constexpr std::array<LibraryVariable, 4> kLibraryVariables{{{"mu", &LibraryPoint::friction},
+                                                                   {"exponent", &LibraryPoint::exponent},
+                                                                   {"ratio", &LibraryPoint::polydispersity, true},
+                                                                   {"solid fraction", &LibraryPoint::solid_fraction}}};
+
+/// One measured material. `numbers` as LawLibrary::names says; NaN: not measured.
+struct LibraryMaterial {
+  std::string source;  ///< table that it comes from
+  LibraryPoint at;
+  int packings = 0;
+  std::vector<double> numbers;
+  std::vector<double> errors;        ///< standard errors of the numbers
+  std::vector<double> correlations;  ///< of the numbers of the law, that is the first ones, row-major
+  double volume_max = 0.0;           ///< as LawTableEntry says
+  double overlap_max = 0.0;
+  double grain_overlap_max = 0.0;
+  std::vector<double> partner_overlap_max;  ///< per row of neighbours, see PartnerRow
+};
+
+/// Kind and size of a row of neighbours of all laws of a library.
+struct LibraryPartner {
+  PartnerKind kind = PartnerKind::solid;
+  double ratio = 1.0;
+  bool operator==(const LibraryPartner&) const = default;
+};
+
+/// Numbers of a law, so chosen that they change smoothly and are hardly correlated: ln of the force of a plane at D =
+/// 0.35, F/(E* Rs^2) with E* = E/(1 - nu^2), b, delta; for each kind of neighbour ln nu at v = 0.02 of every size, and
+/// m; then kt/kn, friction limits, rolling, unloading, errors of the form, ln trials.
+struct LawLibrary {
+  double rmax_over_shell = 0.5;
+  double beta = 3.0;
+  std::vector<LibraryPartner> partners;
+  std::vector<LibraryMaterial> materials;
+  std::string path{};
+  std::string text{};
+
+  /// Names of all numbers; those of the law come first.
+  [[nodiscard]] std::vector<std::string> names() const;
+  [[nodiscard]] std::size_t law_numbers() const;
+};
+
+/// A row of the library from an entry of a table with its refits; empty, and why, when its isotropic law does not
+/// serve. The first row decides which neighbours all have. Throws InputError for a table of other neighbours or shells.
+std::optional<LibraryMaterial> library_row(LawLibrary& library, const LawTableEntry& entry, const std::string& source,
+                                           std::string& why);
+
+/// Writes and reads a library. Throw InputError with file and line, IoError.
+std::string library_text(const LawLibrary& library, const Provenance& provenance);
+LawLibrary read_library(const Scene& file);
+LawLibrary load_library(const std::string& path);
+/// Whether a file is a library: it has [library].
+bool is_library(const Scene& file);
+
+/// The library that comes with the program: results/law_library of the source tree that it was built in, or
+/// share/softgrain/results/law_library of the prefix where it is installed. Throws InputError when neither is there.
+std::string shipped_library();
+
+/// A number of the law of a material that was not measured, or of one as all others predict it.
+struct LibraryNumber {
+  std::string name;
+  double value = 0.0;
+  double deviation = 0.0;  ///< of interpolation and measured errors
+};
+
+struct LibraryAnswer {
+  LibraryPoint at;
+  std::vector<LibraryNumber> numbers;
+  std::vector<double> correlations;  ///< of the numbers of the law, row-major
+  std::size_t nearest = 0;           ///< measured material that is nearest
+  double distance = 0.0;             ///< to it: root of the sum of squares over the variables, each over its range
+};
+
+/// By Gaussian processes, one for each number. Throws InputError outside the measured materials, with their ranges.
+LibraryAnswer ask_library(const LawLibrary& library, const LibraryPoint& at);
+
+/// Every measured material as the others predict it.
+struct LibraryCheck {
+  std::string name;
+  double error = 0.0;     ///< root mean square of prediction less measured
+  double spread = 0.0;    ///< standard deviation of the number over the materials
+  double coverage = 0.0;  ///< share of materials within 1.96 deviations, those of the measured value included
+  std::size_t materials = 0;
+};
+std::vector<LibraryCheck> check_library(const LawLibrary& library);
+
+/// What else describes the soft particle of an answer.
+struct LibraryMatter {
+  double youngs_modulus = 5.0e5;
+  double poisson_ratio = 0.3;
+  double density = 2500.0;
+  double restitution = 0.5;
+  double shell_radius = 0.016;
+};
+
+/// The answer as a law table of one entry whose refits are `draws` normal draws, for error bars of macro runs. `own`: a
+/// measured table, by whose entry nearest in solid fraction the answer is corrected (both weighted by their
+/// covariances); what differs by more than three deviations is added to `remarks`.
+LawTable table_of(const LawLibrary& library, const LibraryAnswer& answer, const LibraryMatter& matter, int draws = 64);
+LibraryAnswer corrected(const LawLibrary& library, const LibraryAnswer& prior, const LawTableEntry& own,
+                        std::vector<std::string>& remarks);
+
+/// "mu = 0.5, exponent = 3, ratio = 6, solid fraction = 0.68".
+std::string point_text(const LibraryPoint& at);
+/// Which measured material is nearest, and how far, as one sentence without an end stop.
+std::string nearest_text(const LawLibrary& library, const LibraryAnswer& answer);
+
+}  // namespace softgrain

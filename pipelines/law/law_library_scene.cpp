@@ -1,0 +1,83 @@
+#include "pipelines/law/law_library_scene.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "common/core/error.h"
+#include "pipelines/law/law_library.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr const char* kShipped = "library";
+
+LibraryPoint read_library_point(const SceneTable& t) {
+  return {
+      t.number({"mu", "Coulomb friction of the grains"}, Unit::none, Range::not_negative()),
+      t.number({"exponent", "b of the size distribution P(r) ~ r^-b"}, Unit::none),
+      t.number({"ratio", "size ratio rmax/rmin of the grains"}, Unit::none, Range::above(1.0)),
+      t.number({"solid_fraction", "volume of grains over that of the shell"}, Unit::none, Range{0.0, 1.0, true, true})};
+}
+
+LibraryMatter read_library_matter(const SceneTable& t) {
+  LibraryMatter m;
+  m.youngs_modulus =
+      t.number({"E", "Young's modulus of the grains"}, Unit::pressure, Range::positive(), m.youngs_modulus);
+  m.poisson_ratio = t.number({"nu", "Poisson's ratio"}, Unit::none, kPoissonRange, m.poisson_ratio);
+  m.density = t.number({"density", "density of the grains"}, Unit::density, Range::positive(), m.density);
+  return m;
+}
+
+SceneTable library_table(const SceneTable& root) {
+  return root.table({"library", "with `law = \"library\"`: the material whose law is interpolated"});
+}
+
+FittedLaw library_law(const SceneTable& root, const LawLibrary& library) {
+  const SceneTable t = library_table(root);
+  const LibraryPoint at = read_library_point(t);
+  const LibraryMatter matter = read_library_matter(t);
+  if (t.has_errors()) t.throw_error("solid_fraction", "is not looked up before the errors of [library] are mended");
+  try {
+    FittedLaw law;
+    const LibraryAnswer answer = ask_library(library, at);
+    LawTable table = table_of(library, answer, matter);
+    law.remark = nearest_text(library, answer);
+    law.text = law_table_text(table, {}, "");
+    law.content = std::move(table);
+    return law;
+  } catch (const InputError& e) {
+    t.throw_error("solid_fraction", e.what());
+  }
+}
+
+}  // namespace
+
+std::string law_path(const Scene& scene, const std::string& written) {
+  return written == kShipped ? written : scene.resolve(written);
+}
+
+bool asks_library(const std::string& path) {
+  if (path == kShipped) return true;
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored) && std::filesystem::path(path).extension() == ".toml" &&
+         is_library(Scene::load(path));
+}
+
+FittedLaw law_at(const SceneTable& root, const std::string& path) {
+  if (!asks_library(path)) return load_law(path);
+  return library_law(root, load_library(path == kShipped ? shipped_library() : path));
+}
+
+void read_library_keys(const SceneTable& root) {
+  const SceneTable t = library_table(root);
+  (void)read_library_point(t);
+  (void)read_library_matter(t);
+}
+
+void refuse_idle_library(const SceneTable& root, const std::vector<std::string>& paths) {
+  if (std::ranges::none_of(paths, asks_library))
+    root.refuse({"library"}, "goes with law = \"library\", or with a library of law tables");
+}
+
+}  // namespace softgrain

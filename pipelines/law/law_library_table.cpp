@@ -1,0 +1,249 @@
+// From law tables to rows of a library, and from answers of a library to a law table.
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "calibrate/draws.h"
+#include "common/core/error.h"
+#include "common/core/statistics.h"
+#include "common/data/multi_contact_replicates.h"
+#include "pipelines/law/law_library.h"
+#include "pipelines/law/law_library_numbers.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr double kWorstUnseen = 0.5;  ///< error on unseen configurations above which a law is no row
+
+void require_same_shell(const LawLibrary& library, const LawTableEntry& entry, const std::string& source) {
+  if (entry.spec.sizes) throw InputError(source + ": sizes of another law than P(r) ~ r^-b have no place in a library");
+  if (entry.spec.rmax_over_shell != library.rmax_over_shell || entry.spec.beta != library.beta)
+    throw InputError(fmt::format("{}: rmax_over_shell = {}, beta = {}; this library has {}, {}", source,
+                                 entry.spec.rmax_over_shell, entry.spec.beta, library.rmax_over_shell, library.beta));
+}
+
+std::vector<LibraryPartner> partners_of(const MultiContactLaw& law) {
+  std::vector<LibraryPartner> out;
+  for (const PartnerRow& row : law.partners) out.push_back({row.kind, row.ratio});
+  return out;
+}
+
+/// Why a law is no row; empty: it is one.
+std::string unfit(const LawTableEntry& entry, const MultiContactLaw* law) {
+  if (law == nullptr) return "no isotropic law";
+  if (law->status != LawStatus::good && law->status != LawStatus::inaccurate) return to_string(law->status);
+  if (law->error_held_out > kWorstUnseen)
+    return fmt::format("{:.0f} % off on unseen configurations", 100.0 * law->error_held_out);
+  if (law->replicates.size() < kEnoughReplicates)
+    return fmt::format("{} refits; {} are needed", law->replicates.size(), kEnoughReplicates);
+  return entry.solid_fraction > 0.0 ? "" : "no solid fraction";
+}
+
+/// A symmetric matrix from deviations and correlations of the first numbers.
+Eigen::MatrixXd covariance_of(const std::vector<double>& deviations, const std::vector<double>& correlations) {
+  const auto n = static_cast<Eigen::Index>(deviations.size());
+  Eigen::MatrixXd out(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      out(i, j) = correlations[static_cast<std::size_t>(i * n + j)] * deviations[static_cast<std::size_t>(i)] *
+                  deviations[static_cast<std::size_t>(j)];
+  return out;
+}
+
+std::vector<double> deviations_of(const LibraryAnswer& answer, std::size_t count) {
+  std::vector<double> out;
+  for (std::size_t k = 0; k < count; ++k) out.push_back(answer.numbers[k].deviation);
+  return out;
+}
+
+/// Value and interval of one number from its draws.
+Estimate drawn_estimate(double value, const std::vector<std::vector<double>>& draws, std::size_t k) {
+  std::vector<double> column;
+  for (const std::vector<double>& d : draws) column.push_back(d[k]);
+  const double deviation = mean_error(column).deviation_or_zero();
+  return {value, deviation, quantile(column, 0.025), quantile(column, 0.975)};
+}
+
+MultiContactLaw law_of_answer(const LawLibrary& library, const LibraryAnswer& answer, double poisson_ratio, int draws) {
+  const std::size_t count = library.law_numbers();
+  std::vector<double> mean;
+  for (std::size_t k = 0; k < count; ++k) mean.push_back(answer.numbers[k].value);
+  const Eigen::MatrixXd c = covariance_of(deviations_of(answer, count), answer.correlations);
+  MultiContactLaw law;
+  law.form = LawForm::isotropic;
+  for (std::size_t k = 0; k < library.partners.size(); ++k)
+    law.partners.push_back({library.partners[k].kind,
+                            library.partners[k].ratio,
+                            {},
+                            {},
+                            library.materials[answer.nearest].partner_overlap_max[k],
+                            0.0});
+  const std::vector<double> numbers = law_numbers_of(library.partners, mean, poisson_ratio);
+  for (const std::vector<double>& draw : normal_draws(mean, {c.data(), c.data() + c.size()}, draws, 1))
+    law.replicates.push_back(law_numbers_of(library.partners, draw, poisson_ratio));
+  const std::size_t planes = kMultiContactParameters.size();
+  for (std::size_t k = 0; k < planes; ++k)
+    law.*kMultiContactParameters[k].estimate = drawn_estimate(numbers[k], law.replicates, k);
+  for (std::size_t r = 0; r < law.partners.size(); ++r) {
+    law.partners[r].weight = drawn_estimate(numbers[planes + 2 * r], law.replicates, planes + 2 * r);
+    law.partners[r].exponent = drawn_estimate(numbers[planes + 2 * r + 1], law.replicates, planes + 2 * r + 1);
+  }
+  law.parameters = 3;
+  return law;
+}
+
+/// What the measured numbers of a table say of a material: of the law, then of all else.
+struct OwnNumbers {
+  std::vector<double> values;
+  std::vector<double> errors;
+  std::vector<double> correlations;
+};
+
+OwnNumbers own_numbers(const LawLibrary& library, const LawTableEntry& own) {
+  const MultiContactLaw* law = own.find(LawForm::isotropic);
+  if (law == nullptr) throw InputError("law library: the own table has no isotropic law");
+  if (law->replicates.size() < kEnoughReplicates)
+    throw InputError(
+        fmt::format("law library: the own table has {} refits of its isotropic law; {} are needed (the "
+                    ".h5 beside it holds them)",
+                    law->replicates.size(), kEnoughReplicates));
+  const RefitSpread spread = refit_spread(library.partners, own, *law);
+  OwnNumbers out{library_numbers(library.partners, *law, multi_contact_numbers(*law), own.spec.poisson_ratio),
+                 spread.errors, spread.correlations};
+  const SideNumbers side = side_numbers(own, *law);
+  out.values.insert(out.values.end(), side.values.begin(), side.values.end());
+  out.errors.insert(out.errors.end(), side.errors.begin(), side.errors.end());
+  return out;
+}
+
+/// Numbers that own measurements tell.
+std::vector<Eigen::Index> told(const OwnNumbers& own, std::size_t begin, std::size_t end) {
+  std::vector<Eigen::Index> out;
+  for (std::size_t k = begin; k < end; ++k)
+    if (std::isfinite(own.values[k]) && std::isfinite(own.errors[k]) && own.errors[k] > 0.0)
+      out.push_back(static_cast<Eigen::Index>(k));
+  return out;
+}
+
+void compare_with_own(const LibraryAnswer& prior, const OwnNumbers& own, std::vector<std::string>& remarks) {
+  constexpr double kMost = 3.0;
+  for (const Eigen::Index at : told(own, 0, own.values.size())) {
+    const auto k = static_cast<std::size_t>(at);
+    const LibraryNumber& n = prior.numbers[k];
+    if (!std::isfinite(n.value)) continue;
+    const double off = (own.values[k] - n.value) / std::hypot(own.errors[k], n.deviation);
+    if (std::abs(off) > kMost)
+      remarks.push_back(
+          fmt::format("own measurements contradict the library: {} {:.4g}, library {:.4g}, {:.1f} "
+                      "standard deviations apart",
+                      n.name, own.values[k], n.value, std::abs(off)));
+  }
+}
+
+}  // namespace
+
+std::optional<LibraryMaterial> library_row(LawLibrary& library, const LawTableEntry& entry, const std::string& source,
+                                           std::string& why) {
+  const MultiContactLaw* law = entry.find(LawForm::isotropic);
+  why = unfit(entry, law);
+  if (!why.empty()) return std::nullopt;
+  if (library.materials.empty()) {
+    library.partners = partners_of(*law);
+    library.rmax_over_shell = entry.spec.rmax_over_shell;
+    library.beta = entry.spec.beta;
+  }
+  require_same_shell(library, entry, source);
+  if (partners_of(*law) != library.partners)
+    throw InputError(source + ": measured with other kinds or sizes of neighbours than the first table");
+  LibraryMaterial m;
+  m.source = source;
+  m.at = {entry.spec.friction, entry.spec.exponent, entry.spec.polydispersity, entry.solid_fraction};
+  m.packings = entry.packings;
+  const OwnNumbers numbers = own_numbers(library, entry);
+  m.numbers = numbers.values;
+  m.errors = numbers.errors;
+  m.correlations = numbers.correlations;
+  m.volume_max = entry.volume_max;
+  m.overlap_max = entry.overlap_max;
+  m.grain_overlap_max = entry.grain_overlap_max;
+  for (const PartnerRow& row : law->partners) m.partner_overlap_max.push_back(row.overlap_max);
+  if (std::isfinite(m.numbers[0])) return m;
+  why = "its threshold lies beyond the depth at which laws are compared";
+  return std::nullopt;
+}
+
+LawTable table_of(const LawLibrary& library, const LibraryAnswer& answer, const LibraryMatter& matter, int draws) {
+  const LibraryMaterial& nearest = library.materials[answer.nearest];
+  LawTableEntry e;
+  e.spec.shell_radius = matter.shell_radius;
+  e.spec.youngs_modulus = matter.youngs_modulus;
+  e.spec.poisson_ratio = matter.poisson_ratio;
+  e.spec.density = matter.density;
+  e.spec.restitution = matter.restitution;
+  e.spec.friction = answer.at.friction;
+  e.spec.exponent = answer.at.exponent;
+  e.spec.polydispersity = answer.at.polydispersity;
+  e.spec.rmax_over_shell = library.rmax_over_shell;
+  e.spec.beta = library.beta;
+  e.spec.placement = Placement::voids;
+  e.solid_fraction = answer.at.solid_fraction;
+  e.main = true;
+  e.packings = nearest.packings;
+  e.relaxation = fmt::format("interpolated between {} measured materials; {}", library.materials.size(),
+                             nearest_text(library, answer));
+  e.volume_max = nearest.volume_max;
+  e.overlap_max = nearest.overlap_max;
+  e.grain_overlap_max = nearest.grain_overlap_max;
+  e.best = LawForm::isotropic;
+  MultiContactLaw law = law_of_answer(library, answer, matter.poisson_ratio, draws);
+  const auto side = answer.numbers.begin() + static_cast<std::ptrdiff_t>(library.law_numbers());
+  set_side_numbers({side, answer.numbers.end()}, e, law);
+  e.laws = {std::move(law)};
+  LawTable table;
+  table.entries = {std::move(e)};
+  return table;
+}
+
+LibraryAnswer corrected(const LawLibrary& library, const LibraryAnswer& prior, const LawTableEntry& own,
+                        std::vector<std::string>& remarks) {
+  const OwnNumbers numbers = own_numbers(library, own);
+  compare_with_own(prior, numbers, remarks);
+  LibraryAnswer out = prior;
+  const std::size_t count = library.law_numbers();
+  const std::vector<Eigen::Index> at = told(numbers, 0, count);
+  const Eigen::MatrixXd before = covariance_of(deviations_of(prior, count), prior.correlations);
+  std::vector<double> own_errors(numbers.errors.begin(), numbers.errors.begin() + static_cast<std::ptrdiff_t>(count));
+  for (double& e : own_errors) e = std::isfinite(e) ? e : 0.0;
+  const Eigen::MatrixXd measured = covariance_of(own_errors, numbers.correlations);
+  Eigen::VectorXd off(static_cast<Eigen::Index>(at.size()));
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    const auto number = static_cast<std::size_t>(at[k]);
+    off[static_cast<Eigen::Index>(k)] = numbers.values[number] - prior.numbers[number].value;
+  }
+  const Eigen::MatrixXd across = before(Eigen::all, at);
+  const Eigen::MatrixXd sum = before(at, at) + measured(at, at);
+  const Eigen::MatrixXd gain = sum.completeOrthogonalDecomposition().solve(across.transpose()).transpose();
+  const Eigen::VectorXd moved = gain * off;
+  const Eigen::MatrixXd after = before - gain * across.transpose();
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    out.numbers[k].value += moved[i];
+    out.numbers[k].deviation = std::sqrt(std::max(after(i, i), 0.0));
+  }
+  out.correlations = correlations_of({after.data(), after.data() + after.size()}, count);
+  for (const Eigen::Index k : told(numbers, count, numbers.values.size())) {
+    LibraryNumber& n = out.numbers[static_cast<std::size_t>(k)];
+    const double value = numbers.values[static_cast<std::size_t>(k)];
+    const double error = numbers.errors[static_cast<std::size_t>(k)];
+    const double share =
+        std::isfinite(n.value) ? n.deviation * n.deviation / (n.deviation * n.deviation + error * error) : 1.0;
+    n.value = std::isfinite(n.value) ? n.value + share * (value - n.value) : value;
+    n.deviation = std::sqrt(share) * error;
+  }
+  return out;
+}
+
+}  // namespace softgrain

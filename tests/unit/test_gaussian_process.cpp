@@ -1,0 +1,120 @@
+// Gaussian processes: a smooth function comes back within its band, leaving one out is what fits without it say, and
+// the distance from a convex hull.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "calibrate/gaussian_process.h"
+#include "common/core/error.h"
+#include "common/core/random.h"
+#include "common/core/statistics.h"
+
+namespace softgrain {
+namespace {
+
+constexpr std::size_t kVariables = 4;
+constexpr double kNoise = 0.05;
+
+double smooth(const std::vector<double>& u) {
+  return 2.0 * u[0] - u[1] + 0.8 * std::sin(2.0 * u[2]) + 0.5 * u[0] * u[3] + 0.3 * u[3] * u[3];
+}
+
+std::vector<double> point(RandomStream& random) {
+  std::vector<double> u(kVariables);
+  for (double& x : u) x = random.uniform();
+  return u;
+}
+
+struct Sample {
+  std::vector<std::vector<double>> points;
+  std::vector<double> values;
+  std::vector<double> errors;
+};
+
+Sample sample(std::size_t n, std::uint64_t seed, double noise = kNoise) {
+  RandomStream random(seed, RandomPurpose::test, 0);
+  Sample s;
+  for (std::size_t k = 0; k < n; ++k) {
+    s.points.push_back(point(random));
+    s.values.push_back(smooth(s.points.back()) + noise * random.normal());
+    s.errors.push_back(noise);
+  }
+  return s;
+}
+
+GaussianProcess process(const Sample& s) { return {s.points, s.values, s.errors}; }
+
+TEST(GaussianProcess, ASmoothFunctionComesBackWithinItsBand) {
+  int inside = 0;
+  int all = 0;
+  double squares = 0.0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const GaussianProcess g = process(sample(32, seed));
+    RandomStream random(seed, RandomPurpose::test, 1);
+    for (int k = 0; k < 50; ++k, ++all) {
+      const std::vector<double> u = point(random);
+      const ProcessValue z = g.at(u);
+      const double off = z.mean - smooth(u);
+      inside += std::abs(off) <= kNormal95 * z.deviation ? 1 : 0;
+      squares += off * off;
+    }
+  }
+  EXPECT_GE(inside, 0.88 * all);
+  EXPECT_LT(std::sqrt(squares / all), 2.0 * kNoise) << "the function spreads by 0.7";
+}
+
+TEST(GaussianProcess, ALineIsExact) {
+  Sample s = sample(12, 5, 0.0);
+  for (std::size_t k = 0; k < s.points.size(); ++k) s.values[k] = 3.0 + s.points[k][0] - 2.0 * s.points[k][2];
+  const ProcessValue z = process(s).at({0.2, 0.7, 0.4, 0.9});
+  EXPECT_NEAR(z.mean, 3.0 + 0.2 - 0.8, 1e-3);
+}
+
+TEST(GaussianProcess, LeavingOneOutIsThePredictionOfTheOthers) {
+  const Sample all = sample(40, 7);
+  const std::vector<ProcessValue> left = process(all).leave_one_out();
+  double apart = 0.0;
+  int inside = 0;
+  for (std::size_t k = 0; k < all.values.size(); ++k) {
+    inside +=
+        std::abs(left[k].mean - all.values[k]) <= kNormal95 * std::hypot(left[k].deviation, all.errors[k]) ? 1 : 0;
+    if (k % 10 != 0) continue;
+    Sample others = all;
+    const auto at = static_cast<std::ptrdiff_t>(k);
+    others.points.erase(others.points.begin() + at);
+    others.values.erase(others.values.begin() + at);
+    others.errors.erase(others.errors.begin() + at);
+    apart = std::max(apart, std::abs(process(others).at(all.points[k]).mean - left[k].mean));
+  }
+  EXPECT_LT(apart, kNoise) << "but for lengths that are fitted again";
+  EXPECT_GE(inside, 35);
+}
+
+TEST(GaussianProcess, ScatterOfThePointsIsInTheBand) {
+  Sample s = sample(40, 9, 0.3);
+  s.errors.assign(s.errors.size(), 0.0);
+  EXPECT_NEAR(process(s).scatter(), 0.3, 0.12);
+}
+
+TEST(GaussianProcess, RefusesWhatDoesNotGoTogether) {
+  Sample s = sample(6, 1);
+  EXPECT_THROW((void)process(s), InputError) << "fewer than its trend needs";
+  s = sample(12, 1);
+  s.errors.pop_back();
+  EXPECT_THROW((void)process(s), InputError);
+  s = sample(12, 1);
+  s.values[3] = std::nan("");
+  EXPECT_THROW((void)process(s), InputError);
+}
+
+TEST(DistanceFromHull, OfASquareAndItsInside) {
+  const std::vector<std::vector<double>> square{{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {1.0, 1.0}, {0.5, 0.6}};
+  EXPECT_NEAR(distance_from_hull(square, {0.3, 0.9}), 0.0, 1e-4);
+  EXPECT_NEAR(distance_from_hull(square, {0.5, 1.25}), 0.25, 1e-3);
+  EXPECT_NEAR(distance_from_hull(square, {2.0, 2.0}), std::sqrt(2.0), 1e-2);
+  const std::vector<std::vector<double>> triangle{{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
+  EXPECT_NEAR(distance_from_hull(triangle, {1.0, 1.0}), std::sqrt(0.5), 1e-2);
+}
+
+}  // namespace
+}  // namespace softgrain

@@ -1,0 +1,215 @@
+// The library of law tables: a synthetic one gives its laws back within their bands, at measured materials and between
+// them, refuses what lies outside, and survives its file.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "common/contact/make_laws.h"
+#include "common/core/error.h"
+#include "common/core/statistics.h"
+#include "common/data/multi_contact_replicates.h"
+#include "common/io/scene.h"
+#include "common/io/text_file.h"
+#include "pipelines/law/law_draws.h"
+#include "pipelines/law/law_library.h"
+#include "pipelines/law/law_library_numbers.h"
+#include "pipelines/law/law_library_scene.h"
+#include "tests/support/synthetic_library.h"
+#include "tests/support/temporary_directory.h"
+
+namespace softgrain {
+namespace {
+
+const LibraryPoint kBetween{0.45, 3.2, 7.0, 0.66};
+
+std::string message_of(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+void expect_in(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << text;
+}
+
+const LawLibrary& library() {
+  static const LawLibrary made = synthetic::law_library(16);
+  return made;
+}
+
+TEST(LawLibrary, NumbersOfALawAndBack) {
+  const MultiContactLaw law = synthetic::multi_contact_law(LawForm::isotropic);
+  std::vector<LibraryPartner> partners;
+  for (const PartnerRow& row : law.partners) partners.push_back({row.kind, row.ratio});
+  const std::vector<double> numbers = multi_contact_numbers(law);
+  const std::vector<double> back = law_numbers_of(partners, library_numbers(partners, law, numbers, 0.45), 0.45);
+  ASSERT_EQ(back.size(), numbers.size());
+  for (std::size_t k = 0; k < numbers.size(); ++k) EXPECT_NEAR(back[k], numbers[k], 1e-12 * std::abs(numbers[k])) << k;
+}
+
+TEST(LawLibrary, PoissonsRatioScalesForcesAlone) {
+  const MultiContactLaw law = synthetic::multi_contact_law(LawForm::isotropic);
+  const std::vector<double> numbers = multi_contact_numbers(law);
+  const double one = library_numbers({}, law, numbers, 0.0)[0];
+  const double other = library_numbers({}, law, numbers, 0.4)[0];
+  EXPECT_NEAR(other - one, std::log(1.0 - 0.16), 1e-12);
+}
+
+TEST(LawLibrary, AMaterialBetweenIsWithinItsBand) {
+  RandomStream random(8, RandomPurpose::test, 4);
+  int inside = 0;
+  int all = 0;
+  for (int k = 0; k < 5; ++k) {
+    const LibraryPoint p{0.1 + 0.6 * random.uniform(), 2.7 + 1.1 * random.uniform(), 5.0 + 7.0 * random.uniform(),
+                         0.60 + 0.10 * random.uniform()};
+    const LibraryAnswer a = ask_library(library(), p);
+    const std::vector<double> truth{synthetic::library_force(p), synthetic::library_exponent(p),
+                                    synthetic::library_onset(p)};
+    for (std::size_t n = 0; n < truth.size(); ++n, ++all)
+      inside += std::abs(a.numbers[n].value - truth[n]) <= kNormal95 * a.numbers[n].deviation ? 1 : 0;
+    EXPECT_NEAR(a.numbers[0].value, truth[0], 0.06);
+  }
+  EXPECT_GE(inside, all - 3);
+}
+
+TEST(LawLibrary, AMeasuredMaterialComesBackWithinItsError) {
+  const LibraryMaterial& m = library().materials[4];
+  const LibraryAnswer a = ask_library(library(), m.at);
+  EXPECT_EQ(a.nearest, 4U);
+  EXPECT_EQ(a.distance, 0.0);
+  for (std::size_t k = 0; k < library().law_numbers(); ++k)
+    EXPECT_NEAR(a.numbers[k].value, m.numbers[k], 3.0 * std::hypot(m.errors[k], a.numbers[k].deviation))
+        << a.numbers[k].name;
+}
+
+TEST(LawLibrary, LeavingMaterialsOut) {
+  const std::vector<LibraryCheck> checks = check_library(library());
+  ASSERT_FALSE(checks.empty());
+  EXPECT_EQ(checks.front().name, "ln force");
+  EXPECT_EQ(checks.front().materials, 32U);
+  EXPECT_LT(checks.front().error, 0.06);
+  EXPECT_GT(checks.front().spread, 0.15);
+  EXPECT_GE(checks.front().coverage, 0.85);
+}
+
+TEST(LawLibrary, RefusesWhatLiesOutside) {
+  LibraryPoint p = kBetween;
+  p.polydispersity = 40.0;
+  p.friction = 1.5;
+  const std::string outside = message_of([&] { (void)ask_library(library(), p); });
+  expect_in(outside, "mu = 1.5: measured from 0 to 0.8");
+  expect_in(outside, "ratio = 40: measured from 4 to 14");
+  // A library along a diagonal: every number is in range, the combination is not.
+  LawLibrary diagonal = library();
+  std::erase_if(diagonal.materials, [](const LibraryMaterial& m) {
+    return std::abs(std::log(m.at.polydispersity / 4.0) / std::log(3.5) - (m.at.solid_fraction - 0.58) / 0.14) > 0.4;
+  });
+  const std::string corner = message_of([&] { (void)ask_library(diagonal, {0.4, 3.2, 4.2, 0.715}); });
+  expect_in(corner, "no such combination was measured");
+  expect_in(corner, "solid fractions from 0.5");
+  LawLibrary few = library();
+  few.materials.resize(6);
+  expect_in(message_of([&] { (void)ask_library(few, kBetween); }), "6 materials; it needs at least 7");
+}
+
+TEST(LawLibrary, RowsThatDoNotServeAreLeftOut) {
+  LawLibrary made;
+  std::string why;
+  LawTableEntry e = synthetic::library_entry(kBetween, 0.02, 1);
+  e.laws.front().error_held_out = 0.7;
+  EXPECT_FALSE(library_row(made, e, "x", why));
+  expect_in(why, "70 % off on unseen configurations");
+  e = synthetic::library_entry(kBetween, 0.02, 1);
+  e.laws.front().replicates.resize(3);
+  EXPECT_FALSE(library_row(made, e, "x", why));
+  expect_in(why, "3 refits");
+  e = synthetic::library_entry(kBetween, 0.02, 1);
+  made.materials.push_back(*library_row(made, e, "x", why));
+  e.laws.front().partners.pop_back();
+  for (auto& r : e.laws.front().replicates) r.resize(r.size() - 2);
+  EXPECT_THROW((void)library_row(made, e, "y", why), InputError);
+  e.spec.rmax_over_shell = 0.3;
+  expect_in(message_of([&] { (void)library_row(made, e, "y", why); }), "rmax_over_shell = 0.3");
+}
+
+TEST(LawLibrary, SurvivesItsFile) {
+  const std::string text = library_text(library(), build_provenance());
+  const LawLibrary back = read_library(Scene::parse(text, "library.toml"));
+  ASSERT_EQ(back.materials.size(), library().materials.size());
+  EXPECT_EQ(back.names(), library().names());
+  const LibraryAnswer a = ask_library(library(), kBetween);
+  const LibraryAnswer b = ask_library(back, kBetween);
+  for (std::size_t k = 0; k < a.numbers.size(); ++k) {
+    ASSERT_EQ(std::isfinite(a.numbers[k].value), std::isfinite(b.numbers[k].value)) << a.numbers[k].name;
+    if (!std::isfinite(a.numbers[k].value)) continue;
+    EXPECT_NEAR(a.numbers[k].value, b.numbers[k].value, 1e-3 * std::abs(a.numbers[k].value) + 1e-4);
+  }
+}
+
+TEST(LawLibrary, TheTableIsReadAndDrawn) {
+  const test::TemporaryDirectory directory;
+  const LibraryAnswer a = ask_library(library(), kBetween);
+  LibraryMatter matter;
+  matter.poisson_ratio = 0.2;
+  save_law_table(table_of(library(), a, matter), directory.path() + "/my.toml");
+  LawSources sources;
+  sources.laws = {load_law(directory.path() + "/my.toml")};
+  sources.forms = {WantedForm{}};
+  MacroSpec spec;
+  spec.poisson_ratio = 0.2;
+  spec.friction = kBetween.friction;
+  const NamedLaws law = scene_law(sources, spec, 0.0, "law");
+  EXPECT_EQ(law.form, LawForm::isotropic);
+  const LawDraws draws = law_draws(sources, law, spec, 0.0, 64);
+  EXPECT_EQ(draws.draws.size(), 64U);
+  EXPECT_GT(draws.discrepancy, 0.0);
+  std::vector<double> forces;
+  for (const auto& d : draws.draws) forces.push_back(d[1]);
+  const double deviation = mean_error(forces).deviation;
+  EXPECT_GT(deviation, 0.6 * a.numbers[1].deviation) << "b of the draws";
+  EXPECT_LT(deviation, 1.6 * a.numbers[1].deviation);
+}
+
+TEST(LawLibrary, OwnPackingsCorrectAndContradict) {
+  const LibraryAnswer prior = ask_library(library(), kBetween);
+  std::vector<std::string> remarks;
+  LibraryPoint other = kBetween;
+  other.solid_fraction += 0.002;
+  const LibraryAnswer near = corrected(library(), prior, synthetic::library_entry(other, 0.02, 77), remarks);
+  EXPECT_TRUE(remarks.empty()) << remarks.front();
+  EXPECT_LT(near.numbers[0].deviation, prior.numbers[0].deviation);
+  other.solid_fraction = 0.75;
+  const LawTableEntry own = synthetic::library_entry(other, 0.005, 78);
+  const LibraryAnswer far = corrected(library(), prior, own, remarks);
+  ASSERT_FALSE(remarks.empty());
+  expect_in(remarks.front(), "own measurements contradict the library: ln force");
+  EXPECT_NEAR(far.numbers[0].value, synthetic::library_force(other), 0.2) << "what is measured well has its way";
+}
+
+TEST(LawLibrary, ScenesNameTheMaterial) {
+  const test::TemporaryDirectory directory;
+  const std::string path = directory.path() + "/library.toml";
+  write_text_atomic(path, library_text(library(), build_provenance()));
+  const auto law = [&](const std::string& table) {
+    return Scene::parse(table, "scene.toml").read([&](const SceneTable& root) {
+      refuse_idle_library(root, {path});
+      return law_at(root, path);
+    });
+  };
+  const FittedLaw got = law("[library]\nmu = 0.45\nexponent = 3.2\nratio = 7.0\nsolid_fraction = 0.66\nnu = 0.2\n");
+  ASSERT_NE(got.table(), nullptr);
+  EXPECT_EQ(got.table()->entries.front().spec.friction, 0.45);
+  EXPECT_EQ(got.table()->entries.front().spec.poisson_ratio, 0.2);
+  expect_in(got.remark, "nearest measured material: mu = ");
+  expect_in(
+      message_of([&] { (void)law("[library]\nmu = 0.45\nexponent = 3.2\nratio = 70.0\nsolid_fraction = 0.66\n"); }),
+      "ratio = 70: measured from 4 to 14");
+  expect_in(message_of([&] { (void)law("[library]\nmu = 0.45\nexponent = 3.2\nratio = 7.0\n"); }), "solid_fraction");
+}
+
+}  // namespace
+}  // namespace softgrain
