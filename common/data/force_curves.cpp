@@ -212,13 +212,13 @@ const CsvNames kPoisson{"nu", "poisson ratio", "poissons ratio", "poisson number
 const CsvNames kFriction{"mu", "friction", "friction coefficient", "coefficient of friction"};
 const CsvNames kDensity{"density", "rho", "grain density"};
 const CsvNames kSample{"sample", "specimen", "test"};
-const CsvNames kTouch{"touch", "touch point", "displacement at touch"};
+const CsvNames kTouchNames{"touch", "touch point", "displacement at touch"};
 const CsvNames kZeroForce{"force offset", "zero force"};
 const CsvNames kMachine{"machine stiffness", "frame stiffness"};
 
 /// What the machine adds to every reading.
 void read_machine(const CsvFile& file, CurveLayout& at) {
-  at.touch = file.quantity(kTouch, Unit::length, Range::any()).value_or(0.0);
+  at.touch = file.quantity(kTouchNames, Unit::length, Range::any()).value_or(0.0);
   at.zero_force = file.quantity(kZeroForce, Unit::force, Range::any()).value_or(0.0);
   if (const auto k = file.quantity(kMachine, Unit::stiffness, Range::positive())) at.machine_stiffness = *k;
 }
@@ -349,7 +349,7 @@ ForceCurves read_force_curves(const std::string& path, const ForceCurveOptions& 
   std::vector<CurveLayout> layouts = layouts_of(file, out.remarks);
   for (const CurveLayout& at : layouts) require_columns(file, at);
   file.require_known_comments(
-      {kRadius, kModulus, kKind, kPoisson, kFriction, kDensity, kSample, kTouch, kZeroForce, kMachine}, "a press test");
+      {kRadius, kModulus, kKind, kPoisson, kFriction, kDensity, kSample, kTouchNames, kZeroForce, kMachine}, "a press test");
   const CurveLayout& first = layouts.front();
   const auto sample = file.word(kSample);
   if (sample && first.sample != CurveLayout::none)
