@@ -159,7 +159,7 @@ std::vector<SmallForm> small_forms() {
        {"samples=1", "grains.count=150", "levels.mixtures=[0.25,0.5,0.75]", "law.cells=40", "law.replicates=40",
         R"(grains.sizes={form="fuller",exponent=0.5,radius_min="0.45 mm",radius_max="1 mm"})", "levels.ratio=1.6",
         "test.steps=4", "check.grains=300", "check.samples=1", "macro.grains=40", "macro.samples=1"},
-       3,
+       0,
        false},
       {"uhpc.toml",
        "run",

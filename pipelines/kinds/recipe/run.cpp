@@ -245,11 +245,21 @@ class RecipeRun {
     for (std::string& warning : run_warnings(kept, "")) head().warnings.push_back(std::move(warning));
   }
 
+  /// Without what follows the highest stress: the loading that laws without unloading go through too.
+  static void up_to_highest(RecipeCurve& c) {
+    const auto points = static_cast<std::size_t>(std::ranges::max_element(c.axial) - c.axial.begin()) + 1;
+    for (auto* column : {&c.strain, &c.axial, &c.lateral, &c.low, &c.high})
+      if (column->size() > points) column->resize(points);
+  }
+
   void add_moduli() {
     const double modulus = spec().youngs_modulus;
     std::array<double, 2> interval = spec().modulus_stress;
     if (staged()) interval = {out().staged->stages.front().stress_from, out().staged->stages.front().stress_to};
-    const auto [from, to] = set_moduli(out().curves, {interval[0] / modulus, interval[1] / modulus});
+    std::vector<RecipeCurve> curves = out().curves;
+    if (staged()) std::ranges::for_each(curves, up_to_highest);
+    const auto [from, to] = set_moduli(curves, {interval[0] / modulus, interval[1] / modulus});
+    for (std::size_t k = 0; k < curves.size(); ++k) out().curves[k].modulus = curves[k].modulus;
     for (const RecipeCurve& c : out().curves)
       if (!c.modulus && !c.axial.empty())
         head().remarks.push_back(
@@ -279,7 +289,8 @@ class RecipeRun {
   void judge(double end) {
     for (const RecipeCurve& c : out().curves)
       if (!c.problem.empty()) head().mark_unusable(c.name + ": " + c.problem);
-    if (summary_.law.numbers.empty() || !summary_.law.usable) head().status = RunStatus::not_usable;
+    // With stages the cell law is beside the result, and a remark says why there is none.
+    if (!staged() && (summary_.law.numbers.empty() || !summary_.law.usable)) head().status = RunStatus::not_usable;
     const RecipeCurve& whole = out().curves.front();
     const double p = (whole.axial.back() + 2.0 * whole.lateral.back()) / 3.0;
     if (!staged() && p > kHardlyBeyond * law_.pressure_high)
