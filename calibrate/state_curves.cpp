@@ -100,9 +100,17 @@ double state_phi(StateForm form, double modulus, double exponent, double onset, 
   return pressure > 0.0 ? phi_slopes(form, std::log(modulus), exponent, onset, pressure).value : onset;
 }
 
+double state_of_phi(StateForm form, double onset, double phi) {
+  return form == StateForm::porosity ? (phi - onset) / (1.0 - onset) : 1.0 - (1.0 / phi - 1.0) / (1.0 / onset - 1.0);
+}
+
+double phi_of_state(StateForm form, double onset, double state) {
+  if (form == StateForm::porosity) return onset + (1.0 - onset) * state;
+  return 1.0 / (1.0 + (1.0 / onset - 1.0) * (1.0 - state));
+}
+
 double state_pressure(StateForm form, double modulus, double exponent, double onset, double phi) {
-  const double state =
-      form == StateForm::porosity ? (phi - onset) / (1.0 - onset) : 1.0 - (1.0 / phi - 1.0) / (1.0 / onset - 1.0);
+  const double state = state_of_phi(form, onset, phi);
   return state > 0.0 ? modulus * std::pow(state, exponent) : 0.0;
 }
 

@@ -36,7 +36,10 @@ enum class Preparation {
   fast,          ///< shrunk at a high rate with the friction of the test, then relaxed: loose
   slow,          ///< shrunk at a low rate with the friction of the test, then relaxed
   dense,         ///< fines grow in the voids of a jammed pack of the coarse bodies, then all are freed
-  lammps         ///< we place bodies loosely, and LAMMPS compacts them
+  lammps,        ///< we place bodies loosely, and LAMMPS compacts them
+  poured,        ///< as fast: loose bulk density
+  rodded,        ///< as fast with a tenth of friction at most: between poured and vibrated
+  vibrated       ///< as frictionless: the densest that bodies reach without order
 };
 
 template <>
@@ -46,6 +49,9 @@ inline constexpr auto enum_names<Preparation> = enum_name_list<Preparation>({{Pr
                                                                              {Preparation::slow, "slow"},
                                                                              {Preparation::dense, "dense"},
                                                                              {Preparation::lammps, "lammps"},
+                                                                             {Preparation::poured, "poured"},
+                                                                             {Preparation::rodded, "rodded"},
+                                                                             {Preparation::vibrated, "vibrated"},
                                                                              {Preparation::frictionless, "softgrain"}});
 
 /// All that defines a preparation beside the bodies and the pressure at its end.

@@ -92,9 +92,11 @@ MacroPacking place_loosely(std::vector<MacroBody> bodies, std::uint64_t seed, st
 PreparationProtocol protocol_of(Preparation preparation, double friction) {
   PreparationProtocol p;
   if (preparation == Preparation::dense) p.coarse_share = 0.75;
-  if (preparation != Preparation::fast && preparation != Preparation::slow) return p;
-  p.inertial_number = preparation == Preparation::fast ? 0.1 : 1e-3;
-  p.friction = friction;
+  const bool rodded = preparation == Preparation::rodded;
+  const bool fast = preparation == Preparation::fast || preparation == Preparation::poured || rodded;
+  if (!fast && preparation != Preparation::slow) return p;
+  p.inertial_number = fast ? 0.1 : 1e-3;
+  p.friction = rodded ? std::min(friction, kRoddedFriction) : friction;
   p.first_pressure = 1.0;
   return p;
 }

@@ -40,6 +40,10 @@ inline constexpr double kPackedShare = 0.75;
 /// cell are so few that they would not once they are packed.
 void require_room_for_images(const std::vector<MacroBody>& bodies);
 
+/// Friction while compacting of preparation "rodded": the solid fraction of equal spheres is then half-way between that
+/// of mu = 0 and that of mu = 0.3 and more.
+inline constexpr double kRoddedFriction = 0.1;
+
 /// What the named preparations are. `friction`: of the test.
 /// - frictionless: all bodies are relaxed together with the walls, without friction, under a pressure that begins high,
 ///   falls by three tenths whenever all is roughly at rest, and ends at the one asked for. A high pressure closes the
@@ -51,6 +55,10 @@ void require_room_for_images(const std::vector<MacroBody>& bodies);
 /// - dense: the largest bodies, up to coarse_share of the volume, jam by themselves; the others grow in the voids
 ///   between them, which stand still, until they have their size or jam; then all are freed and relaxed as in
 ///   frictionless.
+/// - poured, rodded, vibrated: by friction while compacting, which sets the density of a packing (Agnolin and Roux
+/// 2007,
+///   Phys. Rev. E 76, 061302). poured is fast; rodded is fast with the friction of the test or kRoddedFriction, if that
+///   is less; vibrated is frictionless.
 PreparationProtocol protocol_of(Preparation preparation, double friction);
 
 /// Friction of bodies with walls during a preparation: that of the test, or what the walls held would be lost when it

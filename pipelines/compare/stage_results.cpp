@@ -250,13 +250,34 @@ std::string modulus_interval(const StageMeans& stage) {
   return is_fifty(modulus) ? "first half of the largest stress" : "upper half of the stress";
 }
 
-double secant_modulus(const std::vector<double>& strain, const std::vector<double>& stress, double from, double to) {
-  const StressStrain s{strain, stress};
-  if (strain.size() < 2 || strain.size() != stress.size()) return kNaN;
+namespace {
+
+/// Where points go through the one stress and, behind it, through the other; nothing where they do not.
+std::optional<std::array<double, 2>> places_of(const StressStrain& s, double from, double to) {
+  if (s.strain.size() < 2 || s.strain.size() != s.stress.size()) return std::nullopt;
   const double first = place_of(s, from, 0.0);
   const double second = std::isfinite(first) ? place_of(s, to, first) : kNaN;
-  if (!(second > first)) return kNaN;
+  if (!(second > first)) return std::nullopt;
+  return std::array{first, second};
+}
+
+}  // namespace
+
+double secant_modulus(const std::vector<double>& strain, const std::vector<double>& stress, double from, double to) {
+  const auto places = places_of({strain, stress}, from, to);
+  if (!places) return kNaN;
+  const auto [first, second] = *places;
   return (at_place(stress, second) - at_place(stress, first)) / (at_place(strain, second) - at_place(strain, first));
+}
+
+double compression_index(const std::vector<double>& void_ratio, const std::vector<double>& stress, double from,
+                         double to) {
+  const auto places = places_of({void_ratio, stress}, from, to);
+  if (!places) return kNaN;
+  const auto [first, second] = *places;
+  const double ratio = at_place(stress, second) / at_place(stress, first);
+  if (!(at_place(stress, first) > 0.0) || !(ratio > 0.0)) return kNaN;
+  return (at_place(void_ratio, first) - at_place(void_ratio, second)) / std::log10(ratio);
 }
 
 std::string modulus_text(const StageMeans& s) {

@@ -70,6 +70,12 @@ struct StageResult {
 /// points; NaN where the points do not go through both.
 double secant_modulus(const std::vector<double>& strain, const std::vector<double>& stress, double from, double to);
 
+/// Fall of the void ratio over a decade of stress, -(e2 - e1)/log10(s2/s1), between two stresses as secant_modulus()
+/// finds them: the compression index Cc of a loading, the swelling index Cs of an unloading. NaN where the points do
+/// not go through both, or a stress is not above 0.
+double compression_index(const std::vector<double>& void_ratio, const std::vector<double>& stress, double from,
+                         double to);
+
 /// Results of every stage that has two points at least; empty for curves that do not say their stages. Tangents are
 /// those of a parabola by least squares through the four points (or as many as there are) next to that end; where that
 /// is no continuation of the points, of another sign than the secant of the last two or beyond thrice it, the secant.

@@ -31,6 +31,7 @@ const std::map<std::string, std::string> kNotInResults{
     {"checkpoint.every_seconds", "when a state is kept on the way: tests of restarts"},
     {"time.warm_up_steps", "steps that the measured pace leaves out: a time"},
     {"recipe levels.ratio", "decides how many levels there are: here two at every ratio that is allowed"},
+    {"recipe-stages levels.ratio", "decides how many levels there are: here two at every ratio that is allowed"},
     {"recipe-constituents shells.levels", "a bound: its grains span less than two decades"},
     {"recipe-constituents shells.ratio", "a bound: its grains span less than a decade"},
     {"disks material.powder.E",

@@ -103,4 +103,56 @@ TEST(RecipeRun, HoldsForAllItsGrainsAndRunsAgainOutOfTheCaches) {
   EXPECT_EQ(files_named(directory.file("tests"), "material-"), 2 * kept);
 }
 
+/// The starter without its test, in stages: E is 0.5 MPa, the preparation ends at 50 Pa.
+std::string staged_recipe() {
+  std::string text = starter_scene("recipe");
+  for (const char* line : {"strain = 0.05\n", "preload_steps = 1\n"}) {
+    const auto at = text.find(std::string("\n") + line);
+    EXPECT_NE(at, std::string::npos) << line;
+    text.erase(at + 1, std::string(line).size());
+  }
+  return text +
+         "[[stage]]\nkind = \"oedometric\"\nstress = \"1 kPa\"\n"
+         "[[stage]]\nkind = \"unload\"\nstress = \"200 Pa\"\n[[stage]]\nkind = \"reload\"\n";
+}
+
+TEST(RecipeRun, ReachesTheStressesOfItsStagesAndGivesModuliInPascal) {
+  const TemporaryDirectory directory;
+  write_text_atomic(directory.file("scene.toml"), staged_recipe());
+  const std::string out = run_tiny(directory, "out", "");
+  const nlohmann::json summary = summary_of(out);
+  const nlohmann::json& staged = summary["recipe"]["staged"];
+  ASSERT_EQ(staged["stages"].size(), 3U);
+  ASSERT_EQ(staged["points"].size(), 13U);  // the start and four of each stage
+  const auto stress_end = [&](std::size_t k) { return staged["stages"][k]["axial_stress_end"].get<double>(); };
+  EXPECT_NEAR(staged["points"][0]["axial_stress"].get<double>(), 50.0, 2.0);
+  EXPECT_NEAR(stress_end(0), 1000.0, 4.0);  // to a third of the tolerance of 1 %
+  EXPECT_NEAR(stress_end(1), 200.0, 4.0);
+  EXPECT_NEAR(stress_end(2), 1000.0, 4.0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const nlohmann::json& s = staged["stages"][k];
+    for (const char* key :
+         {"modulus_secant", "modulus_begin", "modulus_end", "compression_index", "K0_end", "void_ratio_end"}) {
+      const double value = s[key]["value"];
+      EXPECT_GT(value, 0.0) << key;
+      EXPECT_LE(s[key]["interval"][0].get<double>(), value) << key;
+      EXPECT_GE(s[key]["interval"][1].get<double>(), value) << key;
+      // The check holds all grains: it lies beside the prediction.
+      EXPECT_NEAR(s[key]["measured"]["mean"].get<double>() / value, 1.0, 0.3) << key;
+    }
+  }
+  // Unloading is stiffer than loading was, and gives back less of the void ratio.
+  EXPECT_GT(staged["stages"][1]["modulus_begin"]["value"], staged["stages"][0]["modulus_end"]["value"]);
+  EXPECT_LT(staged["stages"][1]["void_ratio_end"]["value"], staged["points"][0]["void_ratio"]["value"]);
+  EXPECT_GT(staged["stages"][1]["K0_end"]["value"], staged["stages"][0]["K0_end"]["value"]);
+  EXPECT_NE(read_text(out + "/recipe.csv").find("axial [Pa]"), std::string::npos);
+  EXPECT_NE(read_text(out + "/recipe_stages.csv").find("void_ratio_low"), std::string::npos);
+  EXPECT_NE(read_text(out + "/report.html").find("recipe-void-ratio"), std::string::npos);
+  const ProgramOutcome checked = run_the_program("check '" + directory.file("scene.toml") + "'");
+  EXPECT_EQ(checked.status, 0) << checked.output;
+  EXPECT_NE(checked.output.find("axial stresses: from 50 Pa, oedometric to 1 kPa, unload to 200 Pa, reload to 1 kPa"),
+            std::string::npos)
+      << checked.output;
+}
+
 }  // namespace

@@ -193,6 +193,37 @@ sizes = { form = "fuller", exponent = 0.5, radius_min = "1.5 mm", radius_max = "
 )";
 }
 
+inline std::string recipe_stages() {
+  return R"(kind = "recipe"
+[grains]
+count = 150
+ratio = 2.2
+[levels]
+ratio = 1.6
+mixtures = [0.25, 0.5, 0.75]
+[law]
+cells = 40
+shear_strain = 0.04
+[packing]
+preparation = "fast"
+[test]
+steps = 4
+increments_per_step = 2
+[check]
+grains = 0
+[macro]
+grains = 40
+samples = 1
+[[stage]]
+kind = "oedometric"
+stress = 1000.0
+modulus_stress = [400.0, 900.0]
+[[stage]]
+kind = "unload"
+stress = 200.0
+)";
+}
+
 inline std::string drawn_particles() {
   return R"(kind = "particles"
 gravity = [0.0, 0.0, -9.81]
@@ -351,6 +382,7 @@ inline std::vector<KindScene> keyed_scenes() {
   add("macro-table", macro_table());
   add("models", models_scene());
   add("recipe-constituents", recipe_constituents());
+  add("recipe-stages", recipe_stages());
   add("particles-drawn", drawn_particles());
   add("grain-box-triaxial", grain_box_triaxial());
   add("grain-box-polyaxial", grain_box_polyaxial());

@@ -19,6 +19,7 @@ using namespace softgrain::test;
 const std::map<std::string, std::string> kElsewhere{
     {"kind", "another kind is another scene, with keys of its own"},
     {"recipe levels.ratio", "decides how many levels there are: here two at every ratio that is allowed"},
+    {"recipe-stages levels.ratio", "decides how many levels there are: here two at every ratio that is allowed"},
     {"disks material.powder.E",
      "describes the material; a remark says that no contact of it has a law that goes by it"},
     {"disks material.powder.nu",

@@ -38,6 +38,7 @@ struct MacroSetup {
   std::int64_t law_increments = 1;  ///< increments of runs with laws for one increment of a twin
   std::int64_t noise_samples = 0;   ///< number of samples that every engine runs a second time: see slightly_changed()
   std::vector<std::string> assumed{};  ///< "nu = 0.3": of grains, where the law does not say them
+  double start_stress = 0.0;           ///< start pressure where a table says it as a pressure [Pa]; 0: over E
   std::set<std::string> said{};  ///< keys of the preparation that a table gave: others follow from mu and its name
 };
 

@@ -23,6 +23,31 @@ void refuse_protocol_keys(const SceneTable& t) {
 }
 
 /// A name stands for all that defines a preparation; keys beside it replace single parts, whichever table gave them.
+namespace {
+
+/// Over E as a number, as a pressure with its unit: that stays what it is where a later table changes E.
+void read_start_pressure(const SceneTable& t, MacroSetup& setup) {
+  constexpr Range kOverModulus{0.0, 1e-2, true, false};
+  const Key key{"start_pressure",
+                "pressure at the end of the preparation: a number is over E, a text with a unit is a pressure "
+                "(`\"50 kPa\"`), at most 0.01 E"};
+  MacroSpec& spec = setup.spec;
+  if (t.is_text(key.name)) {
+    setup.start_stress = t.number(key, Unit::pressure, Range::positive());
+  } else {
+    if (t.has(key.name)) setup.start_stress = 0.0;
+    spec.start_pressure = t.number(key, Unit::none, kOverModulus, spec.start_pressure);
+  }
+  if (!(setup.start_stress > 0.0)) return;
+  spec.start_pressure = setup.start_stress / spec.youngs_modulus;
+  if (spec.start_pressure <= kOverModulus.high) return;
+  t.add_error(key.name, fmt::format("is {:.3g} E with E = {:.6g} Pa; allowed: up to {:g} E", spec.start_pressure,
+                                    spec.youngs_modulus, kOverModulus.high));
+  spec.start_pressure = kOverModulus.high;
+}
+
+}  // namespace
+
 void read_preparation(const SceneTable& t, MacroSetup& setup) {
   MacroSpec& spec = setup.spec;
   spec.preparation = t.choice<Preparation>(
@@ -32,8 +57,7 @@ void read_preparation(const SceneTable& t, MacroSetup& setup) {
       spec.preparation);
   const bool renewed = t.has("preparation") || t.has("mu");
   const PreparationProtocol named = protocol_of(spec.preparation, spec.friction);
-  spec.start_pressure = t.number({"start_pressure", "pressure at the end of the preparation, over E"}, Unit::none,
-                                 Range{0.0, 1e-2, true, false}, spec.start_pressure);
+  read_start_pressure(t, setup);
   PreparationProtocol& p = spec.protocol;
   const auto follows = [&](const std::string& key) {  // from the name and mu, as nobody said it
     if (t.has(key)) setup.said.insert(key);
@@ -49,17 +73,19 @@ void read_preparation(const SceneTable& t, MacroSetup& setup) {
   read(t,
        {"inertial_number",
         "strain rate of the box times d sqrt(density/pressure), with the mean diameter d; 0: no motion",
-        "0; `\"fast\"`: 0.1, `\"slow\"`: 1e-3"},
+        "0; `\"fast\"`, `\"poured\"`, `\"rodded\"`: 0.1, `\"slow\"`: 1e-3"},
        &Protocol::inertial_number, Range::closed(0.0, 1.0));
   read(t,
        {"compaction_mu", "friction between particles during the preparation; above 0, walls have `wall_mu`",
-        "0; `\"fast\"`, `\"slow\"`: `mu`"},
+        "0; `\"fast\"`, `\"slow\"`, `\"poured\"`: `mu`; `\"rodded\"`: `mu`, at most 0.1"},
        &Protocol::friction, Range::not_negative());
   read(t, {"compaction_restitution", "coefficient of restitution during motion"}, &Protocol::restitution,
        Range::closed(0.05, 1.0));
   read(t, {"coarse_share", "volume share of the largest particles, which jam first", "1; `\"dense\"`: 0.75"},
        &Protocol::coarse_share, Range{0.0, 1.0, true, false});
-  read(t, {"first_pressure", "first pressure over `start_pressure`", "128; `\"fast\"`, `\"slow\"`: 1"},
+  read(t,
+       {"first_pressure", "first pressure over `start_pressure`",
+        "128; `\"fast\"`, `\"slow\"`, `\"poured\"`, `\"rodded\"`: 1"},
        &Protocol::first_pressure, Range::closed(1.0, 1e6));
   read(t,
        {"preparation_tolerance",

@@ -427,7 +427,7 @@ double RecipePair::share_of_rods() const {
 /// Lateral over axial stress at the end of the test, of the usable samples of the packing that stands for the whole.
 std::vector<double> RecipePair::end_ratios(const MixRun& run) {
   std::vector<double> out;
-  for (const MacroCurve& c : run.results[packing_of_ratio(run.scene)].curves)
+  for (const MacroCurve& c : run.results[lateral_packing(run.scene)].curves)
     if (c.usable && !c.stress_axial.empty() && c.stress_axial.back() > 0.0)
       out.push_back(c.stress_lateral.back() / c.stress_axial.back());
   return out;

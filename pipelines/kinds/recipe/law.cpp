@@ -12,6 +12,7 @@
 #include "common/data/law_words.h"
 #include "common/io/text_file.h"
 #include "pipelines/compare/stage_results.h"
+#include "pipelines/kinds/recipe/stages.h"
 
 namespace softgrain {
 
@@ -28,6 +29,9 @@ MaterialLaw fit_coarsest(const RecipeScene& scene, const std::vector<VariantResu
       {}};
   std::vector<VariantResult> some{results[scene.slice[1]], results[kSheared], results[scene.slice[0]]};
   for (const std::size_t v : scene.mixed[0]) some.push_back(results[v]);
+  for (VariantResult& r : some)  // cells have no unloading: they answer the first stage
+    if (r.variant != results[kSheared].variant)
+      for (MacroCurve& c : r.curves) c = first_stage_of(std::move(c));
   return fit_material_law(law, some, states, seed);
 }
 
@@ -98,13 +102,13 @@ std::size_t nearest_mixture(const RecipeScene& scene) {
 
 }  // namespace
 
-std::size_t packing_of_ratio(const RecipeScene& scene) {
+std::size_t lateral_packing(const RecipeScene& scene) {
   return scene.checked ? *scene.checked : nearest_mixture(scene);
 }
 
 ResponseShape shape_of(const RecipeScene& scene, const std::vector<VariantResult>& results, const StateFit& states) {
   std::vector<OneShape> all;
-  const std::size_t chosen = packing_of_ratio(scene);
+  const std::size_t chosen = lateral_packing(scene);
   ResponseShape out;
   for (std::size_t v = 0; v < results.size(); ++v) {
     if (results[v].variant->setup.spec.test != MacroTest::oedometric) continue;

@@ -31,8 +31,8 @@ struct ResponseShape {
   std::vector<double> ratio;             ///< lateral over axial stress of the check, or of the mixture of nearest share
   std::vector<double> ratio_deviation;   ///< standard deviation over all packings
 };
-/// The packing whose lateral over axial stress stands for the whole: a variant.
-std::size_t packing_of_ratio(const RecipeScene& scene);
+/// The variant whose lateral stress is that of the whole: the check, or the mixture of nearest share of fines.
+std::size_t lateral_packing(const RecipeScene& scene);
 ResponseShape shape_of(const RecipeScene& scene, const std::vector<VariantResult>& results, const StateFit& states);
 
 /// What the whole is: for the card and the curve.

@@ -82,26 +82,42 @@ std::string onset_figure(const RecipeOutcome& r) {
       "check holds the coarsest levels alone, and lies below the whole where finer ones are missing in it.");
 }
 
-std::string load_figure(const RecipeOutcome& r) {
+/// What stresses over E are multiplied with, and what they are in then: MPa with stages.
+struct StressUnit {
+  double factor = 1.0;
+  std::string text = "E";
+};
+
+StressUnit stress_unit(const RecipeSummary& s) {
+  constexpr double kMega = 1e-6;
+  if (!s.recipe.staged) return {};
+  return {kMega * s.material.youngs_modulus.value_or(0.0), "MPa"};
+}
+
+std::string load_figure(const RecipeOutcome& r, const StressUnit& unit) {
   Plot plot({.id = "recipe-load",
              .title = "Pressed between rigid sides",
              .x = {.label = "axial strain [%]"},
-             .y = {.label = "axial stress over E", .scale = Scale::logarithmic}});
+             .y = {.label = r.staged ? "axial stress [MPa]" : "axial stress over E", .scale = Scale::logarithmic}});
   std::size_t color = 0;
   for (const RecipeCurve& c : r.curves) {
     if (c.strain.empty()) continue;
     Series s{.label = c.name, .hover = "", .x = c.strain, .y = c.axial, .band_low = c.low, .band_high = c.high};
     for (double& x : s.x) x *= 100.0;
     for (double& low : s.band_low) low = std::max(low, 1e-6);
+    for (auto* stresses : {&s.y, &s.band_low, &s.band_high})
+      for (double& stress : *stresses) stress *= unit.factor;
     s.style = {.color = palette::cycle(++color), .width = 1.8};
     plot.add(std::move(s));
   }
   if (plot.empty()) return "";
   return figure(
       plot.svg(),
-      "Material law: the equation of state from its onset. Cell law: grains of the coarsest level in cells of "
-      "everything finer. Shell law, where there is one: the same grains with soft particles that keep their "
-      "shells between them: another material, whose fines cannot leave the room that they were given.");
+      std::string(r.staged ? "Material law: what packings do, from the onset of the whole. "
+                           : "Material law: the equation of state from its onset. ") +
+          "Cell law: grains of the coarsest level in cells of "
+          "everything finer. Shell law, where there is one: the same grains with soft particles that keep their "
+          "shells between them: another material, whose fines cannot leave the room that they were given.");
 }
 
 std::string shell_table(const RecipeOutcome& r) {
@@ -113,25 +129,74 @@ std::string shell_table(const RecipeOutcome& r) {
   return table.empty() ? "" : table.html();
 }
 
-std::string modulus_table(const RecipeOutcome& r) {
-  HtmlTable table({"curve", "constrained modulus [E]", "95 %", "between axial stresses [E]"}, 1);
+std::string modulus_table(const RecipeOutcome& r, const StressUnit& unit) {
+  HtmlTable table(
+      {"curve", "constrained modulus [" + unit.text + "]", "95 %", "between axial stresses [" + unit.text + "]"}, 1);
+  const double f = unit.factor;
   for (const RecipeCurve& c : r.curves)
     if (c.modulus)
-      table.row({c.name, format_number(c.modulus->value, 3), range_of(c.modulus->low, c.modulus->high),
-                 format_number(c.modulus->from, 3) + " and " + format_number(c.modulus->to, 3)});
+      table.row({c.name, format_number(f * c.modulus->value, 3), range_of(f * c.modulus->low, f * c.modulus->high),
+                 format_number(f * c.modulus->from, 3) + " and " + format_number(f * c.modulus->to, 3)});
   return table.empty() ? "" : table.html();
+}
+
+/// "544 (480–610)", with what all grains were measured to be behind it.
+std::string predicted_text(const PredictedValue& v, double unit) {
+  if (!std::isfinite(v.predicted.value)) return "–";
+  std::string text = format_number(unit * v.predicted.value, 3) + " (" +
+                     range_of(unit * v.predicted.low, unit * v.predicted.high) + ")";
+  if (v.measured) text += "; all grains " + format_number(unit * v.measured->mean, 3);
+  return text;
+}
+
+std::string stage_table(const RecipeStages& staged) {
+  constexpr double kMega = 1e-6;
+  HtmlTable table({"stage", "to [MPa]", "K0", "void ratio", "constrained modulus [MPa]", "between [MPa]",
+                   "Cc; unloading and reloading: Cs", "tangent at the end [MPa]"},
+                  1);
+  for (const RecipeStageSummary& s : staged.stages)
+    table.row({s.name, format_number(kMega * s.stress_end, 3), predicted_text(s.lateral_ratio, 1.0),
+               predicted_text(s.void_ratio, 1.0), predicted_text(s.secant, kMega),
+               format_number(kMega * s.stress_from, 3) + " and " + format_number(kMega * s.stress_to, 3),
+               predicted_text(s.index, 1.0), predicted_text(s.tangent_end, kMega)});
+  return table.html();
+}
+
+std::string void_ratio_figure(const RecipeStages& staged) {
+  Plot plot({.id = "recipe-void-ratio",
+             .title = "Void ratio under axial stress",
+             .x = {.label = "axial stress [MPa]", .scale = Scale::logarithmic},
+             .y = {.label = "void ratio"}});
+  std::size_t color = 0;
+  std::size_t k = 0;
+  for (const RecipeStageSummary& stage : staged.stages) {
+    Series s{.label = stage.name, .hover = "", .x = {}, .y = {}};
+    for (k -= k > 0 ? 1 : 0; k < staged.points.size() && (s.x.empty() || staged.points[k].stage == stage.name); ++k) {
+      const RecipePoint& p = staged.points[k];
+      s.x.push_back(1e-6 * p.axial);
+      s.y.push_back(p.void_ratio.value);
+      s.band_low.push_back(p.void_ratio.low);
+      s.band_high.push_back(p.void_ratio.high);
+    }
+    if (std::ranges::none_of(s.band_low, [](double low) { return std::isfinite(low); }))
+      s.band_low.clear(), s.band_high.clear();
+    s.style = {.color = palette::cycle(++color), .width = 1.8};
+    plot.add(std::move(s));
+  }
+  return figure(plot.svg(),
+                "The whole, stage by stage. The band is the 95 % interval: mostly of the onset, so that "
+                "all points lie high or low together.");
 }
 
 std::string whole_text(const RecipeOutcome& r) {
   std::string text = fmt::format(
       "The whole begins to carry pressure at a solid fraction of {} ({}): {} by levels, {} by rods (gap {}; packings "
-      "lie {} about them). At the start pressure it is {} ({}). Lateral over axial stress where the test ends: {} "
-      "({}).",
+      "lie {} about them). At the start pressure it is {} ({}). Lateral over axial stress where the {}: {} ({}).",
       format_number(r.onset->value, 4), range_of(r.onset->low, r.onset->high, 4),
       format_number(r.levels.front().with_finer.levels, 4), format_number(r.levels.front().with_finer.rods, 4),
       format_number(r.gap, 3), format_number(r.rods_deviation, 2), format_number(r.solid_fraction->value, 4),
-      range_of(r.solid_fraction->low, r.solid_fraction->high, 4), format_number(r.lateral_ratio.value, 3),
-      range_of(r.lateral_ratio.low, r.lateral_ratio.high));
+      range_of(r.solid_fraction->low, r.solid_fraction->high, 4), r.staged ? "stress is highest" : "test ends",
+      format_number(r.lateral_ratio.value, 3), range_of(r.lateral_ratio.low, r.lateral_ratio.high));
   if (r.compressible_model)
     text += " The compressible packing model (de Larrard 1999), a model of others, gives " +
             compressible_model_text(*r.compressible_model) + ".";
@@ -161,12 +226,17 @@ std::string check_text(const RecipeCheckSummary& c) {
 }  // namespace
 
 std::string recipe_section(const RunData& run) {
-  const auto r = run.summary_as<RecipeSummary>().recipe;
+  const auto summary = run.summary_as<RecipeSummary>();
+  const RecipeOutcome& r = summary.recipe;
   if (r.levels.empty() || !r.onset) return "";
+  const StressUnit unit = stress_unit(summary);
   std::string body = paragraph(whole_text(r));
   if (r.check) body += paragraph(check_text(*r.check));
-  body += figure_row({onset_figure(r), load_figure(r)});
-  body += modulus_table(r) + constituent_table(r) + level_table(r) + shell_table(r);
+  if (r.staged) body += stage_table(*r.staged);
+  std::vector<std::string> figures{onset_figure(r), load_figure(r, unit)};
+  if (r.staged) figures.push_back(void_ratio_figure(*r.staged));
+  body += figure_row(figures);
+  body += modulus_table(r, unit) + constituent_table(r) + level_table(r) + shell_table(r);
   return section("recipe", "From the recipe to the law",
                  "From the particle size distribution to the law: the levels, their onset and, where it was made, the "
                  "check with all grains.",
@@ -195,6 +265,18 @@ std::vector<RunValue> values_of(const report::RunData& run) {
   if (r.onset) out.push_back({"onset of the whole", "", r.onset->value, r.onset->standard_error});
   if (r.solid_fraction)
     out.push_back({"solid fraction at the start", "", r.solid_fraction->value, r.solid_fraction->standard_error});
+  if (r.staged) {
+    for (const RecipeStageSummary& s : r.staged->stages) {
+      const auto add = [&](const std::string& what, const char* unit, const Estimate& e) {
+        if (std::isfinite(e.value)) out.push_back({what + ", " + s.name, unit, e.value, e.standard_error});
+      };
+      add("constrained modulus", "Pa", s.secant.predicted);
+      add("K0 at the end", "", s.lateral_ratio.predicted);
+      add("void ratio at the end", "", s.void_ratio.predicted);
+      add(s.index_name(), "", s.index.predicted);
+    }
+    return out;
+  }
   for (const RecipeCurve& c : r.curves)
     if (!c.axial.empty()) out.push_back({"axial stress over E at the end, " + c.name, "", c.axial.back()});
   for (const RecipeCurve& c : r.curves)
@@ -209,15 +291,18 @@ std::vector<RunValue> values_of(const report::RunData& run) {
 
 std::vector<RunCurve> curves_of(const report::RunData& run) {
   std::vector<RunCurve> out;
-  for (const RecipeCurve& c : run.summary_as<RecipeSummary>().recipe.curves)
+  const auto summary = run.summary_as<RecipeSummary>();
+  const report::StressUnit unit = report::stress_unit(summary);
+  for (const RecipeCurve& c : summary.recipe.curves)
     if (!c.strain.empty()) {
       RunCurve curve;
       curve.plot = "Recipe under oedometric load";
       curve.x_label = "axial strain";
-      curve.y_label = "axial stress over E";
+      curve.y_label = summary.recipe.staged ? "axial stress [MPa]" : "axial stress over E";
       curve.name = c.name;
       curve.x = c.strain;
       curve.y = c.axial;
+      for (double& stress : curve.y) stress *= unit.factor;
       out.push_back(std::move(curve));
     }
   return out;
@@ -233,7 +318,8 @@ NextSteps next_of(const report::RunData& run) {
 }  // namespace
 
 KindResults recipe_results() {
-  return {.files = {{.names = "recipe(\\.csv|_macro\\.h5)"}, {.names = "material_card\\.toml", .check = check_laws}},
+  return {.files = {{.names = "recipe(\\.csv|_stages\\.csv|_macro\\.h5)"},
+                    {.names = "material_card\\.toml", .check = check_laws}},
           .sections = {{Part::several, report::recipe_section}},
           .lines = lines_of,
           .values = values_of,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "pipelines/kinds/material_law/scene.h"
 #include "pipelines/kinds/recipe/compressible_model.h"
 #include "pipelines/kinds/recipe/law.h"
+#include "pipelines/kinds/recipe/stages.h"
 #include "pipelines/run/typed_kind.h"
 
 namespace softgrain {
@@ -83,6 +85,7 @@ class RecipeRun {
     out().rods_deviation = forms.rods_deviation();
     const double widen = check(forms, *states);
     add_levels(forms, widen);
+    if (staged()) press_by_stages(*states, forms.joined_onset(0, scene_.levels.size(), widen).onset);
     law_ = whole_law(*states, widen, forms);
     write_material_card(scene_, law_, run_.path(kMaterialCardFile), run_.provenance);
     head().files["material_card"] = run_.path(kMaterialCardFile);
@@ -91,6 +94,22 @@ class RecipeRun {
     out().compressible_model = compressible_model(scene_.sizes, forms.gap());
     count_grains();
     load(forms, *states, widen);
+  }
+
+  [[nodiscard]] const MacroSpec& spec() const { return scene_.material.variants.front().setup.spec; }
+  [[nodiscard]] bool staged() const { return spec().test == MacroTest::stages; }
+
+  /// Where all levels were packed together, what they did stands beside it.
+  void press_by_stages(const StateFit& states, const Estimate& onset) {
+    const bool whole = scene_.checked && scene_.checked_levels == scene_.levels.size();
+    out().staged = whole_under_stages(paths_of(scene_, results_, states), onset,
+                                      whole ? results_[*scene_.checked].curves : std::vector<MacroCurve>{});
+    if (out().staged->points.empty())
+      throw UnusableResult(
+          "no packing came to the end of all stages; a lower stress, more max_passes ([test]) or more "
+          "grains ([grains] count) may do");
+    write_text_atomic(run_.path("recipe_stages.csv"), as_csv(stages_table(*out().staged)));
+    head().files["stages"] = run_.path("recipe_stages.csv");
   }
 
   /// The coarsest levels with all their grains, which say what form the rest leans to; what intervals are widened by.
@@ -146,7 +165,7 @@ class RecipeRun {
     law.modulus = states.modulus;
     law.exponent = states.exponent;
     law.onset = forms.joined_onset(0, scene_.levels.size(), widen).onset;
-    law.shape = shape_of(scene_, results_, states);
+    law.shape = out().staged ? shape_of_stages(*out().staged) : shape_of(scene_, results_, states);
     law.start_pressure = scene_.material.variants.front().setup.spec.start_pressure;
     std::tie(law.pressure_low, law.pressure_high) = std::tuple_cat(pressure_range(results_));
     out().lateral_ratio = lateral_ratio(law.shape);
@@ -182,13 +201,14 @@ class RecipeRun {
   /// So far that pores do not vanish.
   [[nodiscard]] double strain() const {
     if (scene_.macro.strain > 0.0) return scene_.macro.strain;
+    if (staged()) return shape_of_stages(*summary_.recipe.staged).strain.front();  // at the highest stress
     return std::min(scene_.material.variants.front().setup.spec.strain_end,
                     0.5 * (1.0 - summary_.recipe.solid_fraction->value));
   }
 
   void load(const LevelForms& forms, const StateFit& states, double widen) {
     const double end = strain();
-    out().curves.push_back(curve_of(law_, end, 16));
+    out().curves.push_back(staged() ? curve_of_stages(*out().staged, spec().youngs_modulus) : curve_of(law_, end, 16));
     if (scene_.checked && scene_.checked_levels == scene_.levels.size())
       out().curves.push_back(mean_curve("all grains", results_[*scene_.checked].curves));
     const MaterialLaw fitted = fit_coarsest(scene_, results_, states, run_.seed);
@@ -227,17 +247,28 @@ class RecipeRun {
     for (std::string& warning : run_warnings(kept, "")) head().warnings.push_back(std::move(warning));
   }
 
+  /// Without what follows the highest stress: the loading that laws without unloading go through too.
+  static void up_to_highest(RecipeCurve& c) {
+    const auto points = static_cast<std::size_t>(std::ranges::max_element(c.axial) - c.axial.begin()) + 1;
+    for (auto* column : {&c.strain, &c.axial, &c.lateral, &c.low, &c.high})
+      if (column->size() > points) column->resize(points);
+  }
+
   void add_moduli() {
-    const MacroSpec& spec = scene_.material.variants.front().setup.spec;
-    const double modulus = spec.youngs_modulus;
-    const auto [from, to] =
-        set_moduli(out().curves, {spec.modulus_stress[0] / modulus, spec.modulus_stress[1] / modulus});
+    const double modulus = spec().youngs_modulus;
+    std::array<double, 2> interval = spec().modulus_stress;
+    if (staged()) interval = {out().staged->stages.front().stress_from, out().staged->stages.front().stress_to};
+    std::vector<RecipeCurve> curves = out().curves;
+    if (staged()) std::ranges::for_each(curves, up_to_highest);
+    const auto [from, to] = set_moduli(curves, {interval[0] / modulus, interval[1] / modulus});
+    for (std::size_t k = 0; k < curves.size(); ++k) out().curves[k].modulus = curves[k].modulus;
     for (const RecipeCurve& c : out().curves)
       if (!c.modulus && !c.axial.empty())
         head().remarks.push_back(
             fmt::format("{}: constrained modulus not determined: its axial stress does not go through {:.4g} and "
-                        "{:.4g} Pa (test.modulus_stress)",
-                        c.name, from * modulus, to * modulus));
+                        "{:.4g} Pa ({})",
+                        c.name, from * modulus, to * modulus,
+                        staged() ? "modulus_stress of the first stage" : "test.modulus_stress"));
   }
 
   ShellLevels measure_shells() {
@@ -260,26 +291,30 @@ class RecipeRun {
   void judge(double end) {
     for (const RecipeCurve& c : out().curves)
       if (!c.problem.empty()) head().mark_unusable(c.name + ": " + c.problem);
-    if (summary_.law.numbers.empty() || !summary_.law.usable) head().status = RunStatus::not_usable;
+    // With stages the cell law is beside the result, and a remark says why there is none.
+    if (!staged() && (summary_.law.numbers.empty() || !summary_.law.usable)) head().status = RunStatus::not_usable;
     const RecipeCurve& whole = out().curves.front();
     const double p = (whole.axial.back() + 2.0 * whole.lateral.back()) / 3.0;
-    if (p > kHardlyBeyond * law_.pressure_high)
+    if (!staged() && p > kHardlyBeyond * law_.pressure_high)
       head().remarks.push_back(
           fmt::format("at a strain of {:.3g} the pressure is {:.2g} E, above all that the equation "
                       "of state was fitted to ({:.2g} E): it is extrapolated there, without an interval",
                       end, p, law_.pressure_high));
   }
 
-  static std::string end_of_band(const std::vector<double>& ends, std::size_t k) {
-    return k < ends.size() && std::isfinite(ends[k]) ? fmt::format("{:.8g}", ends[k]) : "";
+  static std::string end_of_band(const std::vector<double>& ends, std::size_t k, double unit) {
+    return k < ends.size() && std::isfinite(ends[k]) ? fmt::format("{:.8g}", unit * ends[k]) : "";
   }
 
   [[nodiscard]] TextTable table() const {
     TextTable t{{"curve", "strain", "axial/E", "lateral/E", "axial_low/E", "axial_high/E"}, {}};
+    if (staged()) t.header = {"curve", "strain", "axial [Pa]", "lateral [Pa]", "axial_low [Pa]", "axial_high [Pa]"};
+    const double unit = staged() ? spec().youngs_modulus : 1.0;
     for (const RecipeCurve& c : summary_.recipe.curves)
       for (std::size_t k = 0; k < c.strain.size(); ++k)
-        t.rows.push_back({c.name, fmt::format("{:.6g}", c.strain[k]), fmt::format("{:.8g}", c.axial[k]),
-                          fmt::format("{:.8g}", c.lateral[k]), end_of_band(c.low, k), end_of_band(c.high, k)});
+        t.rows.push_back({c.name, fmt::format("{:.6g}", c.strain[k]), fmt::format("{:.8g}", unit * c.axial[k]),
+                          fmt::format("{:.8g}", unit * c.lateral[k]), end_of_band(c.low, k, unit),
+                          end_of_band(c.high, k, unit)});
     return t;
   }
 
@@ -289,6 +324,34 @@ class RecipeRun {
   WholeLaw law_;
   RecipeSummary summary_;
 };
+
+/// "544 (480 to 610)", times `unit`; measured values behind it.
+std::string value_text(const PredictedValue& v, double unit) {
+  const Estimate& e = v.predicted;
+  std::string text = interval_text(e.value * unit, e.low * unit, e.high * unit);
+  if (v.measured) text += fmt::format(" [all grains {:.4g}]", v.measured->mean * unit);
+  return text;
+}
+
+std::string stages_summary(const RecipeStages& staged) {
+  constexpr double kMega = 1e-6;
+  std::string text;
+  for (const RecipeStageSummary& s : staged.stages) {
+    text += fmt::format("  {} to {:.4g} MPa: K0 {}, void ratio {}\n", s.name, kMega * s.stress_end,
+                        value_text(s.lateral_ratio, 1.0), value_text(s.void_ratio, 1.0));
+    text +=
+        fmt::format("    constrained modulus {} MPa, {} {} from {:.4g} to {:.4g} MPa\n", value_text(s.secant, kMega),
+                    s.index_name(), value_text(s.index, 1.0), kMega * s.stress_from, kMega * s.stress_to);
+    text += fmt::format("    tangent at the first point {} MPa, at the last {} MPa\n",
+                        value_text(s.tangent_begin, kMega), value_text(s.tangent_end, kMega));
+  }
+  return text;
+}
+
+/// Stress of a curve, over E; with stages in MPa.
+std::string stress_text(const RecipeCurve& c, std::size_t k, double modulus, bool staged) {
+  return staged ? fmt::format("{:.4g} MPa", 1e-6 * modulus * c.axial[k]) : fmt::format("{:.3g} E", c.axial[k]);
+}
 
 std::string recipe_text(const RecipeSummary& s) {
   const RecipeOutcome& r = s.recipe;
@@ -318,14 +381,19 @@ std::string recipe_text(const RecipeSummary& s) {
   if (r.compressible_model)
     text += "  beside it the compressible packing model (de Larrard 1999), a model of others: " +
             compressible_model_text(*r.compressible_model) + "\n";
+  const bool staged = r.staged.has_value();
+  const double modulus = s.material.youngs_modulus.value_or(0.0);
+  if (staged) text += stages_summary(*r.staged);
   for (const RecipeCurve& c : r.curves) {
     if (c.axial.empty()) continue;
-    text += fmt::format("  {}: axial stress {:.3g} E{} at a strain of {:.3g}", c.name, c.axial.back(),
-                        c.low.empty()                 ? ""
+    const auto k =
+        staged ? static_cast<std::size_t>(std::ranges::max_element(c.axial) - c.axial.begin()) : c.axial.size() - 1;
+    text += fmt::format("  {}: axial stress {}{} at a strain of {:.3g}", c.name, stress_text(c, k, modulus, staged),
+                        c.low.empty() || staged       ? ""
                         : std::isfinite(c.low.back()) ? fmt::format(" ({:.3g} to {:.3g})", c.low.back(), c.high.back())
                                                       : " (extrapolated: no interval)",
-                        c.strain.back());
-    if (c.modulus)
+                        c.strain[k]);
+    if (c.modulus && !staged)
       text +=
           fmt::format("; constrained modulus {} E from {:.3g} to {:.3g} E",
                       interval_text(c.modulus->value, c.modulus->low, c.modulus->high), c.modulus->from, c.modulus->to);

@@ -8,10 +8,13 @@
 
 #include "common/packing/grading.h"
 #include "common/packing/grading_scene.h"
+#include "macrosim/test_protocol.h"
 #include "pipelines/kinds/macro/room.h"
+#include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/material/run.h"
 #include "pipelines/kinds/material_law/fines_in_cells.h"
 #include "pipelines/kinds/recipe/run.h"
+#include "pipelines/kinds/recipe/stages.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 
 namespace softgrain {
@@ -214,8 +217,12 @@ void make_variants(const MacroSetup& base, double shear_strain, RecipeScene& out
   MaterialVariant sheared = variant_of("level-2-shear", base, slice_of(levels[1]));
   sheared.same_packings = true;
   sheared.packings = fines.name;
-  sheared.setup.spec.test = MacroTest::shear;
-  sheared.setup.spec.strain_end = shear_strain;
+  if (base.spec.test == MacroTest::stages) {
+    shear_at_stress(sheared.setup.spec, shear_strain);
+  } else {
+    sheared.setup.spec.test = MacroTest::shear;
+    sheared.setup.spec.strain_end = shear_strain;
+  }
   variants.push_back(std::move(sheared));
   for (std::size_t k = 0; k < levels.size(); ++k)
     out.slice.push_back(place_of(variants, variant_of(fmt::format("level-{}", k + 1), still, slice_of(levels[k]))));
@@ -252,7 +259,7 @@ class RoomForImages {
       const bool check = scene_.checked == v;
       const MaterialVariant* sheared = v + 1 < scene_.material.variants.size() ? &variant + 1 : nullptr;
       MacroSetup widest = variant.setup;
-      if (sheared != nullptr && sheared->same_packings) widest.spec.strain_end = widest_strain(variant, *sheared);
+      if (sheared != nullptr && sheared->same_packings) widen(widest, *sheared);
       variant.setup.spec.bodies =
           enough(widest, check ? "check" : "grains", check ? "grains" : "count", "packing " + variant.name);
       if (check) scene_.check.grains = variant.setup.spec.bodies;
@@ -265,8 +272,13 @@ class RoomForImages {
   }
 
  private:
-  static double widest_strain(const MaterialVariant& a, const MaterialVariant& b) {
-    return std::max(a.setup.spec.strain_end, b.setup.spec.strain_end + b.setup.spec.preload);
+  /// Room for both tests of a packing.
+  static void widen(MacroSetup& setup, const MaterialVariant& sheared) {
+    const MacroSpec& other = sheared.setup.spec;
+    if (setup.spec.test != MacroTest::stages)
+      setup.spec.strain_end = std::max(setup.spec.strain_end, other.strain_end + other.preload);
+    else if (rough_strains(other).largest_axial > rough_strains(setup.spec).largest_axial)
+      setup.spec.stages = other.stages;
   }
 
   /// Number of grains in this packing: those asked for or more.
@@ -356,13 +368,27 @@ MacroSetup recipe_defaults() {
   return setup;
 }
 
+/// Packings that end at a low pressure settle longer: 2.4 ms of one core for a grain at 7e-7 E, poured.
+double low_pressure_factor(const MacroSpec& spec) {
+  constexpr double kUsual = 1e-4;
+  return spec.start_pressure < kUsual ? std::pow(kUsual / spec.start_pressure, 0.11) : 1.0;
+}
+
+/// The stresses of the tests, in Pa.
+std::string stress_line(const MacroSpec& spec) {
+  if (spec.test == MacroTest::stages) return "axial stresses: " + stages_text(spec);
+  return fmt::format("axial stresses: from {:.3g} Pa ({:.3g} E) to a strain of {:.3g}; [[stage]] go to given stresses",
+                     least_stress(spec), spec.start_pressure, spec.strain_end);
+}
+
 /// Preparing and pressing, by the three recipes of pipelines/: 1.4 ms of one core for each of 2,500 grains, more for
 /// each of a larger sample [s].
 double packing_seconds(const RecipeScene& scene) {
   double seconds = 0.0;
   for (const MaterialVariant& v : scene.material.variants) {
     const auto grains = static_cast<double>(v.setup.spec.bodies);
-    seconds += 1.4e-3 * std::sqrt(grains / 2500.0) * grains * static_cast<double>(v.setup.samples);
+    seconds += low_pressure_factor(v.setup.spec) * 1.4e-3 * std::sqrt(grains / 2500.0) * grains *
+               static_cast<double>(v.setup.samples);
   }
   return seconds;
 }
@@ -391,6 +417,7 @@ RecipeScene read_recipe_scene(const Scene& scene) {
     const SceneTable grains = root.table("grains");
     if (base.spec.test != MacroTest::oedometric)
       root.table("test").add_error("test", "levels are measured in oedometric compression (and one of them in shear)");
+    read_recipe_stages(root, base.spec);
     base.samples = root.count({"samples", "samples of each packing"}, 1, 10000, base.samples);
     base.kept_states = read_kept_states(root, 0);
     out.constituents = read_constituents(root, base.spec.density);
@@ -444,6 +471,7 @@ void check_recipe(const RecipeScene& recipe, Findings& out) {
     out.add("checked_levels", recipe.checked_levels,
             fmt::format("the {} coarsest levels are checked with all their grains, {} a sample", recipe.checked_levels,
                         recipe.check.grains));
+  out.lines += "  " + stress_line(recipe.material.variants.front().setup.spec) + "\n";
   const auto grains = static_cast<double>(recipe.material.variants.front().setup.spec.bodies);
   double fewest = kFewGrains;
   std::size_t few = 0;

@@ -154,6 +154,66 @@ void fields(auto&& visit, Of<CompressibleModelSummary> auto& s) {
   visit("solid_fraction_K_9", s.vibrated_pressed);
 }
 
+/// The whole at a recorded point of its stages.
+struct RecipePoint {
+  std::string stage;   ///< stage that ends at the point or leads to it
+  double axial = 0.0;  ///< axial stress [Pa]
+  Estimate strain;     ///< nominal, from the start of the test
+  Estimate lateral_ratio;
+  Estimate void_ratio;
+};
+
+void fields(auto&& visit, Of<RecipePoint> auto& p) {
+  visit("stage", p.stage);
+  visit("axial_stress", p.axial);
+  visit("axial_strain", p.strain);
+  visit("K0", p.lateral_ratio);
+  visit("void_ratio", p.void_ratio);
+}
+
+/// The whole in a stage; moduli in Pa, of logarithmic strain. `measured`: of samples with all its grains.
+struct RecipeStageSummary {
+  std::string name;
+  StageKind kind = StageKind::oedometric;
+  double stress_end = 0.0;   ///< axial stress at the end of the stage [Pa]
+  double stress_from = 0.0;  ///< interval of secant and index [Pa]: falls in an unloading
+  double stress_to = 0.0;
+  PredictedValue secant;         ///< constrained modulus over the interval
+  PredictedValue tangent_begin;  ///< constrained modulus at the first point: of an unloading the stiffest
+  PredictedValue tangent_end;    ///< at the last point
+  PredictedValue index;          ///< Cc; of an unloading and a reloading Cs
+  PredictedValue lateral_ratio;  ///< K0 at the end
+  PredictedValue void_ratio;     ///< at the end
+
+  /// "Cc" or "Cs".
+  [[nodiscard]] const char* index_name() const { return kind == StageKind::oedometric ? "Cc" : "Cs"; }
+};
+
+void fields(auto&& visit, Of<RecipeStageSummary> auto& s) {
+  visit("name", s.name);
+  visit("kind", s.kind);
+  visit("axial_stress_end", s.stress_end);
+  visit("interval_from", s.stress_from);
+  visit("interval_to", s.stress_to);
+  visit("modulus_secant", s.secant);
+  visit("modulus_begin", s.tangent_begin);
+  visit("modulus_end", s.tangent_end);
+  visit("compression_index", s.index);
+  visit("K0_end", s.lateral_ratio);
+  visit("void_ratio_end", s.void_ratio);
+}
+
+/// The whole under [[stage]]; empty without them. Stresses in Pa.
+struct RecipeStages {
+  std::vector<RecipeStageSummary> stages;
+  std::vector<RecipePoint> points;
+};
+
+void fields(auto&& visit, Of<RecipeStages> auto& s) {
+  visit("stages", s.stages);
+  visit("points", s.points);
+}
+
 struct RecipeOutcome {
   std::vector<ConstituentSummary> constituents;
   std::vector<RecipeLevelSummary> levels;
@@ -170,6 +230,7 @@ struct RecipeOutcome {
   std::vector<RecipeCurve> curves;
   std::vector<ShellLevelSummary> shells;
   std::optional<CompressibleModelSummary> compressible_model;
+  std::optional<RecipeStages> staged;  ///< with [[stage]]
 };
 
 void fields(auto&& visit, Of<RecipeOutcome> auto& s) {
@@ -188,6 +249,7 @@ void fields(auto&& visit, Of<RecipeOutcome> auto& s) {
   visit("curves", s.curves);
   visit("shells", s.shells);
   visit("compressible_packing_model", s.compressible_model, kLeftOut);
+  visit("staged", s.staged, kLeftOut);
 }
 
 struct RecipeSummary {
