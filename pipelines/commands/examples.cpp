@@ -12,9 +12,9 @@
 
 #include "common/core/error.h"
 #include "common/core/text.h"
+#include "common/io/child_process.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
-#include "macrosim/lammps_run/lammps_program.h"
 #include "pipelines/commands/commands.h"
 #include "pipelines/law/terminal_plot.h"
 
