@@ -242,6 +242,10 @@ double parse_quantity(const std::string& text, Unit unit);
 /// Known word nearest to `word` by edit distance, empty when none is near.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
 
+/// "nearest is 'NAME'" for a message about an unknown word; `otherwise` when none is near.
+std::string nearest_text(const std::string& word, const std::vector<std::string>& known,
+                         const std::string& otherwise = "");
+
 /// The range of Poisson's ratio as readers of keys take it.
 inline constexpr Range kPoissonRange{kPoissonAbove, kPoissonHighest, true, false};
 
