@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 
 #include "common/core/error.h"
 #include "common/core/particles.h"
 #include "common/neighbours/spatial_order.h"
+#include "macrosim/box.h"
 #include "macrosim/preparation.h"
 
 namespace softgrain {
@@ -134,7 +136,7 @@ MacroPacking pack_bodies(const MacroSpec& spec, std::vector<MacroBody> bodies, s
 
 namespace {
 
-constexpr std::int64_t kWalls = 6;
+constexpr auto kWalls = static_cast<std::int64_t>(std::tuple_size_v<decltype(Box::plane)>);
 
 void write_springs(const h5::Group& group, const std::vector<BodySpring>& springs) {
   if (springs.empty()) return;

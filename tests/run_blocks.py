@@ -110,6 +110,7 @@ RULES = [
     (r"\./softgrain test( -[LR] \w+)?", Elsewhere("this suite; the start script by the test start_script")),
     (r"ctest --preset [\w-]+|cmake --(build )?--preset [\w-]+|cmake --build --preset [\w-]+|cmake --preset [\w-]+",
      Elsewhere(PRESETS)),
+    (r"python3 tests/new_law\.py my-law", Elsewhere("default suite: the test new_law_self_test")),
     (r"python3 tests/new_kind\.py my-kind|cmake --build build/release|python3 tests/guide_keys\.py .*",
      Elsewhere("default suite: the tests new_kind_self_test and guide_keys")),
     (r"cmake --install build/release --prefix /usr/local", Elsewhere("default suite: the test install")),

@@ -142,10 +142,14 @@ void write(std::string& out, const std::string& name, const CohesiveDisk<kFricti
   w.value("rolling_limit", law.rolling_limit);
 }
 
+/// Of laws whose bodies are alike; those with soft sides have their own below.
 template <class Law>
 AnyLaw mirror(Law law) {
-  if constexpr (std::derived_from<Law, SoftContact>)
+  if constexpr (std::derived_from<Law, SoftContact>) {
     if (!law.partner_is_soft) law.i_is_soft = !law.i_is_soft;
+  } else {
+    static_assert(!Law::traits.is_fitted, "a law that says which bodies are soft needs a mirror() of its own");
+  }
   return law;
 }
 

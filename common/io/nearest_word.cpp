@@ -46,4 +46,9 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
   return best;
 }
 
+std::string nearest_text(const std::string& word, const std::vector<std::string>& known, const std::string& otherwise) {
+  const std::string near = nearest_word(word, known);
+  return near.empty() ? otherwise : "nearest is '" + near + "'";
+}
+
 }  // namespace softgrain

@@ -246,6 +246,10 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
 /// ("fluid", "fluid_viscosity"); empty for others.
 std::string out_of_scope_text(const std::string& key);
 
+/// "nearest is 'NAME'" for a message about an unknown word; `otherwise` when none is near.
+std::string nearest_text(const std::string& word, const std::vector<std::string>& known,
+                         const std::string& otherwise = "");
+
 /// The range of Poisson's ratio as readers of keys take it.
 inline constexpr Range kPoissonRange{kPoissonAbove, kPoissonHighest, true, false};
 

@@ -33,13 +33,13 @@ std::string commands_with(const CLI::App& program, const std::string& option) {
 }
 
 std::string unknown_option_text(const CLI::App& program, const CLI::App& command, const std::string& option) {
-  const std::string near = nearest_word(option, options_of_command(command));
+  const std::string near = nearest_text(option, options_of_command(command));
   const std::string others = commands_with(program, option);
   const std::string given = command_on_line(program);
   const std::string text =
       fmt::format("{}: {} has no such option", option, given.empty() ? "softgrain" : trimmed(given));
   if (!others.empty()) return text + "; commands with it are " + others;
-  return near.empty() ? text : text + "; nearest is '" + near + "'";
+  return near.empty() ? text : text + "; " + near;
 }
 
 }  // namespace
@@ -75,6 +75,12 @@ std::string command_on_line(const CLI::App& app) {
   return parsed.empty() ? "" : parsed.front()->get_name() + " " + command_on_line(*parsed.front());
 }
 
+std::string unknown_command_text(const std::string& given, const std::string& hint,
+                                 const std::vector<std::string>& known) {
+  return fmt::format("unknown command '{}'; {}commands are {}", given, hint.empty() ? "" : hint + "; ",
+                     join_text(known));
+}
+
 std::string unknown_word_text(const CLI::App& program) {
   const CLI::App* command = &program;
   while (command->remaining_size() == 0 && !command->get_subcommands().empty())
@@ -84,9 +90,7 @@ std::string unknown_word_text(const CLI::App& program) {
       return unknown_option_text(program, *command, word.substr(0, word.find('=')));
     const std::vector<std::string> parts = command_names(*command);
     if (parts.empty()) continue;
-    const std::string near = nearest_word(word, parts);
-    return fmt::format("unknown command '{}{}'; {}commands are {}", command_on_line(program), word,
-                       near.empty() ? "" : "nearest is '" + near + "'; ", join_text(parts));
+    return unknown_command_text(command_on_line(program) + word, nearest_text(word, parts), parts);
   }
   return "";
 }

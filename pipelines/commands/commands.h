@@ -174,6 +174,10 @@ std::vector<std::string> command_names(const CLI::App& app);
 /// "run ", "law show ": the command that was given, as far as it is known; empty for none.
 std::string command_on_line(const CLI::App& app);
 
+/// What to say of an unknown command; `hint` names the nearest one, or is empty.
+std::string unknown_command_text(const std::string& given, const std::string& hint,
+                                 const std::vector<std::string>& known);
+
 /// What to say of an option (or the name of a part of a command) that was given and is unknown: the nearest one of the
 /// command, or which commands know it. Empty when there was none.
 std::string unknown_word_text(const CLI::App& app);

@@ -12,9 +12,9 @@
 
 #include "common/core/error.h"
 #include "common/core/text.h"
+#include "common/io/child_process.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
-#include "macrosim/lammps_run/lammps_program.h"
 #include "pipelines/commands/commands.h"
 #include "pipelines/law/terminal_plot.h"
 
@@ -71,14 +71,18 @@ Example example_of(const fs::path& file) {
   return {file.stem().string(), root.text("kind", ""), root.text("title", ""), time_said(heading_of(text))};
 }
 
-/// By name.
-std::vector<Example> examples_in(const std::string& folder) {
+/// The scenes of a folder, by name.
+std::vector<fs::path> scenes_in(const std::string& folder) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<Example> examples_in(const std::string& folder) {
   std::vector<Example> examples;
-  std::ranges::transform(files, std::back_inserter(examples), example_of);
+  std::ranges::transform(scenes_in(folder), std::back_inserter(examples), example_of);
   return examples;
 }
 
@@ -106,12 +110,10 @@ json json_of_examples(const std::vector<Example>& examples, const std::string& f
 std::string file_of_example(const std::string& name, const std::string& folder) {
   const std::string stem = name.ends_with(".toml") ? name.substr(0, name.size() - 5) : name;
   std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  for (const fs::path& file : scenes_in(folder)) names.push_back(file.stem().string());
   if (std::ranges::count(names, stem) > 0) return folder + "/" + stem + ".toml";
-  const std::string near = nearest_word(stem, names);
-  throw InputError(fmt::format("examples {}: no such scene; {}", name,
-                               near.empty() ? "softgrain examples lists them" : "nearest is '" + near + "'"));
+  throw InputError(
+      fmt::format("examples {}: no such scene; {}", name, nearest_text(stem, names, "softgrain examples lists them")));
 }
 
 /// A line with the paths between its quotes made full; what follows a # beyond quotes stays.
@@ -175,6 +177,7 @@ void add_examples_command(CLI::App& app, ExampleOptions& o) {
 ExitStatus command_examples(const ExampleOptions& o) {
   const std::string folder = folder_of_examples();
   if (!o.name.empty()) {
+    if (o.json) throw InputError("--json: goes with the list of scenes, without the name of one");
     const std::string file = file_of_example(o.name, folder);
     write_new_text(o.out, with_full_paths(read_text(file), folder), fmt::format("{}: copy of {}\n", o.out, file));
     return ExitStatus::good;

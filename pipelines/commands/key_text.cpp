@@ -69,9 +69,8 @@ const SceneKind& kind_named(const std::string& name, const std::string& command)
     if (name == k.name) return k;
     names.emplace_back(k.name);
   }
-  const std::string near = nearest_word(name, names);
   throw InputError(fmt::format("{} {}: no such kind; {}", command, name,
-                               near.empty() ? "kinds are " + join_text(names) : "nearest is '" + near + "'"));
+                               nearest_text(name, names, "kinds are " + join_text(names))));
 }
 
 std::string written(const ExploredKey& key) {

@@ -133,7 +133,7 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
   const bool sweeps = command.function == command_sweep;
   const bool runs_scenes = sweeps || command.function == command_run || command.function == command_microsim ||
                            command.function == command_macrosim;
-  if (sweeps)
+  if (sweeps) {
     app.add_option("--over", o.over,
                    "Runs the scene with each of these values of a key: --over macro.bodies=20,40 or =1..8 (repeatable: "
                    "every choice of all)")
@@ -141,13 +141,11 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->allow_extra_args(false);
-  if (sweeps)
     app.add_option(
            "--sample", o.sample,
            "Runs N points of the ranges of keys, --over macro.wall_mu=0.1..0.8 or =1e6..1e8:log: lhs:N, sobol:N, "
            "or saltelli:N, N (keys + 2) runs for Sobol indices")
         ->option_text("FORM:N");
-  if (sweeps) {
     app.add_option(
            "--maximise", o.maximise,
            "Searches the ranges of one or two keys, --over KEY=LOW..HIGH, for the largest value of this result: "
@@ -241,9 +239,7 @@ void require_command(const CLI::App& app, int argc, char** argv) {
   const std::vector<std::string> names = command_names(app);
   const std::string word = argv[1];
   if (std::ranges::find(names, word) != names.end()) return;
-  const std::string near = nearest_word(word, names);
-  throw InputError("unknown command '" + word + "'; " + (near.empty() ? "" : "nearest is '" + near + "'; ") +
-                   "commands are " + join_text(names));
+  throw InputError(unknown_command_text(word, nearest_text(word, names), names));
 }
 
 /// A run that is refused leaves no directory behind.

@@ -27,9 +27,8 @@ void require_table(const std::vector<ExploredKey>& all, const SchemaOptions& o) 
   for (const ExploredKey& k : all)
     if (k.is_table()) tables.push_back(k.path());
   if (o.table.empty() || o.table == kRoot || std::ranges::find(tables, o.table) != tables.end()) return;
-  const std::string near = nearest_word(o.table, tables);
   throw InputError(fmt::format("schema {} {}: no such table; {}", o.kind, o.table,
-                               near.empty() ? "tables are " + join_text(tables) : "nearest is '" + near + "'"));
+                               nearest_text(o.table, tables, "tables are " + join_text(tables))));
 }
 
 std::string table_name(const SchemaOptions& o) { return o.table == kRoot ? "" : o.table; }

@@ -50,8 +50,8 @@ namespace {
 
 /// Below a plot. The script of the page puts the values in it that the page holds, so that it works without the file.
 std::string table_link(const Figure& figure) {
-  return "<a class=\"csv\" href=\"curves/" + figure.name + ".csv\" download=\"" + figure.name +
-         ".csv\" aria-label=\"CSV: values of " + label_of(figure.svg) + "\">CSV</a>\n";
+  return std::string("<a class=\"csv\" href=\"") + kCurveFolder + "/" + figure.name + ".csv\" download=\"" +
+         figure.name + ".csv\" aria-label=\"CSV: values of " + label_of(figure.svg) + "\">CSV</a>\n";
 }
 
 }  // namespace
@@ -132,18 +132,20 @@ void remove_files(const fs::path& directory, bool (*is)(const fs::path&)) {
 }  // namespace
 
 void remove_figures(const std::string& run_directory) {
-  remove_files(fs::path(run_directory) / "figures", is_figure);
-  remove_files(fs::path(run_directory) / "curves", is_table);
+  remove_files(fs::path(run_directory) / kFigureFolder, is_figure);
+  remove_files(fs::path(run_directory) / kCurveFolder, is_table);
 }
 
 void write_figures(const std::string& run_directory, const std::vector<Figure>& figures) {
   remove_figures(run_directory);
-  fs::create_directories(run_directory + "/figures");
+  const fs::path pictures = fs::path(run_directory) / kFigureFolder;
+  const fs::path tables = fs::path(run_directory) / kCurveFolder;
+  fs::create_directories(pictures);
   for (const Figure& figure : figures) {
-    write_text_atomic(run_directory + "/figures/" + figure.name + ".svg", figure.svg);
+    write_text_atomic((pictures / (figure.name + ".svg")).string(), figure.svg);
     if (figure.table.empty()) continue;
-    fs::create_directories(run_directory + "/curves");
-    write_text_atomic(run_directory + "/curves/" + figure.name + ".csv", std::string(kByteOrderMark) + figure.table);
+    fs::create_directories(tables);
+    write_text_atomic((tables / (figure.name + ".csv")).string(), std::string(kByteOrderMark) + figure.table);
   }
 }
 

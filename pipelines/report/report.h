@@ -32,6 +32,10 @@ struct BodyAndFigures {
 /// Every svg element of an HTML body, in order; names are made unique by a number.
 BodyAndFigures figures_of(const std::string& html);
 
+/// Directories of a run that belong to its report.
+inline constexpr const char* kFigureFolder = "figures";
+inline constexpr const char* kCurveFolder = "curves";
+
 /// Writes them to DIR/figures/NAME.svg and DIR/curves/NAME.csv in place of those that an earlier report left there.
 /// Throws IoError.
 void write_figures(const std::string& run_directory, const std::vector<Figure>& figures);

@@ -14,10 +14,10 @@
 
 #include "common/core/error.h"
 #include "common/core/text.h"
+#include "common/io/child_process.h"
 #include "common/io/interrupt.h"
 #include "common/io/json_record.h"
 #include "common/io/text_file.h"
-#include "macrosim/lammps_run/lammps_program.h"
 #include "pipelines/run/findings.h"
 
 namespace softgrain {

@@ -134,7 +134,7 @@ std::vector<std::string> lines_of(const std::string& path) {
 
 /// What a run leaves beside results.
 bool is_housekeeping(const fs::path& file) {
-  static const std::set<std::string> names{"log.txt", ".lock", "figures", "curves"};
+  static const std::set<std::string> names{"log.txt", ".lock", report::kFigureFolder, report::kCurveFolder};
   return names.contains(file.filename().string()) || file.extension() == ".xdmf";  // of states that are gone
 }
 
@@ -257,10 +257,8 @@ const PlannedRun& run_named(const RunPlan& plan, const std::string& name) {
   if (at != plan.runs.end()) return *at;
   std::vector<std::string> names;
   for (const PlannedRun& run : plan.runs) names.push_back(run.name);
-  const std::string near = nearest_word(name, names);
-  throw InputError(fmt::format(
-      "--only {}: the set has no such run; {}", name,
-      near.empty() ? fmt::format("its runs are {} to {}", names.front(), names.back()) : "nearest is '" + near + "'"));
+  const std::string all = fmt::format("its runs are {} to {}", names.front(), names.back());
+  throw InputError(fmt::format("--only {}: the set has no such run; {}", name, nearest_text(name, names, all)));
 }
 
 /// --only: one run of the set, whose entry the set finds when it is collected.

@@ -7,6 +7,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "common/data/cell_card.h"
+#include "common/data/law_card.h"
+#include "common/data/multi_contact_law.h"
 #include "common/io/text_file.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
@@ -16,9 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string earlier(const std::string& file) { return std::string(SOFTGRAIN_REFERENCE_DIR) + "/earlier/" + file; }
+
 std::vector<std::string> earlier_runs() {
   std::vector<std::string> out;
-  for (const auto& version : fs::directory_iterator(std::string(SOFTGRAIN_REFERENCE_DIR) + "/earlier"))
+  for (const auto& version : fs::directory_iterator(earlier("")))
     for (const auto& run : fs::directory_iterator(version.path())) out.push_back(run.path().string());
   std::sort(out.begin(), out.end());
   return out;
@@ -62,11 +67,58 @@ TEST_P(EarlierFiles, AreCheckedAndReported) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Runs, EarlierFiles, testing::ValuesIn(earlier_runs()), [](const auto& named) {
-  std::string name = fs::path(named.param).filename().string();
+  const fs::path run = named.param;
+  std::string name = run.parent_path().filename().string() + "_" + run.filename().string();
   for (char& c : name)
     if (c == '-') c = '_';
   return name;
 });
+
+/// Numbers as they stand in the files; of "bag" the word as well.
+TEST(EarlierCards, LawTablesOfBothVocabularies) {
+  const LawTable old = load_law_table(earlier("before_names/law-table/law_table.toml"));
+  ASSERT_EQ(old.entries.size(), 1u);
+  EXPECT_EQ(old.entries[0].solid_fraction, 0.5607917924457946);
+  EXPECT_EQ(old.entries[0].packings, 3);
+  EXPECT_EQ(old.entries[0].best, LawForm::isotropic);
+  EXPECT_EQ(old.entries[0].unloading.value, 1.5);
+  EXPECT_EQ(old.entries[0].grains, 0.0) << "it did not say so";
+
+  const LawTable later = load_law_table(earlier("before_0_3/hierarchy/law_table.toml"));
+  ASSERT_EQ(later.entries.size(), 1u);
+  EXPECT_EQ(later.entries[0].solid_fraction, 0.33241400476177474);
+  EXPECT_EQ(later.entries[0].best, LawForm::pair);
+  EXPECT_EQ(later.entries[0].unloading.value, 1.0);
+  EXPECT_FALSE(later.entries[0].unloading_measured);
+  EXPECT_EQ(later.entries[0].grains, 187.0);
+}
+
+TEST(EarlierCards, CellLawsWithoutAndWithCorrelations) {
+  const CellCard old = read_cell_card(earlier("before_names/recipe/cell_law.toml"));
+  EXPECT_EQ(old.form, StateForm::porosity);
+  EXPECT_EQ(old.modulus.value, 0.4840006638483921);
+  EXPECT_EQ(old.modulus.low, 0.009104176243138265);
+  EXPECT_EQ(old.exponent.value, 3.371993614958187);
+  EXPECT_FALSE(old.memory.has_value());
+  EXPECT_TRUE(old.correlation.numbers.empty());
+
+  const CellCard later = read_cell_card(earlier("before_0_3/recipe/cell_law.toml"));
+  EXPECT_EQ(later.modulus.value, old.modulus.value);
+  ASSERT_EQ(later.correlation.numbers.size(), 8u);
+  EXPECT_EQ(later.correlation.numbers[5], "xi");
+  ASSERT_EQ(later.correlation.matrix.size(), 64u);
+  EXPECT_EQ(later.correlation.matrix[1], 0.928810806006253);
+}
+
+TEST(EarlierCards, LawCards) {
+  const LawCard card = load_card(earlier("before_names/pipeline/law.toml"));
+  ASSERT_EQ(card.pairs.size(), 2u);
+  EXPECT_EQ(card.pairs[0].kind, PairKind::soft_solid);
+  EXPECT_EQ(card.pairs[0].status, LawStatus::underdetermined);
+  EXPECT_EQ(card.pairs[0].packings, 4);
+  EXPECT_EQ(card.pairs[0].points, 36);
+  EXPECT_EQ(card.pairs[0].chi2_per_dof, 0.061442763464047916);
+}
 
 }  // namespace
 }  // namespace softgrain::test

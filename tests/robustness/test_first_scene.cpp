@@ -152,4 +152,10 @@ TEST(Examples, UnknownOneNamesTheNearest) {
   EXPECT_FALSE(fs::exists("x.toml"));
 }
 
+TEST(Examples, ACopyIsNoList) {
+  const ProgramOutcome outcome = run_the_program("examples quickstart --json");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.output.find("--json: goes with the list of scenes"), std::string::npos) << outcome.output;
+}
+
 }  // namespace

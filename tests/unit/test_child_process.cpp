@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "common/core/error.h"
+#include "common/io/child_process.h"
 #include "common/io/interrupt.h"
 #include "common/io/text_file.h"
-#include "macrosim/lammps_run/lammps_program.h"
 #include "tests/support/temporary_directory.h"
 
 namespace softgrain {

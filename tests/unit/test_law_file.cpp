@@ -118,7 +118,7 @@ TEST(LawFile, SaysWhatIsWrong) {
            {"friction = 0.3", "frictoin = 0.3", "key 'friction' is missing"},
            {"friction = 0.3", "friction = 0.3\nmore = 1", "key 'more' is no key of this law"},
            {"name = \"smooth\"", "name = \"mindlin\"", "is there twice"},
-           {"type = \"linear\"", "type = \"cubic\"", "must be hertz, linear, soft, multi-contact or cohesive"},
+           {"type = \"linear\"", "type = \"cubic\"", "must be hertz, linear, soft, multi-contact"},
            {"modulus = 5e+05", "modulus = inf", "must be finite"},
            {"modulus = 5e+05", "modulus = 0", "must be above 0"},
            {"beyond = \"error\"", "beyond = \"never\"", "must be error, clamp or extrapolate"},

@@ -21,8 +21,8 @@ namespace softgrain {
 namespace {
 
 /// What stands beside the variants in the directory of the run.
-constexpr std::array kTakenNames{"figures", "curves",      "work",      "summary.json",
-                                 "log.txt", "report.html", "table.csv", "table.md"};
+constexpr std::array kTakenNames{report::kFigureFolder, report::kCurveFolder, "work",    "summary.json", "log.txt",
+                                 "report.html",         "table.csv",          "table.md"};
 
 /// Keys of a variant that replace those of the scene.
 constexpr std::array kReplacing{"title", "samples", "disks", "contact", "assembly", "analysis"};

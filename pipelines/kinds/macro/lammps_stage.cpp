@@ -10,6 +10,7 @@
 #include "common/core/error.h"
 #include "common/core/text.h"
 #include "common/dynamics/force_pass.h"
+#include "common/io/child_process.h"
 #include "common/io/progress.h"
 #include "common/io/text_file.h"
 #include "macrosim/compression.h"
