@@ -75,6 +75,35 @@ std::vector<double> correlations(const std::vector<std::vector<double>>& draws, 
   return correlations_of(product, size);
 }
 
+NormalNumbers updated(const NormalNumbers& before, const std::vector<std::size_t>& which,
+                      const NormalNumbers& measured) {
+  const std::size_t n = before.mean.size();
+  const auto all = static_cast<Eigen::Index>(n);
+  const auto some = static_cast<Eigen::Index>(which.size());
+  Eigen::MatrixXd across(all, some);
+  Eigen::MatrixXd sum(some, some);
+  Eigen::VectorXd off(some);
+  for (Eigen::Index b = 0; b < some; ++b) {
+    const std::size_t k = which[static_cast<std::size_t>(b)];
+    off[b] = measured.mean[k] - before.mean[k];
+    for (Eigen::Index a = 0; a < all; ++a) across(a, b) = before.covariance[static_cast<std::size_t>(a) * n + k];
+    for (Eigen::Index a = 0; a < some; ++a) {
+      const std::size_t at = which[static_cast<std::size_t>(a)] * n + k;
+      sum(a, b) = before.covariance[at] + measured.covariance[at];
+    }
+  }
+  const Eigen::MatrixXd gain = sum.completeOrthogonalDecomposition().solve(across.transpose()).transpose();
+  const Eigen::VectorXd moved = gain * off;
+  const Eigen::MatrixXd lost = gain * across.transpose();
+  NormalNumbers out = before;
+  for (Eigen::Index a = 0; a < all; ++a) {
+    out.mean[static_cast<std::size_t>(a)] += moved[a];
+    for (Eigen::Index b = 0; b < all; ++b)
+      out.covariance[static_cast<std::size_t>(a) * n + static_cast<std::size_t>(b)] -= lost(a, b);
+  }
+  return out;
+}
+
 std::vector<std::vector<double>> normal_draws(const std::vector<double>& mean, const std::vector<double>& covariance,
                                               std::int64_t count, std::uint64_t seed) {
   const auto n = static_cast<Eigen::Index>(mean.size());

@@ -54,6 +54,18 @@ std::vector<double> correlations_of(const std::vector<double>& covariance, std::
 /// The same from draws of the numbers, one a row.
 std::vector<double> correlations(const std::vector<std::vector<double>>& draws, std::size_t size);
 
+/// Mean and covariance (row-major) of numbers of a normal distribution.
+struct NormalNumbers {
+  std::vector<double> mean;
+  std::vector<double> covariance;
+};
+
+/// What is known of the numbers once some of them, `which`, have been measured: m + C_w (C_ww + S)^-1 (y - m_w), and C
+/// less C_w (C_ww + S)^-1 C_w^T (Rasmussen and Williams 2006, Gaussian Processes for Machine Learning, ISBN 026218253X,
+/// eq. A.6). y and S: all numbers as measured, and their covariance; those not in `which` are not looked at.
+NormalNumbers updated(const NormalNumbers& before, const std::vector<std::size_t>& which,
+                      const NormalNumbers& measured);
+
 /// Draws from the normal distribution with this mean and covariance (n x n, row-major); parameters of variance zero
 /// stay. Throws InputError where the covariance is not finite or not positive.
 std::vector<std::vector<double>> normal_draws(const std::vector<double>& mean, const std::vector<double>& covariance,

@@ -1,7 +1,6 @@
 // From law tables to rows of a library, and from answers of a library to a law table.
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -42,14 +41,12 @@ std::string unfit(const LawTableEntry& entry, const MultiContactLaw* law) {
   return entry.solid_fraction > 0.0 ? "" : "no solid fraction";
 }
 
-/// A symmetric matrix from deviations and correlations of the first numbers.
-Eigen::MatrixXd covariance_of(const std::vector<double>& deviations, const std::vector<double>& correlations) {
-  const auto n = static_cast<Eigen::Index>(deviations.size());
-  Eigen::MatrixXd out(n, n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j < n; ++j)
-      out(i, j) = correlations[static_cast<std::size_t>(i * n + j)] * deviations[static_cast<std::size_t>(i)] *
-                  deviations[static_cast<std::size_t>(j)];
+/// Covariance, row-major, from deviations and correlations of the first numbers.
+std::vector<double> covariance_of(const std::vector<double>& deviations, const std::vector<double>& correlations) {
+  const std::size_t n = deviations.size();
+  std::vector<double> out(n * n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) out[i * n + j] = correlations[i * n + j] * deviations[i] * deviations[j];
   return out;
 }
 
@@ -71,7 +68,7 @@ MultiContactLaw law_of_answer(const LawLibrary& library, const LibraryAnswer& an
   const std::size_t count = library.law_numbers();
   std::vector<double> mean;
   for (std::size_t k = 0; k < count; ++k) mean.push_back(answer.numbers[k].value);
-  const Eigen::MatrixXd c = covariance_of(deviations_of(answer, count), answer.correlations);
+  const std::vector<double> c = covariance_of(deviations_of(answer, count), answer.correlations);
   MultiContactLaw law;
   law.form = LawForm::isotropic;
   for (std::size_t k = 0; k < library.partners.size(); ++k)
@@ -82,7 +79,7 @@ MultiContactLaw law_of_answer(const LawLibrary& library, const LibraryAnswer& an
                             library.materials[answer.nearest].partner_overlap_max[k],
                             0.0});
   const std::vector<double> numbers = law_numbers_of(library.partners, mean, poisson_ratio);
-  for (const std::vector<double>& draw : normal_draws(mean, {c.data(), c.data() + c.size()}, draws, 1))
+  for (const std::vector<double>& draw : normal_draws(mean, c, draws, 1))
     law.replicates.push_back(law_numbers_of(library.partners, draw, poisson_ratio));
   const std::size_t planes = kMultiContactParameters.size();
   for (std::size_t k = 0; k < planes; ++k)
@@ -120,18 +117,16 @@ OwnNumbers own_numbers(const LawLibrary& library, const LawTableEntry& own) {
 }
 
 /// Numbers that own measurements tell.
-std::vector<Eigen::Index> told(const OwnNumbers& own, std::size_t begin, std::size_t end) {
-  std::vector<Eigen::Index> out;
+std::vector<std::size_t> told(const OwnNumbers& own, std::size_t begin, std::size_t end) {
+  std::vector<std::size_t> out;
   for (std::size_t k = begin; k < end; ++k)
-    if (std::isfinite(own.values[k]) && std::isfinite(own.errors[k]) && own.errors[k] > 0.0)
-      out.push_back(static_cast<Eigen::Index>(k));
+    if (std::isfinite(own.values[k]) && std::isfinite(own.errors[k]) && own.errors[k] > 0.0) out.push_back(k);
   return out;
 }
 
 void compare_with_own(const LibraryAnswer& prior, const OwnNumbers& own, std::vector<std::string>& remarks) {
   constexpr double kMost = 3.0;
-  for (const Eigen::Index at : told(own, 0, own.values.size())) {
-    const auto k = static_cast<std::size_t>(at);
+  for (const std::size_t k : told(own, 0, own.values.size())) {
     const LibraryNumber& n = prior.numbers[k];
     if (!std::isfinite(n.value)) continue;
     const double off = (own.values[k] - n.value) / std::hypot(own.errors[k], n.deviation);
@@ -213,31 +208,21 @@ LibraryAnswer corrected(const LawLibrary& library, const LibraryAnswer& prior, c
   compare_with_own(prior, numbers, remarks);
   LibraryAnswer out = prior;
   const std::size_t count = library.law_numbers();
-  const std::vector<Eigen::Index> at = told(numbers, 0, count);
-  const Eigen::MatrixXd before = covariance_of(deviations_of(prior, count), prior.correlations);
+  NormalNumbers before{{}, covariance_of(deviations_of(prior, count), prior.correlations)};
+  for (std::size_t k = 0; k < count; ++k) before.mean.push_back(prior.numbers[k].value);
   std::vector<double> own_errors(numbers.errors.begin(), numbers.errors.begin() + static_cast<std::ptrdiff_t>(count));
   for (double& e : own_errors) e = std::isfinite(e) ? e : 0.0;
-  const Eigen::MatrixXd measured = covariance_of(own_errors, numbers.correlations);
-  Eigen::VectorXd off(static_cast<Eigen::Index>(at.size()));
-  for (std::size_t k = 0; k < at.size(); ++k) {
-    const auto number = static_cast<std::size_t>(at[k]);
-    off[static_cast<Eigen::Index>(k)] = numbers.values[number] - prior.numbers[number].value;
-  }
-  const Eigen::MatrixXd across = before(Eigen::all, at);
-  const Eigen::MatrixXd sum = before(at, at) + measured(at, at);
-  const Eigen::MatrixXd gain = sum.completeOrthogonalDecomposition().solve(across.transpose()).transpose();
-  const Eigen::VectorXd moved = gain * off;
-  const Eigen::MatrixXd after = before - gain * across.transpose();
+  const NormalNumbers after =
+      updated(before, told(numbers, 0, count), {numbers.values, covariance_of(own_errors, numbers.correlations)});
   for (std::size_t k = 0; k < count; ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    out.numbers[k].value += moved[i];
-    out.numbers[k].deviation = std::sqrt(std::max(after(i, i), 0.0));
+    out.numbers[k].value = after.mean[k];
+    out.numbers[k].deviation = std::sqrt(std::max(after.covariance[k * count + k], 0.0));
   }
-  out.correlations = correlations_of({after.data(), after.data() + after.size()}, count);
-  for (const Eigen::Index k : told(numbers, count, numbers.values.size())) {
-    LibraryNumber& n = out.numbers[static_cast<std::size_t>(k)];
-    const double value = numbers.values[static_cast<std::size_t>(k)];
-    const double error = numbers.errors[static_cast<std::size_t>(k)];
+  out.correlations = correlations_of(after.covariance, count);
+  for (const std::size_t k : told(numbers, count, numbers.values.size())) {
+    LibraryNumber& n = out.numbers[k];
+    const double value = numbers.values[k];
+    const double error = numbers.errors[k];
     const double share =
         std::isfinite(n.value) ? n.deviation * n.deviation / (n.deviation * n.deviation + error * error) : 1.0;
     n.value = std::isfinite(n.value) ? n.value + share * (value - n.value) : value;

@@ -301,7 +301,12 @@ TEST(StressCell, ThreadsDoNotMatter) {
   const int before = omp_get_max_threads();
   std::vector<System2> ended;
   std::vector<Vec<2>> stress;
-  const System2 start = loose(5000, 0.45, disk_law(1e3, 1.0), 2);
+  constexpr int kRow = 70;
+  constexpr double kSpacing = 1.0005;  // each disk has four neighbours, hardly apart
+  RandomStream random(1, RandomPurpose::test, 3);
+  System2 start = empty_cell(disk_law(1e3, 1.0), kRow * kSpacing);
+  for (int k = 0; k < kRow * kRow; ++k) add_disk(start, {{kSpacing * (k % kRow), kSpacing * (k / kRow)}}, 1.0);
+  for (auto& v : start.particles.velocity) v = Vec<2>{{random.uniform() - 0.5, random.uniform() - 0.5}};
   for (const int threads : {1, 2, 3}) {
     omp_set_num_threads(threads);
     System2& s = ended.emplace_back(start);

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
+#include "calibrate/draws.h"
 #include "calibrate/gaussian_process.h"
 #include "common/core/error.h"
 #include "common/core/random.h"
@@ -114,6 +116,18 @@ TEST(DistanceFromHull, OfASquareAndItsInside) {
   EXPECT_NEAR(distance_from_hull(square, {2.0, 2.0}), std::sqrt(2.0), 1e-2);
   const std::vector<std::vector<double>> triangle{{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
   EXPECT_NEAR(distance_from_hull(triangle, {1.0, 1.0}), std::sqrt(0.5), 1e-2);
+}
+
+/// Two numbers that go together, of which one is measured: closed form.
+TEST(UpdatedNumbers, WhatIsNotMeasuredFollowsByTheCovariance) {
+  const NormalNumbers before{{1.0, 2.0}, {4.0, 3.0, 3.0, 9.0}};
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const NormalNumbers after = updated(before, {0}, {{3.0, none}, {1.0, none, none, none}});
+  EXPECT_NEAR(after.mean[0], 1.0 + 4.0 / 5.0 * 2.0, 1e-12);
+  EXPECT_NEAR(after.mean[1], 2.0 + 3.0 / 5.0 * 2.0, 1e-12);
+  EXPECT_NEAR(after.covariance[0], 4.0 - 16.0 / 5.0, 1e-12);
+  EXPECT_NEAR(after.covariance[1], 3.0 - 12.0 / 5.0, 1e-12);
+  EXPECT_NEAR(after.covariance[3], 9.0 - 9.0 / 5.0, 1e-12);
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ MacroSpec without_laws(MacroSpec spec) {
 KeyText& add_setup(KeyText& key, const MacroSetup& setup, std::int64_t sample) {
   // Every member: one more does not compile until it is named here, and part of the key or known to change nothing.
   const auto& [spec, samples, twins, given, kept_states, bands, estimator, law_increments, noise_samples, assumed,
-               said] = setup;
+               start_stress, said] = setup;
   return key.add(sample < noise_samples).add(sample == 0 ? kept_states : 0);
 }
 
