@@ -9,8 +9,8 @@
 #include "common/core/error.h"
 #include "common/core/text.h"
 #include "common/data/card_text.h"
+#include "common/io/child_process.h"
 #include "common/io/scene.h"
-#include "macrosim/lammps_run/lammps_program.h"
 #include "pipelines/law/law_library.h"
 #include "pipelines/law/law_library_numbers.h"
 
