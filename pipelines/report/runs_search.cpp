@@ -36,7 +36,7 @@ Series searched_points(const SetSummary& set) {
 }
 
 std::string search_figure(const SetSummary& set) {
-  const SearchSummary& search = *set.search;
+  const OptimumSummary& search = *set.search;
   const SearchedKey& key = search.keys.front();
   Plot plot(
       {.id = "search",
@@ -64,7 +64,7 @@ std::string search_figure(const SetSummary& set) {
 
 std::string search_part(const SetSummary& set) {
   if (!set.search || !set.search->usable) return "";
-  const SearchSummary& s = *set.search;
+  const OptimumSummary& s = *set.search;
   HtmlTable table({"key", s.maximise ? "best value (largest)" : "best value (smallest)", "95 %", "range searched"}, 1);
   for (const SearchedKey& key : s.keys)
     table.row({with_unit(key.key, key.unit), format_number(key.value, 4), searched_range(key.low, key.high),

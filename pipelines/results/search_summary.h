@@ -47,7 +47,7 @@ void fields(auto&& visit, Of<SearchCurve> auto& s) {
   visit("high", s.high);
 }
 
-struct SearchSummary {
+struct OptimumSummary {
   std::string number;  ///< name of the result that was searched for its largest or smallest value
   std::string unit;
   bool maximise = true;
@@ -64,7 +64,7 @@ struct SearchSummary {
   SearchCurve curve;        ///< of one key
 };
 
-void fields(auto&& visit, Of<SearchSummary> auto& s) {
+void fields(auto&& visit, Of<OptimumSummary> auto& s) {
   visit("number", s.number);
   visit("unit", s.unit);
   visit("maximise", s.maximise);

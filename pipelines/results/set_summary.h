@@ -158,7 +158,7 @@ struct SetSummary {
   std::optional<DesignEntry> design{};
   std::vector<KeyEffect> sensitivity{};
   std::optional<PairedSummary> paired{};  ///< differences of two runs of one kind
-  std::optional<SearchSummary> search{};
+  std::optional<OptimumSummary> search{};
 };
 
 void fields(auto&& visit, Of<SetSummary> auto& s) {

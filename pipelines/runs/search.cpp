@@ -125,10 +125,10 @@ SearchCurve search_curve(const OptimumEstimate& best, const SearchedPoints& data
   return out;
 }
 
-SearchSummary summary_of_search(const SearchGoal& goal, const RunValue& number, const SearchedPoints& data,
-                                const std::vector<SweptKey>& keys, const std::vector<SweptRange>& ranges,
-                                std::uint64_t seed) {
-  SearchSummary out;
+OptimumSummary summary_of_search(const SearchGoal& goal, const RunValue& number, const SearchedPoints& data,
+                                 const std::vector<SweptKey>& keys, const std::vector<SweptRange>& ranges,
+                                 std::uint64_t seed) {
+  OptimumSummary out;
   out.number = number.name;
   out.unit = number.unit;
   out.maximise = goal.maximise;
@@ -161,7 +161,7 @@ SearchSummary summary_of_search(const SearchGoal& goal, const RunValue& number, 
 bool is_at_end(const SearchedKey& k) { return k.value <= k.from || k.value >= k.to; }
 
 void add_remarks(SetSummary& summary) {
-  const SearchSummary& s = *summary.search;
+  const OptimumSummary& s = *summary.search;
   if (!s.usable) return summary.head.mark_unusable("no optimum: " + s.reason);
   for (const SearchedKey& k : s.keys)
     if (is_at_end(k))
@@ -238,7 +238,7 @@ RunRounds search_rounds(const SearchGoal& goal, const TakesWholeNumbers& takes_w
   return out;
 }
 
-TextTable search_table(const SearchSummary& search) {
+TextTable search_table(const OptimumSummary& search) {
   TextTable out{{search.keys.front().key, search.number, "low (95 %)", "high (95 %)"}, {}};
   const SearchCurve& c = search.curve;
   for (std::size_t k = 0; k < c.x.size(); ++k)
@@ -249,7 +249,7 @@ TextTable search_table(const SearchSummary& search) {
 
 std::string search_text(const SetSummary& summary) {
   if (!summary.search) return "";
-  const SearchSummary& s = *summary.search;
+  const OptimumSummary& s = *summary.search;
   const std::string what = fmt::format("{} {}", s.maximise ? "largest" : "smallest", with_unit(s.number, s.unit));
   if (!s.usable) return what + ": not determined: " + s.reason + "\n";
   std::string text = what + " at";

@@ -30,7 +30,7 @@ RunPlan search_plan(const CommonOptions& options, const TakesWholeNumbers& takes
 RunRounds search_rounds(const SearchGoal& goal, const TakesWholeNumbers& takes_whole, std::uint64_t seed);
 
 /// The fitted curve of one key with its band: search.csv.
-TextTable search_table(const SearchSummary& search);
+TextTable search_table(const OptimumSummary& search);
 
 /// Optimum, interval and what to mind, a few lines; empty without a search.
 std::string search_text(const SetSummary& summary);

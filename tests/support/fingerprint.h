@@ -237,6 +237,9 @@ class Fingerprint {
       for (std::int32_t a = 0; a < value.materials(); ++a)
         for (std::int32_t b = 0; b < value.materials(); ++b)
           if (value.index(a, b) != LawSet::kNoContact) (*this)(value.law(value.index(a, b)));
+    } else if constexpr (std::is_same_v<T, SoftUnloading>) {  // no binding goes to members of a base
+      (*this)(static_cast<const SoftContact&>(value));
+      (*this)(value.branch);
     } else if constexpr (is_optional<T> || is_shared<T>) {
       text_ += value ? "+" : "-";
       if (value) (*this)(*value);
