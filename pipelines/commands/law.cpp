@@ -9,10 +9,10 @@
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
 #include "pipelines/commands/law_options.h"
-#include "pipelines/law/fitted_law.h"
 #include "pipelines/law/law_difference.h"
 #include "pipelines/law/law_json.h"
 #include "pipelines/law/pair_table.h"
+#include "pipelines/law/press_test.h"
 #include "pipelines/law/terminal_plot.h"
 #include "pipelines/law/value_output.h"
 
@@ -241,7 +241,7 @@ json units_json(const ValueUnits& units) {
 }
 
 FittedLaw load_with_refits(const std::string& path) {
-  FittedLaw file = load_law(path);
+  FittedLaw file = load_or_fit_law(path);
   read_refits(file);
   return file;
 }

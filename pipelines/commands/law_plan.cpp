@@ -18,7 +18,7 @@
 #include "pipelines/kinds/law_table/law_plan.h"
 #include "pipelines/kinds/law_table/scene.h"
 #include "pipelines/kinds/macro/scene.h"
-#include "pipelines/law/fitted_law.h"
+#include "pipelines/law/press_test.h"
 #include "pipelines/results/summary.h"
 #include "pipelines/run/run_context.h"
 
@@ -136,7 +136,7 @@ std::optional<bool> is_run_of(const std::string& run, const FittedLaw& table, co
   const std::string own = run + "/law_table.toml";
   if (!scene || !fs::exists(own)) return std::nullopt;
   try {
-    return same_draws(table, load_law(own), curves, form);
+    return same_draws(table, load_or_fit_law(own), curves, form);
   } catch (const InputError&) {  // one of them keeps too few draws; of this table the plan says so
     return std::nullopt;
   }
@@ -161,7 +161,7 @@ void require_plan_options(const LawOptions& o) {
 
 ExitStatus plan_next(const LawOptions& o) {
   require_plan_options(o);
-  const FittedLaw file = load_law(o.files.front());
+  const FittedLaw file = load_or_fit_law(o.files.front());
   if (file.table() == nullptr)
     throw InputError("law plan: " + file.path +
                      " is no law table: it has no configurations of several neighbours to plan with");

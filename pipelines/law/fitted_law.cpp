@@ -7,7 +7,6 @@
 #include "common/data/multi_contact_replicates.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
-#include "pipelines/law/press_test.h"
 
 namespace softgrain {
 
@@ -47,9 +46,15 @@ std::string kind_text(const FittedLaw& law) {
   return law.card() != nullptr ? "law card" : "law table";
 }
 
+bool is_curve_file(const std::string& path) {
+  const auto form = file_form(path);
+  return form == FileForm::csv || form == FileForm::tsv || form == FileForm::txt || form == FileForm::dat;
+}
+
 FittedLaw load_law(const std::string& given) {
   const std::string path = file_in(given);
-  if (is_curve_file(path)) return {card_of_press_test(path), path, read_text(path)};
+  if (is_curve_file(path))
+    throw InputError(path + ": the table of a press test, not a law: softgrain calibrate fits one to it");
   if (std::filesystem::path(path).extension() == ".h5")
     throw InputError(path + ": give the card or table itself, the .toml beside it");
   return load_law(Scene::load(path));

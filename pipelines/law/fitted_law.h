@@ -36,10 +36,12 @@ std::string kind_text(const FittedLaw& law);
 
 /// Reads a card (with bands and measured curve when the .h5 is beside it), a table (without its refits), a card of the
 /// cell law, or those of a run directory (law_table.toml before law.toml and cell_law.toml). They are told apart by
-/// content: [[pair]], [[entry]], [cell]. A table of a press test (.csv, .tsv, .txt, .dat) becomes a card by
-/// card_of_press_test(). Throws InputError with file and line for anything else, IoError.
+/// content: [[pair]], [[entry]], [cell]. Throws InputError with file and line for anything else, IoError.
 FittedLaw load_law(const std::string& path);
 FittedLaw load_law(const Scene& file);
+
+/// Whether a path names a table of an experiment: .csv, .tsv, .txt or .dat.
+bool is_curve_file(const std::string& path);
 
 /// The refits of a table from the .h5 beside it, where they were not read before. Throws InputError, IoError.
 void read_refits(FittedLaw& law);

@@ -5,6 +5,7 @@
 
 #include "common/core/error.h"
 #include "pipelines/law/law_library.h"
+#include "pipelines/law/press_test.h"
 
 namespace softgrain {
 
@@ -65,7 +66,7 @@ bool asks_library(const std::string& path) {
 }
 
 FittedLaw law_at(const SceneTable& root, const std::string& path) {
-  if (!asks_library(path)) return load_law(path);
+  if (!asks_library(path)) return load_or_fit_law(path);
   return library_law(root, load_library(path == kShipped ? shipped_library() : path));
 }
 

@@ -15,8 +15,8 @@ std::string law_path(const Scene& scene, const std::string& written);
 /// Whether a path stands for a library: "library", or the file of one. Throws InputError, IoError.
 bool asks_library(const std::string& path);
 
-/// The law at a path: a file or run directory as load_law() takes it; of a library the law of the material that table
-/// [library] of `root` describes. Throws InputError, IoError.
+/// The law at a path: a file or run directory as load_or_fit_law() takes it; of a library the law of the material that
+/// table [library] of `root` describes. Throws InputError, IoError.
 FittedLaw law_at(const SceneTable& root, const std::string& path);
 
 /// Reads table [library] alone, for scenes that are read without their law. Throws InputError.

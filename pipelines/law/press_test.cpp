@@ -8,11 +8,6 @@
 
 namespace softgrain {
 
-bool is_curve_file(const std::string& path) {
-  const auto form = file_form(path);
-  return form == FileForm::csv || form == FileForm::tsv || form == FileForm::txt || form == FileForm::dat;
-}
-
 LawCard card_of_press_test(const std::string& path) {
   ForceCurveOptions options;
   options.unloading = Unloading::fit;
@@ -23,6 +18,11 @@ LawCard card_of_press_test(const std::string& path) {
     throw InputError(path + ": no law can be fitted: " + to_string(unusable->status) + " (" + unusable->reason + ")");
   fit.card.notes = std::move(fit.remarks);
   return std::move(fit.card);
+}
+
+FittedLaw load_or_fit_law(const std::string& path) {
+  if (is_curve_file(path)) return {card_of_press_test(path), path, read_text(path)};
+  return load_law(path);
 }
 
 }  // namespace softgrain

@@ -11,8 +11,8 @@
 #include "common/core/random.h"
 #include "common/data/law_words.h"
 #include "common/io/text_file.h"
-#include "pipelines/law/fitted_law.h"
 #include "pipelines/law/law_values.h"
+#include "pipelines/law/press_test.h"
 #include "tests/support/synthetic_law.h"
 #include "tests/support/temporary_directory.h"
 
@@ -341,7 +341,7 @@ TEST_F(PressTestTable, ColumnsThatDoNotGoTogetherAreRefused) {
 
 /// The shipped table: made from a law that its comments tell.
 TEST(PressTestLaw, TheShippedTableGivesTheLawThatItWasMadeFrom) {
-  const FittedLaw law = load_law(std::string(SOFTGRAIN_SOURCE_DIR) + "/pipelines/press_test_unloading.csv");
+  const FittedLaw law = load_or_fit_law(std::string(SOFTGRAIN_SOURCE_DIR) + "/pipelines/press_test_unloading.csv");
   ASSERT_NE(law.card(), nullptr);
   ASSERT_EQ(law.card()->pairs.size(), 2U);
   const PairLaw& solid = law.card()->pairs[0];
