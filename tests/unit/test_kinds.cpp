@@ -218,7 +218,7 @@ samples = 0
 [law]
 forms = ["pair", "isotrop"]
 )",
-     R"(s:3: test = "sheer": must be "oedometric", "isotropic" or "shear"; nearest is "shear"
+     R"(s:3: test = "sheer": must be "oedometric", "isotropic", "shear", "undrained", "simple-shear" or "direct-shear"; nearest is "shear"
 s:5: name = "a b": letters, digits and '-' only: it becomes part of file names
 s:7: samples = 0: must be a whole number from 1 to 10000
 s:8: table: give a law table, a law card, or both)"},

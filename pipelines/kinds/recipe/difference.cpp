@@ -623,6 +623,8 @@ PairedSummary recipe_differences(const report::RunData& a, const report::RunData
     reason = e.what();
   } catch (const UnusableResult& e) {
     reason = e.what();
+  } catch (const IoError& e) {  // runs that were kept without the files of their packings
+    reason = e.what();
   }
   return independent_summary(a.summary_as<RecipeSummary>().recipe, b.summary_as<RecipeSummary>().recipe, reason);
 }

@@ -263,8 +263,10 @@ std::vector<RunValue> values_of(const report::RunData& run) {
   const auto r = run.summary_as<RecipeSummary>().recipe;
   std::vector<RunValue> out;
   if (r.onset) out.push_back({"onset of the whole", "", r.onset->value, r.onset->standard_error});
-  if (r.solid_fraction)
-    out.push_back({"solid fraction at the start", "", r.solid_fraction->value, r.solid_fraction->standard_error});
+  const auto add_fraction = [&] {
+    if (r.solid_fraction)
+      out.push_back({"solid fraction at the start", "", r.solid_fraction->value, r.solid_fraction->standard_error});
+  };
   if (r.staged) {
     for (const RecipeStageSummary& s : r.staged->stages) {
       const auto add = [&](const std::string& what, const char* unit, const Estimate& e) {
@@ -275,6 +277,7 @@ std::vector<RunValue> values_of(const report::RunData& run) {
       add("void ratio at the end", "", s.void_ratio.predicted);
       add(s.index_name(), "", s.index.predicted);
     }
+    add_fraction();
     return out;
   }
   for (const RecipeCurve& c : r.curves)
@@ -286,6 +289,7 @@ std::vector<RunValue> values_of(const report::RunData& run) {
     out.push_back({"compressible packing model, K = 4.1", "", r.compressible_model->poured});
     out.push_back({"compressible packing model, K = 9", "", r.compressible_model->vibrated_pressed});
   }
+  add_fraction();
   return out;
 }
 
