@@ -59,8 +59,8 @@ class PressTestMacro : public ::testing::Test {
       law.unloading->residual.value = 0.1;
       law.unloading->exponent.value = 2.8;
     }
-    save_card(card, file("truth.toml"));
-    return file("truth.toml");
+    save_card(card, file("true_law.toml"));
+    return file("true_law.toml");
   }
 
   TemporaryDirectory directory_;
