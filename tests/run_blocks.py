@@ -125,7 +125,7 @@ RULES = [
     (r"\./softgrain run pipelines/macro_vs_resolved\.toml --out results/my_\w+", Check(slow=True, settings=SMALL_COMPARISON)),
     (r"\./softgrain run pipelines/four_decades\.toml", Check()),
     (r"\./softgrain microsim pipelines/powder_\w+\.toml", Check()),
-    (r"\./softgrain law (show|eval|export) .*|\./softgrain schema .*", Run()),
+    (r"\./softgrain law (show|eval|export|get) .*|\./softgrain schema .*", Run()),
     (r"\./softgrain calibrate pipelines/press_test\.csv --set mirror=true", Run()),
     (r"\./softgrain run pipelines/press_test_macro\.toml", Run(("macro.bodies=30", "macro.bands=8"), slow=True)),
     (r"\./softgrain run pipelines/inverse\.toml", Check(slow=True)),
