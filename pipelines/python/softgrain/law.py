@@ -26,6 +26,9 @@ class ThresholdPowerLaw:
     delta: float
     intervals: dict  # parameter: (low, high) at 95 %, of those that the card states
 
+    def __repr__(self):
+        return f"<F = {self.a:.4g} Delta^{self.b:.4g} {self.c:+.3g} from Delta = {self.delta:.4g} on>"
+
 
 @dataclass(frozen=True)
 class PairLaw:
@@ -38,6 +41,9 @@ class PairLaw:
     tangential_secant: ThresholdPowerLaw | None
     delta_min: float
     delta_max: float
+
+    def __repr__(self):
+        return f"<{self.kind} law ({self.status}): {self.normal!r}, measured for {self.delta_min:.3g} to {self.delta_max:.3g}>"
 
 
 def _scalar_or_array(values, shape):
@@ -79,6 +85,9 @@ class Law(Drawn):
         laws = installation.laws()
         file, law = laws.load(os.fspath(path))
         return CardLaw(file, law) if isinstance(law, laws.Card) else TableLaw(file, law)
+
+    def __fspath__(self):  # wherever a law file is asked for
+        return str(self.path)
 
     def __reduce__(self):  # in another process the file is read again
         return Law.load, (str(self.path.resolve()),)
