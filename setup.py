@@ -24,6 +24,17 @@ def build_directory():
     return ROOT / "build" / f"python{sys.version_info[0]}.{sys.version_info[1]}"
 
 
+def copy_scenes(share):
+    """The scenes, and the laws that they name, at their places to each other: what `softgrain examples` finds beside the program."""
+    scenes = [*ROOT.glob("pipelines/*.toml"), *ROOT.glob("pipelines/*.csv"), ROOT / "pipelines/grainlearning_example/soft_particle.toml"]
+    laws = [file for name in ("law.toml", "law_table.toml", "law_table.h5", "cell_law*.toml") for file in ROOT.glob(f"results/*/{name}")
+            if (file.parent / "README.md").is_file()]  # folders without a page are runs of this user
+    for file in [*scenes, *laws]:
+        target = share / file.relative_to(ROOT)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(file, target)
+
+
 class CMakeBuild(build_ext):
     """Runs CMake in place of a compiler; what it needs beside pybind11 is in cmake/packages.txt (./softgrain setup installs it)."""
 
@@ -39,6 +50,7 @@ class CMakeBuild(build_ext):
         built = next((build / "python" / "softgrain").glob("_laws.*.so"))
         shutil.copy2(built, module)
         shutil.copy2(build / "softgrain", module.parent / "bin" / "softgrain")
+        copy_scenes(module.parent / "share" / "softgrain")
 
 
 # What setuptools notes on the way goes where everything that is built goes.

@@ -27,6 +27,8 @@ class SoftgrainError(Exception):
     """Base of all errors here. mistakes: every one that was found, each with file, line, key, allowed values and nearest word as
     far as they are known."""
 
+    status = None  # exit status of the program, where it said one: 2 bad input, 3 not usable, 4 file trouble
+
     def __init__(self, mistakes):
         self.mistakes = tuple(Mistake(m) if isinstance(m, str) else m for m in mistakes)
         super().__init__("\n".join(map(str, self.mistakes)))
@@ -47,15 +49,20 @@ class SoftgrainError(Exception):
 class InputError(SoftgrainError, ValueError):
     """A scene, card or option is wrong: nothing was run."""
 
+    status = 2
+
 
 class UnusableResult(SoftgrainError):
     """It ran, but the result must not be used as it is. run: what was written, None where there is nothing."""
 
+    status = 3
     run = None
 
 
 class IoError(SoftgrainError, OSError):
     """A file could not be read or written, or its content is damaged."""
+
+    status = 4
 
     def __str__(self):  # that of OSError is about errno
         return "\n".join(map(str, self.mistakes))
@@ -63,6 +70,8 @@ class IoError(SoftgrainError, OSError):
 
 class Interrupted(KeyboardInterrupt):
     """A run was stopped: what was computed is saved, and run(..., resume=True) goes on. directory: where."""
+
+    status = 130
 
     def __init__(self, message, directory=None):
         super().__init__(message)

@@ -1,6 +1,7 @@
 """What notebooks show of our objects. matplotlib is loaded when a figure is asked for."""
 import base64
 import io
+from pathlib import Path
 
 
 def new_figure(columns=1, width=5.5, height=4.0):
@@ -21,6 +22,23 @@ def png(figure):
     out = io.BytesIO()
     figure.savefig(out, format="png", dpi=110)
     return out.getvalue()
+
+
+class Picture:
+    """A figure of a report, an SVG file. Notebooks show it; path says where it is."""
+
+    def __init__(self, path):
+        self.path = Path(path)
+
+    def _repr_svg_(self):
+        return self.path.read_text(encoding="utf-8")
+
+    def save(self, path):
+        """Copies the file."""
+        Path(path).write_bytes(self.path.read_bytes())
+
+    def __repr__(self):
+        return f"<picture {self.path}>"
 
 
 class Drawn:

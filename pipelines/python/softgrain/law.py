@@ -26,6 +26,9 @@ class ThresholdPowerLaw:
     delta: float
     intervals: dict  # parameter: (low, high) at 95 %, of those that the card states
 
+    def __repr__(self):
+        return f"<F = {self.a:.4g} Delta^{self.b:.4g} {self.c:+.3g} from Delta = {self.delta:.4g} on>"
+
 
 @dataclass(frozen=True)
 class PairLaw:
@@ -38,6 +41,9 @@ class PairLaw:
     tangential_secant: ThresholdPowerLaw | None
     delta_min: float
     delta_max: float
+
+    def __repr__(self):
+        return f"<{self.kind} law ({self.status}): {self.normal!r}, measured for {self.delta_min:.3g} to {self.delta_max:.3g}>"
 
 
 def _scalar_or_array(values, shape):
@@ -80,6 +86,9 @@ class Law(Drawn):
         file, law = laws.load(os.fspath(path))
         return CardLaw(file, law) if isinstance(law, laws.Card) else TableLaw(file, law)
 
+    def __fspath__(self):  # wherever a law file is asked for
+        return str(self.path)
+
     @staticmethod
     def from_library(out, *, mu, exponent, ratio, solid_fraction, nu=0.3, library=None, own=None):
         """The law table of a material, interpolated between measured ones, written to `out` (.toml) and loaded.
@@ -87,12 +96,12 @@ class Law(Drawn):
         mu: friction of the grains; exponent, ratio: b and rmax/rmin of their sizes, P(r) ~ r^-b; solid_fraction: of the grains in
         their shell; nu: Poisson's ratio. library: another than that of the program; own: a law table of own packings that corrects
         it. InputError, with the measured ranges, for a material outside them; IoError for files."""
-        from softgrain.running import _raise_for, execute
+        from softgrain.running import execute, raise_for
         options = {"--mu": mu, "--exponent": exponent, "--ratio": ratio, "--solid-fraction": solid_fraction, "--nu": nu,
                    "--library": library, "--own": own, "--out": os.fspath(out)}
         ended = execute(["law", "get", *(str(x) for name, value in options.items() if value is not None for x in (name, value))])
         if ended.status != 0:
-            _raise_for(ended, None, None)
+            raise_for(ended)
         return Law.load(out)
 
     def __reduce__(self):  # in another process the file is read again

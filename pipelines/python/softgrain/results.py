@@ -1,20 +1,20 @@
 """Run directories: summary, arrays by name with their units, measurements, macro curves; laws and states through the other modules."""
 import html
 import json
-import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from softgrain.figures import Drawn, new_figure
+from softgrain.figures import Drawn, Picture, new_figure
 from softgrain.hdf5 import is_group, open_file, text_attribute
 from softgrain.law import Law
 from softgrain.snapshot import read_snapshots
+from softgrain.tables import Table, Tabular, joined, read_csv
 
 
-@dataclass(frozen=True)
-class MeasuredRun:
+@dataclass(frozen=True, repr=False)
+class MeasuredRun(Tabular):
     """All points of one packing under one relaxation."""
 
     packing: int
@@ -25,14 +25,31 @@ class MeasuredRun:
     converged: np.ndarray
     tangential: dict  # columns delta, angle [degree], force_parallel [N], force_perpendicular [N], converged
 
+    def table(self):
+        """Normal points: delta (hn/Rs), force [N], converged."""
+        return Table(f"{self.kind} of packing {self.packing}", {"delta": self.delta, "force": self.force, "converged": self.converged},
+                     {"delta": "1", "force": "N"})
 
-@dataclass(frozen=True)
-class Measurements:
+    def __repr__(self):
+        return f"<{self.kind} of packing {self.packing}, {self.relaxation}: {len(self.delta)} points, {len(self.tangential['delta'])} turned>"
+
+
+@dataclass(frozen=True, repr=False)
+class Measurements(Tabular):
     spec: dict  # shell_radius [m], youngs_modulus [Pa], poisson_ratio, friction, ...
     runs: tuple
 
     def select(self, kind, relaxation=None):
         return [r for r in self.runs if r.kind == kind and relaxation in (None, r.relaxation)]
+
+    def table(self):
+        """Normal points of all packings, one a row: kind, packing, relaxation, delta (hn/Rs), force [N], converged."""
+        return joined("measurements", [r.table() for r in self.runs],
+                      [{"kind": r.kind, "packing": r.packing, "relaxation": r.relaxation} for r in self.runs])
+
+    def __repr__(self):
+        kinds = ", ".join(dict.fromkeys(r.kind for r in self.runs))
+        return f"<measurements of {kinds}: {len({r.packing for r in self.runs})} packings, {sum(len(r.delta) for r in self.runs)} points>"
 
 
 def _require(file, path, wanted):
@@ -63,7 +80,7 @@ def read_measurements(path):
         return Measurements(spec, tuple(out))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Quantity:
     """Numbers with their unit, "1" where they have none and "" where the file does not say. np.asarray() gives the numbers."""
 
@@ -80,9 +97,13 @@ class Quantity:
     def __getitem__(self, k):
         return self.values[k]
 
+    def __repr__(self):
+        unit = f" [{self.unit}]" if self.unit not in ("", "1") else ""
+        return f"<{self.name}{unit}: {self.values.dtype} {self.values.shape}>"
 
-@dataclass(frozen=True)
-class MacroCurve:
+
+@dataclass(frozen=True, repr=False)
+class MacroCurve(Tabular):
     engine: str  # "law" or another law's name, "shelled", "free"
     sample: int
     test: str
@@ -92,6 +113,26 @@ class MacroCurve:
 
     def __getitem__(self, name):
         return self.columns[name]
+
+    def table(self):
+        """The columns with one number for each recorded strain, with their units."""
+        shape = self.columns["strain"].shape
+        return Table(f"{self.engine}, sample {self.sample}, {self.test}", 
+                     {k: v for k, v in self.columns.items() if v.shape == shape and "/" not in k},
+                     self.units)
+
+    def __repr__(self):
+        usable = "" if self.usable else ", not usable"
+        return f"<{self.test} curve of {self.engine}, sample {self.sample}: {len(self.columns['strain'])} strains{usable}>"
+
+
+class MacroCurves(list, Tabular):
+    """Curves of a macro run, a list."""
+
+    def table(self):
+        """All of them, one strain a row, with the columns engine, sample, test and usable in front."""
+        return joined("macro curves", [c.table() for c in self],
+                      [{"engine": c.engine, "sample": c.sample, "test": c.test, "usable": c.usable} for c in self])
 
 
 def _data_sets(group):
@@ -113,7 +154,7 @@ def read_macro(path):
     """macro.h5 or macro_SCENE.h5: a list of curves."""
     with open_file(path) as file:
         _require(file, path, "macro curves")
-        curves = []
+        curves = MacroCurves()
         for name in sorted(file["curves"]):
             group = file["curves"][name]
             curves.append(MacroCurve(text_attribute(group, "engine"), int(group.attrs["sample"]),
@@ -129,6 +170,12 @@ def read_summary(path):
     return json.loads((path / "summary.json" if path.is_dir() else path).read_text(encoding="utf-8-sig"))
 
 
+def _named(found, name):
+    if name not in found:
+        raise KeyError(f"{name!r}: not in the report of this run: {', '.join(found) or 'it has no figures'}")
+    return found[name]
+
+
 class Run(Drawn):
     """A run directory. Files are read when they are asked for."""
 
@@ -136,6 +183,9 @@ class Run(Drawn):
         self.directory = Path(directory)
         if not self.directory.is_dir():
             raise FileNotFoundError(f"{directory}: no such run directory")
+
+    def __fspath__(self):  # wherever a run directory is asked for
+        return str(self.directory)
 
     @property
     def summary(self):
@@ -185,9 +235,25 @@ class Run(Drawn):
         """Path of report.html, which is written where it is not there yet."""
         path = self.directory / "report.html"
         if not path.exists():
-            from softgrain import installation
-            subprocess.run([installation.program(), "report", str(self.directory)], check=True, capture_output=True)
+            from softgrain.commands import report
+            report(self)
         return path
+
+    def _of_report(self, folder, ending):
+        self.report()
+        return sorted((self.directory / folder).glob("*" + ending))
+
+    def pictures(self):
+        """The figures of the report by name, Picture objects that a notebook shows; no matplotlib is needed."""
+        return {path.stem: Picture(path) for path in self._of_report("figures", ".svg")}
+
+    def picture(self, name):
+        """One of pictures(). KeyError names what there is."""
+        return _named(self.pictures(), name)
+
+    def curves(self):
+        """The data of those figures by name, as Table objects with units."""
+        return {path.stem: read_csv(path) for path in self._of_report("curves", ".csv")}
 
     def figure(self):
         """What the run is about, as a matplotlib figure: macro curves, else measured forces, else the last state. None for other runs."""

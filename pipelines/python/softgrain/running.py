@@ -24,18 +24,23 @@ from softgrain.results import Run
 from softgrain.toml_text import scene_text, settings
 
 
+def _is_text(scene):
+    """TOML itself and not the name of a file."""
+    return isinstance(scene, str) and "\n" in scene
+
+
 @contextmanager
-def _scene_file(scene):
-    """Path of the scene, and what stands in its lines. A dict goes into a file in the working directory for the while, so that paths
-    in it are relative to that."""
-    if not isinstance(scene, Mapping):
+def scene_file(scene):
+    """Path of the scene, and what stands in its lines (None for a file). A dict or a text goes into a file in the working directory for
+    the while, so that paths in it are relative to that."""
+    if not isinstance(scene, Mapping) and not _is_text(scene):
         yield os.fspath(scene), None
         return
-    text, paths = scene_text(scene)
+    text, paths = (scene, {}) if _is_text(scene) else scene_text(scene)
     try:
         file = tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=".", prefix=".softgrain-", suffix=".toml", delete=False)
     except OSError as e:
-        raise IoError([f"a scene that is a dict needs a file in the working directory: {e}"]) from e
+        raise IoError([f"a scene that is no file needs a file in the working directory: {e}"]) from e
     try:
         with file:
             file.write(text)
@@ -52,14 +57,16 @@ def _kind(scene, overrides):
     if isinstance(scene, Mapping):
         return scene.get("kind")
     try:
+        if _is_text(scene):
+            return tomllib.loads(scene).get("kind")
         return tomllib.loads(Path(scene).read_text(encoding="utf-8-sig")).get("kind")
     except (OSError, ValueError):
         return None
 
 
-def _directory(scene, kind):
-    """results/NAME of the scene, of a dict results/KIND; not a folder with a page that is kept (as the program chooses)."""
-    name = str(kind or "scene") if isinstance(scene, Mapping) else Path(scene).stem
+def run_directory(scene, overrides):
+    """results/NAME of the scene, of a dict or text results/KIND; not a folder with a page that is kept (as the program chooses)."""
+    name = str(_kind(scene, overrides) or "scene") if isinstance(scene, Mapping) or _is_text(scene) else Path(scene).stem
     directory = Path("results") / name
     return directory.with_name(name + "_run") if (directory / "README.md").exists() else directory
 
@@ -205,8 +212,15 @@ def execute(arguments, progress=False):
     return _Ended(child.returncode, _objects(printed[0].decode(errors="replace")), stopped)
 
 
-def _raise_for(ended, given, paths, directory=None):
-    """The exception for a status that is not good."""
+def _remarks(summary):
+    """Why a result is not usable: remarks of a run, reasons of laws that were not determined."""
+    laws = [f"{kind}: {law['status']}: {law['reason']}" for kind, law in (summary.get("laws") or {}).items()
+            if isinstance(law, dict) and law.get("status") != "good" and law.get("reason")] if isinstance(summary.get("laws"), dict) else []
+    return [*(summary.get("remarks") or []), *laws]
+
+
+def raise_for(ended, given=None, paths=None, directory=None):
+    """The exception for a status that is not good. given, paths: of scene_file()."""
     if ended.status == 130 or (ended.stopped and ended.status != 0):
         raise Interrupted("stopped; what was computed is saved" +
                           (f" in {directory}: run(..., resume=True) goes on" if directory else ""), directory)
@@ -214,9 +228,11 @@ def _raise_for(ended, given, paths, directory=None):
     if errors is None:
         how = f"by signal {-ended.status}" if ended.status < 0 else f"with status {ended.status}"
         if ended.status == 3:
-            remarks = next((o.get("remarks") for o in ended.objects), None)
-            raise UnusableResult([f"not usable: {r}" for r in remarks or []] or ["ran, but the result is not usable as it is"])
-        raise SoftgrainError([f"the program ended {how}" + (f"; see {directory}/log.txt" if directory else "")])
+            raise UnusableResult([f"not usable: {r}" for o in ended.objects[:1] for r in _remarks(o)]
+                                 or ["ran, but the result is not usable as it is"])
+        error = SoftgrainError([f"the program ended {how}" + (f"; see {directory}/log.txt" if directory else "")])
+        error.status = ended.status
+        raise error
     error = error_of(ended.status, errors)
     if paths is not None:
         error = type(error)(tuple(_of_dict(m, given, paths) for m in error.mistakes))
@@ -229,6 +245,8 @@ def _of_dict(mistake, given, paths):
     if mistake.file != given:
         return replace(mistake, message=message)
     path = paths.get(mistake.line)
+    if not paths:  # of a text: its line says where
+        return replace(mistake, message=message, file="<scene>")
     return replace(mistake, message=message, file="<scene>", path=path if path and mistake.key in (None, _last(path)) else
                    f"{path}.{mistake.key}" if path and mistake.key else mistake.key)
 
@@ -237,20 +255,35 @@ def _last(path):
     return re.sub(r"\[\d+\]$", "", path.rpartition(".")[2])
 
 
-def _option(name, value):
-    return [] if value is None else [name, str(value)]
+def option(name, value):
+    """An option of the command line, none for None."""
+    return [] if value is None else [name, os.fspath(value) if isinstance(value, os.PathLike) else str(value)]
+
+
+def outcome(ended, directory, unusable, make, given=None, paths=None):
+    """What a command that writes a run directory gives: make(directory). unusable: "raise" or "return"."""
+    if ended.status == 0:
+        return make(directory)
+    try:
+        raise_for(ended, given, paths, directory)
+    except UnusableResult as e:
+        if (directory / "summary.json").exists():
+            e.run = make(directory)
+        if unusable == "raise" or e.run is None:
+            raise
+        return e.run
 
 
 def run(scene, *, set=None, out=None, law=None, threads=None, seed=None, resume=False,  # pylint: disable=redefined-builtin
         bands=None, progress=True, unusable="raise", options=()):
     """Runs a scene and gives what came out, a Run.
 
-    scene: a file, or a dict of its content (numbers, texts with units, lists, dicts; numpy arrays are lists). Paths in a
-    dict are relative to the working directory.
+    scene: a file, a dict of its content (numbers, texts with units, lists, dicts; numpy arrays are lists), or its text (TOML of more
+    than one line). Paths in a dict or text are relative to the working directory.
     set: changes to it, {"packing.count": 4} or {"packing": {"count": 4}}.
     out: run directory; results/NAME of the file, results/KIND of a dict. One that another run has written is written anew, unless
     resume, which goes on there (same scene, seed and law).
-    law, bands: of macro scenes. threads: all cores unless given; results do not depend on it. options: further ones of the command
+    law: of macro scenes, a file, a run that measured it, a Calibration or a Law; bands: draws of it for error bars. threads: all cores unless given; results do not depend on it. options: further ones of the command
     line, ["--law-cache", DIR].
     progress: True shows it, False does not, and a function gets (share, text) as it goes: share from 0 to 1 of what the run is at, None
     with a line of its log. It is called from another thread.
@@ -260,23 +293,13 @@ def run(scene, *, set=None, out=None, law=None, threads=None, seed=None, resume=
     what was computed is saved."""
     if unusable not in ("raise", "return"):
         raise InputError([f'unusable = "{unusable}": must be "raise" or "return"'])
-    kind = _kind(scene, set)
-    directory = Path(out) if out is not None else _directory(scene, kind)
-    with _scene_file(scene) as (file, paths):
-        arguments = ["run", file, "--out", str(directory), *settings(set), *_option("--law", law),
-                     *_option("--threads", threads), *_option("--seed", seed), *_option("--bands", bands),
+    directory = Path(out) if out is not None else run_directory(scene, set)
+    with scene_file(scene) as (file, paths):
+        arguments = ["run", file, "--out", str(directory), *settings(set), *option("--law", law),
+                     *option("--threads", threads), *option("--seed", seed), *option("--bands", bands),
                      *(["--resume"] if resume else []), *map(str, options)]
         ended = execute(arguments, progress)
-        if ended.status == 0:
-            return Run(directory)
-        try:
-            _raise_for(ended, file, paths, directory)
-        except UnusableResult as e:
-            if (directory / "summary.json").exists():
-                e.run = Run(directory)
-            if unusable == "raise" or e.run is None:
-                raise
-            return e.run
+        return outcome(ended, directory, unusable, Run, file, paths)
 
 
 class Findings(Drawn):
@@ -306,7 +329,9 @@ class Findings(Drawn):
     def __str__(self):
         return "\n".join([*self.lines, *(f"warning: {w}" for w in self.warnings)])
 
-    __repr__ = __str__
+    def __repr__(self):
+        cost = "" if self.core_seconds is None else f", about {self.core_seconds:.3g} s on one core"
+        return f"<check of {self.kind or self.facts.get('what', 'a file')}: {len(self.warnings)} warnings{cost}>"
 
     def _repr_html_(self):
         return f"<pre>{html.escape(str(self))}</pre>{self._image()}"
@@ -327,10 +352,10 @@ class Findings(Drawn):
 def check(scene, *, set=None, law=None):  # pylint: disable=redefined-builtin
     """What follows from a scene, a law, a result or a run directory, without running it: Findings. Raises InputError with all mistakes at
     once, IoError."""
-    with _scene_file(scene) as (file, paths):
-        ended = execute(["check", file, *settings(set), *_option("--law", law)])
+    with scene_file(scene) as (file, paths):
+        ended = execute(["check", file, *settings(set), *option("--law", law)])
         if ended.status != 0:
-            _raise_for(ended, file, paths)
+            raise_for(ended, file, paths)
         facts = ended.objects[0]
         if paths is not None:
             for key in ("lines", "warnings"):

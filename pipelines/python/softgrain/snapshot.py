@@ -9,13 +9,14 @@ import numpy as np
 
 from softgrain.figures import Drawn, new_figure
 from softgrain.hdf5 import open_file, text_attribute
+from softgrain.tables import Table, Tabular
 
 KINDS = ("particles", "soft-particle", "macro", "twin", "powder", "grain-box")
 ROLES = ("solid", "soft", "inner")
 
 
-@dataclass
-class Contacts:
+@dataclass(repr=False)
+class Contacts(Tabular):
     """pair (C, 2): indices i of a particle and j of a particle or, from len(radius) on, of a wall; force on i."""
 
     pair: np.ndarray
@@ -28,9 +29,19 @@ class Contacts:
     def __len__(self):
         return len(self.pair)
 
+    def table(self):
+        """One contact a row: first, second (as in pair), normal_force [N], force_x.. on the first [N], point_x.. [m]."""
+        vectors = {f"{name}_{'xyz'[k]}": values[:, k] for name, values in (("force", self.force), ("point", self.point)) for k in range(3)}
+        units = {name: "N" if name.startswith("force") else "m" for name in vectors}
+        return Table("contacts", {"first": self.pair[:, 0], "second": self.pair[:, 1], "normal_force": self.normal_force, **vectors},
+                     {**units, "normal_force": "N"})
+
+    def __repr__(self):
+        return f"<{len(self)} contacts>"
+
 
 @dataclass(repr=False)
-class Snapshot(Drawn):
+class Snapshot(Drawn, Tabular):
     kind: str
     series: str
     label: str
@@ -51,6 +62,16 @@ class Snapshot(Drawn):
     def __repr__(self):
         contacts = "" if self.contacts is None else f", {len(self.contacts)} contacts"
         return f"<{self.label}: {len(self.radius)} particles{contacts}>"
+
+    def table(self):
+        """One particle a row: x, y, z and radius [m], role ("solid", "soft", "inner"), body, velocity [m/s] where it was kept."""
+        columns = {**{"xyz"[k]: self.position[:, k] for k in range(3)}, "radius": self.radius,
+                   "role": np.array(ROLES)[np.asarray(self.role, dtype=int)], "body": self.body}
+        units = dict.fromkeys(("x", "y", "z", "radius"), "m")
+        for k in range(0 if self.velocity is None else 3):
+            columns[f"velocity_{'xyz'[k]}"] = self.velocity[:, k]
+            units[f"velocity_{'xyz'[k]}"] = "m/s"
+        return Table(self.label, columns, units)
 
     def figure(self, along=2):
         """The state seen along an axis (0, 1, 2), lines between touching grains as thick as their force: a matplotlib figure."""

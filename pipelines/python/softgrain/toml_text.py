@@ -1,8 +1,8 @@
 """A scene that is a dict, as TOML; the standard library reads that and does not write it."""
 import json
+import os
 import re
 from collections.abc import Mapping, Sequence
-from pathlib import PurePath
 
 import numpy as np
 
@@ -47,8 +47,8 @@ def value_text(value, path="value"):
         return str(value)
     if isinstance(value, float):
         return repr(value) if np.isfinite(value) else {"inf": "inf", "-inf": "-inf", "nan": "nan"}[repr(value)]
-    if isinstance(value, (str, PurePath)):
-        return _quoted(str(value))
+    if isinstance(value, (str, os.PathLike)):
+        return _quoted(os.fspath(value))
     if isinstance(value, Mapping):
         return "{ " + ", ".join(f"{_key(str(k))} = {value_text(v, f'{path}.{k}')}" for k, v in value.items()) + " }"
     if isinstance(value, Sequence) and not isinstance(value, (bytes, bytearray)):
