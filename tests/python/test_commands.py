@@ -9,8 +9,8 @@ from support import ROOT, InEmptyFolder, softgrain, two_beads
 
 NOTEBOOK = ROOT / "pipelines/python/student.ipynb"
 # The student's way in seconds: few coarse grains, few bodies. Laws of so few packings are not to be relied on, and say so.
-QUICKLY = (('"polydispersity": 10.0', '"polydispersity": 3.0'), ('"trials": 10000', '"trials": 100'), ('"slow-dynamics"', '"least-work"'),
-           ('"bodies": 40', '"bodies": 10'), ('"strain": 0.16, "steps": 8', '"strain": 0.3, "steps": 3'))
+QUICKLY = (('"polydispersity": 10.0', '"polydispersity": 5.0'), ('"trials": 10000', '"trials": 1000'), ('"slow-dynamics"', '"least-work"'),
+           ("0.3, 0.35, 0.4]  #", "0.3, 0.35, 0.4, 0.5, 0.6, 0.7]  #"), ('"bodies": 40', '"bodies": 10'), ('"strain": 0.16, "steps": 8', '"strain": 0.3, "steps": 3'))
 
 
 def cells():

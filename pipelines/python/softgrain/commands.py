@@ -47,7 +47,7 @@ class Calibration(Run, Tabular):
                 rows.append({"kind": kind, "status": law["status"], "parameter": name, "value": law["normal"][name], "low": low,
                              "high": high, "standard_error": law["normal"].get(f"{name}_standard_error"),
                              "unit": law["normal"].get("unit", "N") if name in ("a", "c") else "1"})
-        return records("law", rows)
+        return records("law", rows, columns=("kind", "status", "parameter", "value", "low", "high", "standard_error", "unit"))
 
     def __repr__(self):
         laws = ", ".join(f"{kind} ({law['status']})" for kind, law in self.laws.items())

@@ -76,16 +76,17 @@ def _cell(value):
     return f"{value:.6g}" if isinstance(value, (float, np.floating)) else str(value)
 
 
-def records(name, rows, units=None):
-    """A table of dicts, one a row. What a row does not have, or has as None, is NaN in a column of numbers and "" in one of words."""
-    keys = list(dict.fromkeys(key for row in rows for key in row))
-    columns = {}
+def records(name, rows, units=None, columns=()):
+    """A table of dicts, one a row. What a row does not have, or has as None, is NaN in a column of numbers and "" in one of words.
+    columns: those that are there without rows too."""
+    keys = list(dict.fromkeys([*columns, *(key for row in rows for key in row)]))
+    filled = {}
     for key in keys:
         values = [row.get(key) for row in rows]
         words = any(isinstance(v, str) for v in values)
         whole = all(isinstance(v, (int, np.integer)) for v in values)
-        columns[key] = values if whole else [("" if words else np.nan) if v is None else (str(v) if words else v) for v in values]
-    return Table(name, columns, units)
+        filled[key] = values if whole else [("" if words else np.nan) if v is None else (str(v) if words else v) for v in values]
+    return Table(name, filled, units)
 
 
 def joined(name, tables, labels):
