@@ -543,10 +543,11 @@ PairedSummary RecipePair::summary() const {
   PairedSummary out;
   out.paired = true;
   const std::size_t same = shared_.size() - shared_.count(kSheared);
-  out.method =
-      fmt::format("{} of {} packings are the same in both{}; {:.3g} % of the solid volume have another size", same,
-                  pairs_.size(), same < pairs_.size() ? ", what others lie off their rods is shared" : "",
-                  100.0 * moved_share(joined(a_.scene.levels, 0, levels), joined(b_.scene.levels, 0, levels)));
+  out.method = fmt::format(
+      "{} of {} packings are the same in both{}; {:.3g} % of the solid volume have another size; differences "
+      "are by one fit to the packings of both, so they are not quite those of the values",
+      same, pairs_.size(), same < pairs_.size() ? ", what others lie off their rods is shared" : "",
+      100.0 * moved_share(joined(a_.scene.levels, 0, levels), joined(b_.scene.levels, 0, levels)));
   out.numbers.push_back(number("solid fraction at the start", *a.solid_fraction, *b.solid_fraction,
                                difference(of_a, of_b, fraction, fraction)));
   const PairedNumber ratio = ratio_difference();
