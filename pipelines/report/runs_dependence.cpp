@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "pipelines/report/html.h"
@@ -59,6 +60,14 @@ bool asks_for_logarithm(const std::vector<Quantity>& values) {
   return low > 0.0 && high >= kDecade * low;
 }
 
+/// Numbers of the values from the smallest to the largest: lines go along the axis, in whatever order runs were made.
+std::vector<std::size_t> ascending(const std::vector<Quantity>& values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t v) { return values[v].value; });
+  return order;
+}
+
 /// What a point has in the other keys.
 std::string others_of(const SetSummary& set, const PointEntry& point, const std::string& key) {
   auto values = point.values;
@@ -79,7 +88,7 @@ std::string dependence_figure(const SetSummary& set, const SweptKey& key, const 
                    .scale = asks_for_logarithm(values) ? Scale::logarithmic : Scale::linear},
              .y = {.label = with_unit(number.name, si ? prefix.symbol + number.unit : number.unit)}});
   std::vector<Series> lines;
-  for (std::size_t v = 0; v < key.values.size(); ++v)
+  for (const std::size_t v : ascending(values))
     for (const PointEntry& point : set.points) {
       const NumberOverRuns* n = find(point, number.name);
       if (n == nullptr || !std::isfinite(n->mean) || point.values.at(key.key) != key.values[v]) continue;

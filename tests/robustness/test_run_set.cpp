@@ -2,9 +2,11 @@
 // run that failed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <sstream>
 
 #include "common/io/file_safety.h"
 #include "common/io/text_file.h"
@@ -397,6 +399,22 @@ TEST_F(RunSet, ASearchAddsRoundsAndRepeatsNoRunWhenItGoesOn) {
   EXPECT_TRUE(first["search"]["usable"].get<bool>());
   EXPECT_TRUE(fs::exists(file("found") + "/search.csv"));
   EXPECT_NE(read_text(file("found") + "/report.html").find("Optimum"), std::string::npos);
+  // Figures over the key go along it, in whatever order rounds came.
+  std::istringstream curve(read_text(file("found") + "/curves/lateral-over-axial-stress-at-the-end.csv"));
+  std::string line;
+  std::getline(curve, line);
+  const std::size_t key = line.find("macro.wall_mu");
+  ASSERT_NE(key, std::string::npos) << line;
+  const auto column = std::count(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(key), ',');
+  std::vector<double> along;
+  while (std::getline(curve, line)) {
+    std::istringstream fields(line);
+    std::string field;
+    for (std::ptrdiff_t k = 0; k <= column; ++k) std::getline(fields, field, ',');
+    along.push_back(std::stod(field));
+  }
+  EXPECT_EQ(along.size(), 6U);
+  EXPECT_TRUE(std::is_sorted(along.begin(), along.end()));
   const fs::file_time_type before = fs::last_write_time(file("found") + "/wall_mu=0/summary.json");
   expect(program("sweep", asked + "--points 7 --resume"), 0);
   const json second = summary_of(file("found"));
