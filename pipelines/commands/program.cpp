@@ -97,6 +97,11 @@ CLI::Validator whole_number(const char* option, std::int64_t low, std::int64_t h
           "", "whole number"};
 }
 
+CLI::Validator name_of_result() {
+  return {[](const std::string& text) -> std::string { return text.empty() ? "needs the name of a result" : ""; }, "",
+          "name of a result"};
+}
+
 /// Options that are of use to some of the commands only: no other knows them, so that its help shows its own alone.
 void add_options_of_runs(CLI::App& app, const Command& command, CommonOptions& o) {
   if (command.writes)
@@ -150,8 +155,11 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
            "--maximise", o.maximise,
            "Searches the ranges of one or two keys, --over KEY=LOW..HIGH, for the largest value of this result: "
            "--maximise \"solid fraction\"")
-        ->option_text("RESULT");
-    app.add_option("--minimise", o.minimise, "The same for the smallest value")->option_text("RESULT");
+        ->option_text("RESULT")
+        ->check(name_of_result());
+    app.add_option("--minimise", o.minimise, "The same for the smallest value")
+        ->option_text("RESULT")
+        ->check(name_of_result());
     app.add_option("--points", o.points, "Points of a search; default 9, with two keys 18")
         ->option_text("N")
         ->transform(whole_number("--points", 1, kMostSearchPoints));
@@ -216,8 +224,9 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
                    "Macro scenes: error bars from so many draws of the law; default as the scene says (none)")
         ->option_text("N")
         ->check(CLI::Range(8, 100000).description(""));
-    app.add_option("--law", o.law,
-                   "Macro scenes: law card, law table or press test (.csv) of the soft particles; default as the scene says")
+    app.add_option(
+           "--law", o.law,
+           "Macro scenes: law card, law table or press test (.csv) of the soft particles; default as the scene says")
         ->option_text("LAW");
   }
 }

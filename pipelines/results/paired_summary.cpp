@@ -55,6 +55,20 @@ PairedNumber paired_number(const std::string& name, const std::string& unit, con
           .pairs = static_cast<std::int64_t>(a.size())};
 }
 
+Estimate difference_of_means(const std::vector<double>& a, const std::vector<double>& b) {
+  const MeanError of_a = mean_error(a);
+  const MeanError of_b = mean_error(b);
+  const double difference = of_a.mean - of_b.mean;
+  if (of_a.n < 2 || of_b.n < 2) return student_estimate(difference, kInfinity, 0.0);
+  const double square_a = of_a.error * of_a.error;
+  const double square_b = of_b.error * of_b.error;
+  const double sum = square_a + square_b;
+  const double parts =
+      square_a * square_a / static_cast<double>(of_a.n - 1) + square_b * square_b / static_cast<double>(of_b.n - 1);
+  const double degrees = parts > 0.0 ? sum * sum / parts : static_cast<double>(of_a.n + of_b.n - 2);
+  return student_estimate(difference, std::sqrt(sum), degrees);
+}
+
 PairedNumber unpaired_number(const std::string& name, const std::string& unit, const Estimate& a, const Estimate& b) {
   const double error = std::hypot(a.standard_error, b.standard_error);
   const double difference = a.value - b.value;

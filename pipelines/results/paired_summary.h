@@ -65,6 +65,11 @@ void fields(auto&& visit, Of<PairedSummary> auto& s) {
 PairedNumber paired_number(const std::string& name, const std::string& unit, const std::vector<double>& a,
                            const std::vector<double>& b);
 
+/// Mean of `a` less mean of `b`, independent samples, with Welch's interval: degrees of freedom
+///   (s_a + s_b)^2/(s_a^2/(n_a - 1) + s_b^2/(n_b - 1)), s the squared standard error of a mean
+/// (Welch 1947, doi:10.1093/biomet/34.1-2.28). Of fewer than two samples of either the error is infinite.
+Estimate difference_of_means(const std::vector<double>& a, const std::vector<double>& b);
+
 /// a - b of two independent values; the interval is normal.
 PairedNumber unpaired_number(const std::string& name, const std::string& unit, const Estimate& a, const Estimate& b);
 

@@ -153,6 +153,14 @@ TEST(RecipeRun, ReachesTheStressesOfItsStagesAndGivesModuliInPascal) {
   EXPECT_NE(checked.output.find("axial stresses: from 50 Pa, oedometric to 1 kPa, unload to 200 Pa, reload to 1 kPa"),
             std::string::npos)
       << checked.output;
+  // Two such recipes: stages by their own stresses, in Pa.
+  const std::string other = run_tiny(directory, "other", "--set grains.ratio=2.1");
+  const ProgramOutcome compared =
+      run_the_program("compare '" + out + "' '" + other + "' --out '" + directory.file("c") + "'");
+  EXPECT_EQ(compared.status, 0) << compared.output;
+  const std::string differences = read_text(directory.file("c") + "/differences.csv");
+  for (const char* name : {"solid fraction at the start", "\"constrained modulus, oedometric\",Pa", "\"Cs, unload\""})
+    EXPECT_NE(differences.find(name), std::string::npos) << name << "\n" << differences;
 }
 
 }  // namespace

@@ -422,6 +422,8 @@ TEST_F(RunSet, ASearchAddsRoundsAndRepeatsNoRunWhenItGoesOn) {
   for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(second["runs"][k]["numbers"], first["runs"][k]["numbers"]) << k;
   EXPECT_EQ(fs::last_write_time(file("found") + "/wall_mu=0/summary.json"), before);
   expect(program("sweep", asked + "--jobs 2"), 2, {"--maximise: goes without --jobs"});
+  expect(program("sweep", "--over macro.wall_mu=0.0..0.4 --maximise ''"), 2,
+         {"--maximise: needs the name of a result"});
 }
 
 TEST_F(RunSet, ComparisonsSayFirstWhatDiffersAndMakeNoDirectoryUnasked) {

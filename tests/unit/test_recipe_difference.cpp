@@ -62,6 +62,18 @@ TEST(PairedNumber, IndependentErrorsAddInSquares) {
   EXPECT_EQ(n.pairs, 0);
 }
 
+TEST(DifferenceOfMeans, HasTheDegreesOfWelch) {
+  // Equal scatter: those of both together. 2 and 2 samples with squared errors 1 and 1.
+  const Estimate equal = difference_of_means({1.0, 3.0}, {0.0, 2.0});
+  EXPECT_NEAR(equal.value, 1.0, 1e-12);
+  EXPECT_NEAR(equal.standard_error, std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(equal.high - equal.value, 4.302653 * std::sqrt(2.0), 1e-5);  // two degrees
+  // All scatter in one: its degrees alone.
+  const Estimate one = difference_of_means({1.0, 3.0}, {5.0, 5.0, 5.0, 5.0});
+  EXPECT_NEAR(one.high - one.value, 12.706205, 1e-5);  // one degree, an error of 1
+  EXPECT_FALSE(std::isfinite(difference_of_means({1.0}, {5.0, 6.0}).high));
+}
+
 TEST(PairedSummaryText, SaysThreeNumbersAndHowTheyWerePaired) {
   PairedSummary s;
   s.reason = "the runs differ in seed";

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "common/core/few_samples.h"
 #include "common/core/text.h"
 #include "common/data/macro_result.h"
 #include "macrosim/body_contacts.h"
@@ -81,14 +82,19 @@ PairedNumber difference_of(const NumberOfCurve& number, const std::string& of, c
   const std::string name = number.name + of;
   const PairedSamples samples = samples_of(number, a, b);
   if (paired) return paired_number(name, "", samples.a, samples.b);
-  const auto mean_of = [&](const std::vector<MacroCurve>& curves) {
+  const auto values_of = [&](const std::vector<MacroCurve>& curves) {
     std::vector<double> values;
     for (const MacroCurve& c : curves)
       if (const auto value = number.of(c); c.usable && value) values.push_back(*value);
-    const MeanError m = mean_error(values);
-    return Estimate{m.mean, m.error, kNaN, kNaN};
+    return values;
   };
-  return unpaired_number(name, "", mean_of(a), mean_of(b));
+  const std::vector<double> of_a = values_of(a);
+  const std::vector<double> of_b = values_of(b);
+  PairedNumber out = unpaired_number(name, "", mean_estimate(mean_error(of_a)), mean_estimate(mean_error(of_b)));
+  const Estimate d = difference_of_means(of_a, of_b);
+  out.low = d.low;
+  out.high = d.high;
+  return out;
 }
 
 }  // namespace

@@ -22,6 +22,7 @@
 #include "pipelines/kinds/recipe/law.h"
 #include "pipelines/kinds/recipe/onset.h"
 #include "pipelines/kinds/recipe/run.h"
+#include "pipelines/kinds/recipe/stages.h"
 
 namespace softgrain {
 
@@ -139,6 +140,21 @@ using NumberOf = std::function<double(double onset, double modulus, double expon
 constexpr auto kMeanDraw = static_cast<std::size_t>(-1);
 double onset_itself(double onset, double /*modulus*/, double /*exponent*/, std::size_t /*draw*/) { return onset; }
 
+/// Numbers of the stages that both have, with the errors of independent runs; nothing without [[stage]].
+std::vector<PairedNumber> stage_numbers(const RecipeOutcome& a, const RecipeOutcome& b) {
+  std::vector<PairedNumber> out;
+  if (!a.staged || !b.staged) return out;
+  const std::size_t stages = std::min(a.staged->stages.size(), b.staged->stages.size());
+  for (std::size_t k = 0; k < stages; ++k) {
+    const std::vector<StageQuantity> of_a = quantities_of(a.staged->stages[k]);
+    const std::vector<StageQuantity> of_b = quantities_of(b.staged->stages[k]);
+    for (std::size_t q = 0; q < of_a.size(); ++q)
+      if (of_a[q].name == of_b[q].name && std::isfinite(of_a[q].value.value) && std::isfinite(of_b[q].value.value))
+        out.push_back(unpaired_number(of_a[q].name, of_a[q].unit, of_a[q].value, of_b[q].value));
+  }
+  return out;
+}
+
 /// What both mixes come to by one fit.
 class RecipePair {
  public:
@@ -192,6 +208,8 @@ class RecipePair {
                                         double ratio_error) const;
   [[nodiscard]] std::optional<PairedNumber> modulus_difference(const ByBoth& a, const ByBoth& b,
                                                                double ratio_error) const;
+  void add_loading(const RecipeOutcome& a, const RecipeOutcome& b, const ByBoth& of_a, const ByBoth& of_b,
+                   PairedSummary& out) const;
   void add_check(std::vector<PairedNumber>& out) const;
 
   MixRun a_;
@@ -439,13 +457,11 @@ PairedNumber RecipePair::ratio_difference() const {
   PairedNumber out = unpaired_number("lateral over axial stress at the end (K0)", "", a, b);
   const std::vector<double> of_a = end_ratios(a_);
   const std::vector<double> of_b = end_ratios(b_);
-  const auto degrees = static_cast<double>(of_a.size() + of_b.size()) - 2.0;
   if (of_a.size() < 2 || of_b.size() < 2) return out;
-  const double error = of_a == of_b ? 0.0 : std::hypot(mean_error(of_a).error, mean_error(of_b).error);
-  const Estimate d = student_estimate(out.difference, error, degrees);
+  const Estimate d = of_a == of_b ? Estimate{0.0, 0.0, 0.0, 0.0} : difference_of_means(of_a, of_b);
   out.error = d.standard_error;
-  out.low = d.low;
-  out.high = d.high;
+  out.low = out.difference + (d.low - d.value);
+  out.high = out.difference + (d.high - d.value);
   return out;
 }
 
@@ -530,6 +546,20 @@ void RecipePair::add_check(std::vector<PairedNumber>& out) const {
                        b->predicted.onset, difference(of_a, of_b, onset_itself, onset_itself)));
 }
 
+/// Modulus and K0: of stages as of independent runs, since their curves are those of packings and not of one fit.
+void RecipePair::add_loading(const RecipeOutcome& a, const RecipeOutcome& b, const ByBoth& of_a, const ByBoth& of_b,
+                             PairedSummary& out) const {
+  if (a.staged || b.staged) {
+    for (PairedNumber& n : stage_numbers(a, b)) out.numbers.push_back(std::move(n));
+    out.method += "; numbers of stages have the errors of independent runs";
+    return;
+  }
+  const PairedNumber ratio = ratio_difference();
+  if (auto modulus = modulus_difference(of_a, of_b, std::isfinite(ratio.error) ? ratio.error : 0.0))
+    out.numbers.push_back(*modulus);
+  out.numbers.push_back(ratio);
+}
+
 PairedSummary RecipePair::summary() const {
   const RecipeOutcome& a = a_.summary.recipe;
   const RecipeOutcome& b = b_.summary.recipe;
@@ -550,10 +580,7 @@ PairedSummary RecipePair::summary() const {
       100.0 * moved_share(joined(a_.scene.levels, 0, levels), joined(b_.scene.levels, 0, levels)));
   out.numbers.push_back(number("solid fraction at the start", *a.solid_fraction, *b.solid_fraction,
                                difference(of_a, of_b, fraction, fraction)));
-  const PairedNumber ratio = ratio_difference();
-  if (auto modulus = modulus_difference(of_a, of_b, std::isfinite(ratio.error) ? ratio.error : 0.0))
-    out.numbers.push_back(*modulus);
-  out.numbers.push_back(ratio);
+  add_loading(a, b, of_a, of_b, out);
   out.numbers.push_back(
       number("onset of the whole", *a.onset, *b.onset, difference(of_a, of_b, onset_itself, onset_itself)));
   for (std::size_t k = 1; k < levels; ++k)
@@ -572,18 +599,19 @@ PairedSummary independent_summary(const RecipeOutcome& a, const RecipeOutcome& b
   out.reason = reason;
   if (a.solid_fraction && b.solid_fraction)
     out.numbers.push_back(unpaired_number("solid fraction at the start", "", *a.solid_fraction, *b.solid_fraction));
-  const auto modulus = [](const RecipeOutcome& r) -> const SecantModulus* {
-    return r.curves.empty() || !r.curves.front().modulus ? nullptr : &*r.curves.front().modulus;
+  for (PairedNumber& n : stage_numbers(a, b)) out.numbers.push_back(std::move(n));
+  const bool staged = a.staged || b.staged;
+  const auto modulus = [&](const RecipeOutcome& r) -> const SecantModulus* {
+    return staged || r.curves.empty() || !r.curves.front().modulus ? nullptr : &*r.curves.front().modulus;
   };
   if (modulus(a) != nullptr && modulus(b) != nullptr)
     out.numbers.push_back(unpaired_number("constrained modulus over E, material law, each between its own stresses", "",
                                           with_relative_error(modulus(a)->value, a.curves.front()),
                                           with_relative_error(modulus(b)->value, b.curves.front())));
-  if (a.onset && b.onset) {
+  if (a.onset && b.onset && !staged)
     out.numbers.push_back(
         unpaired_number("lateral over axial stress at the end (K0)", "", a.lateral_ratio, b.lateral_ratio));
-    out.numbers.push_back(unpaired_number("onset of the whole", "", *a.onset, *b.onset));
-  }
+  if (a.onset && b.onset) out.numbers.push_back(unpaired_number("onset of the whole", "", *a.onset, *b.onset));
   return out;
 }
 

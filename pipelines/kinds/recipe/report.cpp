@@ -11,6 +11,7 @@
 #include "pipelines/kinds/recipe/compressible_model.h"
 #include "pipelines/kinds/recipe/difference.h"
 #include "pipelines/kinds/recipe/run.h"
+#include "pipelines/kinds/recipe/stages.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/run_data.h"
@@ -263,21 +264,19 @@ std::vector<RunValue> values_of(const report::RunData& run) {
   const auto r = run.summary_as<RecipeSummary>().recipe;
   std::vector<RunValue> out;
   if (r.onset) out.push_back({"onset of the whole", "", r.onset->value, r.onset->standard_error});
-  const auto add_fraction = [&] {
+  const auto add_packing = [&] {
+    if (r.compressible_model) {
+      out.push_back({"compressible packing model, K = 4.1", "", r.compressible_model->poured});
+      out.push_back({"compressible packing model, K = 9", "", r.compressible_model->vibrated_pressed});
+    }
     if (r.solid_fraction)
       out.push_back({"solid fraction at the start", "", r.solid_fraction->value, r.solid_fraction->standard_error});
   };
   if (r.staged) {
-    for (const RecipeStageSummary& s : r.staged->stages) {
-      const auto add = [&](const std::string& what, const char* unit, const Estimate& e) {
-        if (std::isfinite(e.value)) out.push_back({what + ", " + s.name, unit, e.value, e.standard_error});
-      };
-      add("constrained modulus", "Pa", s.secant.predicted);
-      add("K0 at the end", "", s.lateral_ratio.predicted);
-      add("void ratio at the end", "", s.void_ratio.predicted);
-      add(s.index_name(), "", s.index.predicted);
-    }
-    add_fraction();
+    for (const RecipeStageSummary& s : r.staged->stages)
+      for (const StageQuantity& q : quantities_of(s))
+        if (std::isfinite(q.value.value)) out.push_back({q.name, q.unit, q.value.value, q.value.standard_error});
+    add_packing();
     return out;
   }
   for (const RecipeCurve& c : r.curves)
@@ -285,11 +284,7 @@ std::vector<RunValue> values_of(const report::RunData& run) {
   for (const RecipeCurve& c : r.curves)
     if (c.modulus) out.push_back({"constrained modulus over E, " + c.name, "", c.modulus->value});
   if (r.onset) out.push_back({"K0 at the end", "", r.lateral_ratio.value, r.lateral_ratio.standard_error});
-  if (r.compressible_model) {
-    out.push_back({"compressible packing model, K = 4.1", "", r.compressible_model->poured});
-    out.push_back({"compressible packing model, K = 9", "", r.compressible_model->vibrated_pressed});
-  }
-  add_fraction();
+  add_packing();
   return out;
 }
 

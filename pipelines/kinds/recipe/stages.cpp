@@ -288,6 +288,14 @@ RecipeCurve curve_of_stages(const RecipeStages& stages, double modulus) {
   return out;
 }
 
+std::vector<StageQuantity> quantities_of(const RecipeStageSummary& s) {
+  const std::string of = ", " + s.name;
+  return {{"constrained modulus" + of, "Pa", s.secant.predicted},
+          {"K0 at the end" + of, "", s.lateral_ratio.predicted},
+          {"void ratio at the end" + of, "", s.void_ratio.predicted},
+          {s.index_name() + of, "", s.index.predicted}};
+}
+
 TextTable stages_table(const RecipeStages& stages) {
   TextTable t{{"stage", "axial [Pa]", "lateral [Pa]", "strain", "strain_low", "strain_high", "K0", "K0_low", "K0_high",
                "void_ratio", "void_ratio_low", "void_ratio_high"},

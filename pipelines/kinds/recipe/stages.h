@@ -63,6 +63,16 @@ ResponseShape shape_of_stages(const RecipeStages& stages);
 /// Strain and stresses over E, for the curves that laws of the coarsest level are set beside.
 RecipeCurve curve_of_stages(const RecipeStages& stages, double modulus);
 
+/// What stages are compared and swept by.
+struct StageQuantity {
+  std::string name;  ///< with that of its stage: "K0 at the end, unload"
+  const char* unit;  ///< empty: a plain number
+  Estimate value;
+};
+
+/// Constrained modulus [Pa], K0, void ratio and Cc or Cs of a stage.
+std::vector<StageQuantity> quantities_of(const RecipeStageSummary& stage);
+
 /// One row per recorded point: stresses in Pa, everything with its interval.
 TextTable stages_table(const RecipeStages& stages);
 
