@@ -1,6 +1,8 @@
 """The commands beside run and check: what they give, what they refuse, and the student's way of the guide from end to end."""
 import json
+import types
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import numpy as np
@@ -56,6 +58,52 @@ class CommandsTest(InEmptyFolder):
         self.assertTrue(softgrain.report(run).exists())
         with self.assertRaises(softgrain.InputError):
             softgrain.export(run, "vtb", out="none")
+
+    def test_compare(self):
+        runs = [softgrain.run(two_beads(time={"end": end}), out=name, progress=False) for name, end in (("a", 3e-4), ("b", 2e-4), ("c", 1e-4))]
+        two = softgrain.compare(*runs[:2])
+        self.assertEqual([(one["key"], list(map(float, one["values"]))) for one in two.differences], [("time.end", [3e-4, 2e-4])])
+        force = two.numbers()["largest force of a contact"]
+        self.assertAlmostEqual(force[0], runs[0].summary["contacts"][0]["max_force"], delta=1e-9 * force[0])
+        self.assertIn("a with ", repr(two))
+        self.assertIn("differ in 1 keys", repr(two))
+        self.assertEqual((two.table().rows, two.directory), (0, None))
+        several = softgrain.compare(*runs, out="compared")
+        self.assertEqual(list(several.numbers()["name"]), ["a", "b", "c"])
+        self.assertIn("of a, b with ", repr(several))
+        self.assertTrue(several.directory.is_dir())
+        with self.assertRaises(softgrain.InputError):
+            softgrain.compare()
+        with self.assertRaises(softgrain.IoError):
+            softgrain.compare("absent", "a")
+
+    def test_wrong_arguments_are_refused_before_any_work(self):
+        for wrong in (3, ["x"], [1.5]):
+            with self.assertRaisesRegex(softgrain.InputError, "seeds = .*whole numbers"):
+                softgrain.sweep(two_beads(), seeds=wrong, out="wrong", progress=False)
+        with self.assertRaisesRegex(softgrain.InputError, "unusable"):
+            softgrain.sweep(two_beads(), {"time.end": [1e-4]}, out="wrong", progress=False, unusable="drop")
+        with self.assertRaisesRegex(softgrain.InputError, "unusable"):
+            softgrain.calibrate(ROOT / "pipelines/press_test.csv", out="wrong", unusable="drop")
+        self.assertFalse(Path("wrong").exists())
+
+    def test_examples(self):
+        self.assertIn("quickstart", softgrain.examples()["name"])
+        self.assertEqual(softgrain.check(softgrain.example("quickstart")).kind, "pipeline")
+        self.assertEqual(softgrain.check(softgrain.example("quickstart", "mine.toml")).kind, "pipeline")
+        with self.assertRaisesRegex(softgrain.InputError, "is there already"):
+            softgrain.example("quickstart", "mine.toml")
+        with self.assertRaises(softgrain.InputError) as refused:
+            softgrain.example("quickstrt")
+        self.assertEqual((refused.exception.nearest, refused.exception.status), ("quickstart", 2))
+
+    def test_what_pandas_is_given(self):
+        """By a stand-in, as most machines of the tests have none: the columns by name and the units."""
+        pandas = types.SimpleNamespace(DataFrame=lambda columns: types.SimpleNamespace(columns=columns, attrs={}))
+        with unittest.mock.patch.dict("sys.modules", pandas=pandas):
+            frame = softgrain.Table("t", {"x": [1.0, 2.0], "word": ["a", "b"]}, {"x": "m"}).dataframe()
+        self.assertEqual((list(frame.columns), frame.attrs["units"]), (["x", "word"], {"x": "m", "word": ""}))
+        np.testing.assert_array_equal(frame.columns["x"], [1.0, 2.0])
 
     def test_tables_need_no_pandas(self):
         table = softgrain.Table("t", {"x": [1.0, 2.0], "word": ["a", "b"]}, {"x": "m"})

@@ -1,12 +1,14 @@
 """The commands of the program beside `run` and `check`: calibrate, sweep, compare, export, report. Results are read from what the
 program writes as JSON, never from its texts."""
+import difflib
+import operator
 import os
 from collections.abc import Mapping
 from pathlib import Path
 
-from softgrain.errors import InputError
+from softgrain.errors import InputError, Mistake
 from softgrain.results import Run
-from softgrain.running import execute, option, outcome, raise_for, run_directory, scene_file
+from softgrain.running import execute, option, outcome, raise_for, require_unusable, run_directory, scene_file
 from softgrain.tables import Tabular, records
 from softgrain.toml_text import settings, value_text
 
@@ -78,6 +80,7 @@ def calibrate(*data, set=None, out=None, kind=None, radius=None, modulus=None, s
     Raises InputError, IoError; UnusableResult where no law could be determined (its `run` is the Calibration)."""
     if not data:
         raise InputError(["calibrate: no data: give a run that measured, or files"])
+    require_unusable(unusable)
     first = Path(os.fspath(data[0]))
     if first.is_dir():
         first = first.with_name(first.resolve().name + "_law.h5")
@@ -158,7 +161,10 @@ def _seeds(seeds):
         return seeds
     if isinstance(seeds, range) and seeds.step == 1 and len(seeds):
         return f"{seeds.start}..{seeds.stop - 1}"
-    return ",".join(str(int(s)) for s in seeds)
+    try:
+        return ",".join(str(operator.index(s)) for s in seeds)
+    except TypeError as e:
+        raise InputError([f'seeds = {seeds!r:.60}: must be a range, a list of whole numbers or a text such as "1..8"']) from e
 
 
 def sweep(scene, over=None, *, seeds=None, sample=None, jobs=None, set=None, out=None,  # pylint: disable=redefined-builtin
@@ -171,6 +177,7 @@ def sweep(scene, over=None, *, seeds=None, sample=None, jobs=None, set=None, out
     The rest: as in run(). Raises what run() raises; the `run` of an UnusableResult is the Sweep."""
     if over is not None and not isinstance(over, Mapping):
         raise InputError([f'over = {over!r:.60}: must be a dict of keys and values, {{"material.mu": [0.1, 0.3]}}'])
+    require_unusable(unusable)
     directory = Path(out) if out is not None else run_directory(scene, set)
     choices = [word for key, values in (over or {}).items() for word in ("--over", _choices(key, values))]
     with scene_file(scene) as (file, paths):
@@ -184,8 +191,8 @@ def sweep(scene, over=None, *, seeds=None, sample=None, jobs=None, set=None, out
 # ---- compare
 
 class Comparison(Tabular):
-    """What differs between runs: data is all that the program says. differences: of the scenes; macro, measurements, laws: of the
-    numbers; directory: where the report is, None unless it was written."""
+    """What differs between runs: data is all that the program says. differences: keys in which the scenes differ, dicts with key and
+    values, the reference last; macro, measurements, laws: of the curves; directory: where the report is, None unless it was written."""
 
     def __init__(self, data, directory=None):
         self.data = data
@@ -199,8 +206,8 @@ class Comparison(Tabular):
     def _all(self, name):
         return [item for part in self.parts for item in part.get(name, [])]
 
-    differences = property(lambda self: self._all("differences"))
-    remarks = property(lambda self: self._all("remarks"))
+    differences = property(lambda self: self.data.get("scene_differences", []))
+    remarks = property(lambda self: self.data.get("remarks", []))
     macro = property(lambda self: self._all("macro"))
     measurements = property(lambda self: self._all("measurements"))
     laws = property(lambda self: self._all("laws"))
@@ -218,13 +225,17 @@ class Comparison(Tabular):
                 rows += [{"run": part["candidate"], "what": f"{measured['pair']} at Delta = {one['delta']:g}", "number": "force_ratio",
                           "mean": one["ratio"], "standard_error": one["ratio_standard_error"], "n": one["candidate"]["n"]}
                          for one in measured["normal_force"]]
-        return records("comparison", rows)
+        return records("comparison", rows, columns=("run", "what", "number", "mean", "standard_error", "n"))
+
+    def numbers(self):
+        """What every run came to, one row a run, the reference last: the keys in which they differ, the numbers, status and time [s]."""
+        return _numbers_table("numbers", self.data.get("runs", []), ("name", "status", "seconds"), "value")
 
     def __repr__(self):
         what = ", ".join(f"{len(items)} {name}" for name, items in (("laws", self.laws), ("measurements", self.measurements),
                                                                      ("macro", self.macro)) if items)
-        runs = ", ".join(part["candidate"] for part in self.parts)
-        return f"<comparison of {runs} with {self.reference}: {len(self.differences)} differences; {what or 'nothing in common'}>"
+        runs = ", ".join(run["name"] for run in self.data.get("runs", [])[:-1]) or self.data["candidate"]
+        return f"<comparison of {runs} with {self.reference}: scenes differ in {len(self.differences)} keys; {what or 'no common curves'}>"
 
 
 def _mean(value):
@@ -286,11 +297,14 @@ def examples():
 def example(name, out=None):
     """Path of a scene that comes with the program: run(example("quickstart")). out: a file to copy it to, which must not be there; laws
     that the scene names are found from there too. InputError for a name that there is not, IoError where no scenes are installed."""
-    if out is not None:
-        _answer(execute(["examples", name, "--out", os.fspath(out)]))
-        return Path(out)
     listed = examples()
-    for one, file in zip(listed["name"], listed["file"]):
-        if one == name:
-            return Path(file)
-    return Path(_answer(execute(["examples", name]))["file"])  # which says what is nearest
+    files = dict(zip(map(str, listed["name"]), listed["file"]))
+    if name not in files:
+        nearest = next(iter(difflib.get_close_matches(str(name), files, 1)), None)
+        raise InputError([Mistake(f"example {name}: no such scene" + (f"; nearest is '{nearest}'" if nearest else ""), nearest=nearest)])
+    if out is None:
+        return Path(files[name])
+    if os.path.lexists(out):
+        raise InputError([f"{out}: is there already and would be overwritten; choose another name"])
+    _answer(execute(["examples", name, "--out", os.fspath(out)], form=()))  # a copy has no JSON
+    return Path(out)

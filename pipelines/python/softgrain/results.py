@@ -117,7 +117,7 @@ class MacroCurve(Tabular):
     def table(self):
         """The columns with one number for each recorded strain, with their units."""
         shape = self.columns["strain"].shape
-        return Table(f"{self.engine}, sample {self.sample}, {self.test}", 
+        return Table(f"{self.engine}, sample {self.sample}, {self.test}",
                      {k: v for k, v in self.columns.items() if v.shape == shape and "/" not in k},
                      self.units)
 

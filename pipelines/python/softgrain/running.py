@@ -172,13 +172,13 @@ def _objects(text):
     return out
 
 
-def execute(arguments, progress=False):
-    """The program with these arguments and --json. Its progress goes through a terminal of our own, as there it says most."""
+def execute(arguments, progress=False, form=("--json",)):
+    """The program with these arguments and --json (form). Its progress goes through a terminal of our own, as there it says most."""
     teller = Teller(progress)
     ours, theirs = pty.openpty()
     try:
         # A process group of its own: Ctrl-C in a terminal comes to Python alone, which passes it on.
-        child = subprocess.Popen([installation.program(), *arguments, "--json"], stdin=subprocess.DEVNULL,
+        child = subprocess.Popen([installation.program(), *arguments, *form], stdin=subprocess.DEVNULL,
                                  stdout=subprocess.PIPE, stderr=theirs, process_group=0)
     except BaseException:
         os.close(ours)
@@ -230,7 +230,8 @@ def raise_for(ended, given=None, paths=None, directory=None):
         if ended.status == 3:
             raise UnusableResult([f"not usable: {r}" for o in ended.objects[:1] for r in _remarks(o)]
                                  or ["ran, but the result is not usable as it is"])
-        error = SoftgrainError([f"the program ended {how}" + (f"; see {directory}/log.txt" if directory else "")])
+        kind = {InputError.status: InputError, IoError.status: IoError}.get(ended.status, SoftgrainError)
+        error = kind([f"the program ended {how}" + (f"; see {directory}/log.txt" if directory else "")])
         error.status = ended.status
         raise error
     error = error_of(ended.status, errors)
@@ -258,6 +259,12 @@ def _last(path):
 def option(name, value):
     """An option of the command line, none for None."""
     return [] if value is None else [name, os.fspath(value) if isinstance(value, os.PathLike) else str(value)]
+
+
+def require_unusable(word):
+    """Refuses what `unusable` cannot be, before any work."""
+    if word not in ("raise", "return"):
+        raise InputError([f'unusable = "{word}": must be "raise" or "return"'])
 
 
 def outcome(ended, directory, unusable, make, given=None, paths=None):
@@ -291,8 +298,7 @@ def run(scene, *, set=None, out=None, law=None, threads=None, seed=None, resume=
 
     Raises InputError before anything runs, with all mistakes at once; IoError; Interrupted (a KeyboardInterrupt) after Ctrl-C, once
     what was computed is saved."""
-    if unusable not in ("raise", "return"):
-        raise InputError([f'unusable = "{unusable}": must be "raise" or "return"'])
+    require_unusable(unusable)
     directory = Path(out) if out is not None else run_directory(scene, set)
     with scene_file(scene) as (file, paths):
         arguments = ["run", file, "--out", str(directory), *settings(set), *option("--law", law),
