@@ -13,7 +13,7 @@ void parallel_tasks(std::int64_t count, const std::function<void(std::int64_t)>&
   std::mutex mutex;
   std::exception_ptr first;
   std::int64_t first_index = count;
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) if (count > 1)
   for (std::int64_t k = 0; k < count; ++k) {
     if (stop) continue;
     try {

@@ -73,7 +73,7 @@ Sum sum_in_pieces(std::size_t length, const Work& work, const PieceThreads* thre
 }
 
 /// Runs task(0..count-1), in order of index where threads allow. After an error no further task starts; the error of
-/// the smallest index is thrown when all running ones have ended.
+/// the smallest index is thrown when all running ones have ended. A single task has all threads to itself.
 void parallel_tasks(std::int64_t count, const std::function<void(std::int64_t)>& task);
 
 /// Runs one task per entry of `costs`, the most expensive first, so that no long one is left over at the end. `costs`

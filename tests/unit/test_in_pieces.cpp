@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -71,6 +73,23 @@ TEST(WorstNetForce, LeavesOutTheShareThatIsFarthestFromRest) {
   EXPECT_EQ(worst_net_force(s.particles, 0.35), 7.0);
   s.particles.force[3] = Vec3{{std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}};
   EXPECT_FALSE(std::isfinite(worst_net_force(s.particles, 0.35))) << "what is no number is not left out";
+}
+
+/// A set of one sample must not keep its work on one thread.
+TEST(ParallelTasks, ASingleTaskHasAllThreads) {
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(3);
+  int inside_one = 0;
+  parallel_tasks(1, [&](std::int64_t) {
+#pragma omp parallel
+#pragma omp single
+    inside_one = omp_in_parallel() != 0 ? omp_get_num_threads() : 1;
+  });
+  std::atomic<int> in_parallel{0};
+  parallel_tasks(3, [&](std::int64_t) { in_parallel += omp_in_parallel(); });
+  omp_set_num_threads(before);
+  EXPECT_EQ(inside_one, 3);
+  EXPECT_EQ(in_parallel, 3) << "several tasks share the threads";
 }
 
 }  // namespace
