@@ -128,7 +128,7 @@ LibraryAnswer answer_of(const LawOptions& o, const LawLibrary& library, std::vec
   FittedLaw own = load_law(o.own);
   if (own.table() == nullptr) throw InputError("law get: --own " + o.own + " is no law table");
   read_refits(own);
-  return corrected(library, answer, main_entry(*own.table()), remarks);
+  return corrected(library, answer, own_entry(library, at, *own.table(), "law get: --own " + o.own), remarks);
 }
 
 json answer_json(const LibraryAnswer& answer, const std::vector<std::string>& remarks, const std::string& written) {

@@ -120,10 +120,17 @@ struct LibraryMatter {
   double shell_radius = 0.016;
 };
 
-/// The answer as a law table of one entry whose refits are `draws` normal draws, for error bars of macro runs. `own`: a
-/// measured table, by whose entry nearest in solid fraction the answer is corrected (both weighted by their
-/// covariances); what differs by more than three deviations is added to `remarks`.
+/// The answer as a law table of one entry whose refits are `draws` normal draws, for error bars of macro runs.
 LawTable table_of(const LawLibrary& library, const LibraryAnswer& answer, const LibraryMatter& matter, int draws = 64);
+
+/// The entry of a measured table whose solid fraction is nearest to that of a material of the library. Throws
+/// InputError, with all differences, where the entry is of another material or shell, or its solid fraction is more
+/// than kReachOfPackings away; `source` names the table.
+const LawTableEntry& own_entry(const LawLibrary& library, const LibraryPoint& at, const LawTable& own,
+                               const std::string& source);
+
+/// The answer corrected by own packings, see own_entry(), both weighted by their covariances. `remarks`: which packings
+/// they are, and what differs by more than three deviations.
 LibraryAnswer corrected(const LawLibrary& library, const LibraryAnswer& prior, const LawTableEntry& own,
                         std::vector<std::string>& remarks);
 

@@ -7,6 +7,7 @@
 #include "calibrate/draws.h"
 #include "common/core/error.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 #include "common/data/multi_contact_replicates.h"
 #include "pipelines/law/law_library.h"
 #include "pipelines/law/law_library_numbers.h"
@@ -17,11 +18,41 @@ namespace {
 
 constexpr double kWorstUnseen = 0.5;  ///< error on unseen configurations above which a law is no row
 
+LibraryPoint point_of(const LawTableEntry& entry) {
+  return {entry.spec.friction, entry.spec.exponent, entry.spec.polydispersity, entry.solid_fraction};
+}
+
 void require_same_shell(const LawLibrary& library, const LawTableEntry& entry, const std::string& source) {
   if (entry.spec.sizes) throw InputError(source + ": sizes of another law than P(r) ~ r^-b have no place in a library");
   if (entry.spec.rmax_over_shell != library.rmax_over_shell || entry.spec.beta != library.beta)
     throw InputError(fmt::format("{}: rmax_over_shell = {}, beta = {}; this library has {}, {}", source,
                                  entry.spec.rmax_over_shell, entry.spec.beta, library.rmax_over_shell, library.beta));
+}
+
+/// Whether a number of a table is the one that was asked for: what somebody gives is rounded.
+bool is_same(double measured, double asked) {
+  constexpr double kRounding = 1e-3;
+  return std::abs(measured - asked) <= kRounding * std::max(1.0, std::abs(asked));
+}
+
+/// In what an own table differs from the library and the material that was asked for; empty: in nothing.
+std::string differences_of(const LawLibrary& library, const LibraryPoint& at, const LawTableEntry& own) {
+  std::string out;
+  const LibraryPoint measured = point_of(own);
+  for (const LibraryVariable& v : kLibraryVariables)
+    if (v.value != &LibraryPoint::solid_fraction && !is_same(measured.*v.value, at.*v.value))
+      append_part(out, fmt::format("{} = {:.6g}, asked {:.6g}", v.name, measured.*v.value, at.*v.value));
+  if (!(std::abs(own.solid_fraction - at.solid_fraction) <= kReachOfPackings))
+    append_part(out, fmt::format("its nearest solid fraction is {:.4f}, asked {:.4f}: must be at most {:g} apart",
+                                 own.solid_fraction, at.solid_fraction, kReachOfPackings));
+  if (own.spec.sizes) append_part(out, "grain sizes of another law than P(r) ~ r^-b");
+  const auto shell = [&](const char* name, double its, double of_library) {
+    if (!is_same(its, of_library))
+      append_part(out, fmt::format("{} = {:g}, the library has {:g}", name, its, of_library));
+  };
+  shell("rmax_over_shell", own.spec.rmax_over_shell, library.rmax_over_shell);
+  shell("beta", own.spec.beta, library.beta);
+  return out;
 }
 
 std::vector<LibraryPartner> partners_of(const MultiContactLaw& law) {
@@ -155,7 +186,7 @@ std::optional<LibraryMaterial> library_row(LawLibrary& library, const LawTableEn
     throw InputError(source + ": measured with other kinds or sizes of neighbours than the first table");
   LibraryMaterial m;
   m.source = source;
-  m.at = {entry.spec.friction, entry.spec.exponent, entry.spec.polydispersity, entry.solid_fraction};
+  m.at = point_of(entry);
   m.packings = entry.packings;
   const OwnNumbers numbers = own_numbers(library, entry);
   m.numbers = numbers.values;
@@ -202,9 +233,20 @@ LawTable table_of(const LawLibrary& library, const LibraryAnswer& answer, const 
   return table;
 }
 
+const LawTableEntry& own_entry(const LawLibrary& library, const LibraryPoint& at, const LawTable& own,
+                               const std::string& source) {
+  const LawTableEntry& out = *std::ranges::min_element(
+      own.entries, {}, [&](const LawTableEntry& e) { return std::abs(e.solid_fraction - at.solid_fraction); });
+  if (const std::string other = differences_of(library, at, out); !other.empty())
+    throw InputError(source + ": is of another material: " + other);
+  return out;
+}
+
 LibraryAnswer corrected(const LawLibrary& library, const LibraryAnswer& prior, const LawTableEntry& own,
                         std::vector<std::string>& remarks) {
   const OwnNumbers numbers = own_numbers(library, own);
+  remarks.push_back(
+      fmt::format("corrected by {} own packings of solid fraction {:.4f}", own.packings, own.solid_fraction));
   compare_with_own(prior, numbers, remarks);
   LibraryAnswer out = prior;
   const std::size_t count = library.law_numbers();

@@ -180,14 +180,42 @@ TEST(LawLibrary, OwnPackingsCorrectAndContradict) {
   LibraryPoint other = kBetween;
   other.solid_fraction += 0.002;
   const LibraryAnswer near = corrected(library(), prior, synthetic::library_entry(other, 0.02, 77), remarks);
-  EXPECT_TRUE(remarks.empty()) << remarks.front();
+  ASSERT_EQ(remarks.size(), 1U) << remarks.back();
+  expect_in(remarks.front(), "corrected by 24 own packings of solid fraction 0.6620");
+  remarks.clear();
   EXPECT_LT(near.numbers[0].deviation, prior.numbers[0].deviation);
   other.solid_fraction = 0.75;
   const LawTableEntry own = synthetic::library_entry(other, 0.005, 78);
   const LibraryAnswer far = corrected(library(), prior, own, remarks);
-  ASSERT_FALSE(remarks.empty());
-  expect_in(remarks.front(), "own measurements contradict the library: ln force");
+  ASSERT_GE(remarks.size(), 2U);
+  expect_in(remarks[1], "own measurements contradict the library: ln force");
   EXPECT_NEAR(far.numbers[0].value, synthetic::library_force(other), 0.2) << "what is measured well has its way";
+}
+
+TEST(LawLibrary, AnOwnTableIsOfTheMaterialThatWasAskedFor) {
+  LawTable own;
+  for (const double fraction : {0.62, 0.655, 0.70}) {
+    LibraryPoint p = kBetween;
+    p.solid_fraction = fraction;
+    own.entries.push_back(synthetic::library_entry(p, 0.02, 5));
+  }
+  own.entries.back().main = true;
+  EXPECT_EQ(own_entry(library(), kBetween, own, "my.toml").solid_fraction, 0.655) << "the nearest, not the main one";
+  const auto refusal = [&](const LibraryPoint& asked, const LawTable& table) {
+    return message_of([&] { (void)own_entry(library(), asked, table, "my.toml"); });
+  };
+  LibraryPoint rounded = kBetween;
+  rounded.polydispersity = 7.004;
+  EXPECT_EQ(refusal(rounded, own), "");
+  const std::string other = refusal({0.2, 3.0, 6.0, 0.58}, own);
+  expect_in(other, "my.toml: is of another material: mu = 0.45, asked 0.2");
+  expect_in(other, "exponent = 3.2, asked 3");
+  expect_in(other, "ratio = 7, asked 6");
+  expect_in(other, "its nearest solid fraction is 0.6200, asked 0.5800");
+  for (LawTableEntry& e : own.entries) e.spec.rmax_over_shell = 0.3;
+  expect_in(refusal(kBetween, own), "rmax_over_shell = 0.3, the library has 0.5");
+  for (LawTableEntry& e : own.entries) e.spec.exponent = std::nan("");
+  expect_in(refusal(kBetween, own), "exponent = nan, asked 3.2");
 }
 
 TEST(LawLibrary, ScenesNameTheMaterial) {
