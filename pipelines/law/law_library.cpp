@@ -88,14 +88,22 @@ std::string fractions_inside(const LawLibrary& library, const UnitBox& box, Libr
                     : "the combination of the other three is not";
 }
 
+/// What is wrong with one variable; empty: nothing. One that never varied serves its own value, but for rounding.
+std::string outside_text(const LibraryVariable& v, const VariableRange& range, double value, double u) {
+  if (range.high > range.low) {
+    if (u >= -kReachOfRange && u <= 1.0 + kReachOfRange) return "";
+    return fmt::format("{} = {:g}: measured from {:.3g} to {:.3g}", v.name, value, range.low, range.high);
+  }
+  if (std::abs(value - range.low) <= kReachOfNumbers * std::max(1.0, std::abs(range.low))) return "";
+  return fmt::format("{} = {:g}: all materials of this library have {:.4g}", v.name, value, range.low);
+}
+
 void require_inside(const LawLibrary& library, const UnitBox& box, const LibraryPoint& at) {
   std::string wrong;
   const std::vector<double> u = box(at);
   for (std::size_t a = 0; a < u.size(); ++a) {
     const LibraryVariable& v = kLibraryVariables[a];
-    if (u[a] >= -kReachOfRange && u[a] <= 1.0 + kReachOfRange) continue;
-    append_part(wrong, fmt::format("{} = {:g}: measured from {:.3g} to {:.3g}", v.name, at.*v.value, box.range(a).low,
-                                   box.range(a).high));
+    if (const std::string why = outside_text(v, box.range(a), at.*v.value, u[a]); !why.empty()) append_part(wrong, why);
   }
   if (!wrong.empty()) throw InputError("law library: " + wrong);
   if (distance_from_hull(box.all(library), u) <= kReachOfHull) return;

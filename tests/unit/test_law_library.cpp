@@ -116,6 +116,16 @@ TEST(LawLibrary, RefusesWhatLiesOutside) {
   expect_in(message_of([&] { (void)ask_library(few, kBetween); }), "6 materials; it needs at least 7");
 }
 
+TEST(LawLibrary, AVariableThatNeverVariedServesItsValueAlone) {
+  LawLibrary one = library();
+  for (LibraryMaterial& m : one.materials) m.at.friction = 0.3;
+  LibraryPoint p = kBetween;
+  p.friction = 5.0;
+  expect_in(message_of([&] { (void)ask_library(one, p); }), "mu = 5: all materials of this library have 0.3");
+  p.friction = 0.3001;
+  EXPECT_EQ(message_of([&] { (void)ask_library(one, p); }), "");
+}
+
 TEST(LawLibrary, RowsThatDoNotServeAreLeftOut) {
   LawLibrary made;
   std::string why;
