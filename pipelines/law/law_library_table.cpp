@@ -220,6 +220,7 @@ LawTable table_of(const LawLibrary& library, const LibraryAnswer& answer, const 
   e.packings = nearest.packings;
   e.relaxation = fmt::format("interpolated between {} measured materials; {}", library.materials.size(),
                              nearest_text(library, answer));
+  if (const std::string means = means_text(answer); !means.empty()) append_part(e.relaxation, means);
   e.volume_max = nearest.volume_max;
   e.overlap_max = nearest.overlap_max;
   e.grain_overlap_max = nearest.grain_overlap_max;
@@ -263,6 +264,7 @@ LibraryAnswer corrected(const LawLibrary& library, const LibraryAnswer& prior, c
   out.correlations = correlations_of(after.covariance, count);
   for (const std::size_t k : told(numbers, count, numbers.values.size())) {
     LibraryNumber& n = out.numbers[k];
+    std::erase(out.by_mean, n.name);
     const double value = numbers.values[k];
     const double error = numbers.errors[k];
     const double share =
