@@ -143,7 +143,8 @@ LawTable table_of(const LawLibrary& library, const LibraryAnswer& answer, const 
 const LawTableEntry& own_entry(const LawLibrary& library, const LibraryPoint& at, const LawTable& own,
                                const std::string& source);
 
-/// The answer corrected by own packings, see own_entry(), both weighted by their covariances. `remarks`: which packings
+/// The answer corrected by own packings, see own_entry(), both weighted by their covariances; the error of the form is
+/// that of the own table, where it has configurations that its fit did not see. `remarks`: which packings
 /// they are, and what differs by more than three deviations.
 LibraryAnswer corrected(const LawLibrary& library, const LibraryAnswer& prior, const LawTableEntry& own,
                         std::vector<std::string>& remarks);

@@ -147,17 +147,34 @@ OwnNumbers own_numbers(const LawLibrary& library, const LawTableEntry& own) {
   return out;
 }
 
-/// Numbers that own measurements tell.
-std::vector<std::size_t> told(const OwnNumbers& own, std::size_t begin, std::size_t end) {
+/// Numbers of the law that own measurements tell: one whose refits do not scatter was not fitted.
+std::vector<std::size_t> told_of_law(const OwnNumbers& own, std::size_t law_numbers) {
   std::vector<std::size_t> out;
-  for (std::size_t k = begin; k < end; ++k)
+  for (std::size_t k = 0; k < law_numbers; ++k)
     if (std::isfinite(own.values[k]) && std::isfinite(own.errors[k]) && own.errors[k] > 0.0) out.push_back(k);
   return out;
 }
 
-void compare_with_own(const LibraryAnswer& prior, const OwnNumbers& own, std::vector<std::string>& remarks) {
+/// The same of all else. Errors of the form and trials have no error of their own: they are as measured.
+std::vector<std::size_t> told_of_sides(const OwnNumbers& own, std::size_t law_numbers) {
+  std::vector<std::size_t> out;
+  for (std::size_t k = law_numbers; k < own.values.size(); ++k)
+    if (std::isfinite(own.values[k]) && std::isfinite(own.errors[k])) out.push_back(k);
+  return out;
+}
+
+/// A number of the library and one of own packings, weighted by their variances.
+void correct_side(LibraryNumber& n, double value, double error) {
+  const double variance = n.deviation * n.deviation;
+  const double share = std::isfinite(n.value) && error > 0.0 ? variance / (variance + error * error) : 1.0;
+  n.value = share < 1.0 ? n.value + share * (value - n.value) : value;
+  n.deviation = std::sqrt(share) * error;
+}
+
+void compare_with_own(const LibraryAnswer& prior, const OwnNumbers& own, const std::vector<std::size_t>& told,
+                      std::vector<std::string>& remarks) {
   constexpr double kMost = 3.0;
-  for (const std::size_t k : told(own, 0, own.values.size())) {
+  for (const std::size_t k : told) {
     const LibraryNumber& n = prior.numbers[k];
     if (!std::isfinite(n.value)) continue;
     const double off = (own.values[k] - n.value) / std::hypot(own.errors[k], n.deviation);
@@ -248,29 +265,26 @@ LibraryAnswer corrected(const LawLibrary& library, const LibraryAnswer& prior, c
   const OwnNumbers numbers = own_numbers(library, own);
   remarks.push_back(
       fmt::format("corrected by {} own packings of solid fraction {:.4f}", own.packings, own.solid_fraction));
-  compare_with_own(prior, numbers, remarks);
-  LibraryAnswer out = prior;
   const std::size_t count = library.law_numbers();
+  const std::vector<std::size_t> of_law = told_of_law(numbers, count);
+  const std::vector<std::size_t> of_sides = told_of_sides(numbers, count);
+  compare_with_own(prior, numbers, of_law, remarks);
+  compare_with_own(prior, numbers, of_sides, remarks);
+  LibraryAnswer out = prior;
   NormalNumbers before{{}, covariance_of(deviations_of(prior, count), prior.correlations)};
   for (std::size_t k = 0; k < count; ++k) before.mean.push_back(prior.numbers[k].value);
   std::vector<double> own_errors(numbers.errors.begin(), numbers.errors.begin() + static_cast<std::ptrdiff_t>(count));
   for (double& e : own_errors) e = std::isfinite(e) ? e : 0.0;
   const NormalNumbers after =
-      updated(before, told(numbers, 0, count), {numbers.values, covariance_of(own_errors, numbers.correlations)});
+      updated(before, of_law, {numbers.values, covariance_of(own_errors, numbers.correlations)});
   for (std::size_t k = 0; k < count; ++k) {
     out.numbers[k].value = after.mean[k];
     out.numbers[k].deviation = std::sqrt(std::max(after.covariance[k * count + k], 0.0));
   }
   out.correlations = correlations_of(after.covariance, count);
-  for (const std::size_t k : told(numbers, count, numbers.values.size())) {
-    LibraryNumber& n = out.numbers[k];
-    std::erase(out.by_mean, n.name);
-    const double value = numbers.values[k];
-    const double error = numbers.errors[k];
-    const double share =
-        std::isfinite(n.value) ? n.deviation * n.deviation / (n.deviation * n.deviation + error * error) : 1.0;
-    n.value = std::isfinite(n.value) ? n.value + share * (value - n.value) : value;
-    n.deviation = std::sqrt(share) * error;
+  for (const std::size_t k : of_sides) {
+    correct_side(out.numbers[k], numbers.values[k], numbers.errors[k]);
+    std::erase(out.by_mean, out.numbers[k].name);
   }
   return out;
 }

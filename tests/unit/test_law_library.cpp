@@ -9,6 +9,7 @@
 #include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 #include "common/data/multi_contact_replicates.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
@@ -276,6 +277,30 @@ TEST(LawLibrary, OwnPackingsCorrectAndContradict) {
   ASSERT_GE(remarks.size(), 2U);
   expect_in(remarks[1], "own measurements contradict the library: ln force");
   EXPECT_NEAR(far.numbers[0].value, synthetic::library_force(other), 0.2) << "what is measured well has its way";
+}
+
+TEST(LawLibrary, TheErrorOfTheFormIsThatOfTheOwnPackings) {
+  LawTableEntry own = synthetic::library_entry(kBetween, 0.02, 77);
+  own.laws.front().errors = {{"sheared", MultiContactUse::predicted, 0.25, 1.0, 0.0, 24, FormOffset{0.1, 0.02}, false}};
+  LibraryAnswer prior = ask_library(library(), kBetween);
+  const std::vector<std::string> names = library().names();
+  const auto at = [&](const char* name) {
+    return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+  };
+  prior.numbers[at("ln error, in proportion")].value = std::log(0.08);
+  prior.numbers[at("ln error, in proportion")].deviation = 0.2;
+  prior.numbers[at("ln error, sheared")].value = std::log(0.1);
+  prior.numbers[at("ln error, sheared")].deviation = 0.3;
+  prior.by_mean = {"ln error, sheared", "ln error, in proportion"};
+  std::vector<std::string> remarks;
+  const LibraryAnswer a = corrected(library(), prior, own, remarks);
+  EXPECT_NEAR(a.numbers[at("ln error, sheared")].value, std::log(0.25), 1e-12);
+  EXPECT_EQ(a.numbers[at("ln error, sheared")].deviation, 0.0);
+  EXPECT_NEAR(a.numbers[at("ln error, in proportion")].value, std::log(0.08), 1e-12) << "the own table has none";
+  EXPECT_EQ(a.by_mean, std::vector<std::string>{"ln error, in proportion"});
+  expect_in(join_text(remarks, "|"), "own measurements contradict the library: ln error, sheared");
+  const MultiContactLaw law = table_of(library(), a, {}).entries.front().laws.front();
+  EXPECT_NEAR(form_discrepancy(law), 0.25, 1e-9) << "the larger of the two";
 }
 
 TEST(LawLibrary, AnOwnTableIsOfTheMaterialThatWasAskedFor) {
