@@ -5,10 +5,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/core/parallel_tasks.h"
 #include "common/core/statistics.h"
 
 namespace softgrain {
@@ -166,9 +168,10 @@ std::vector<double> GaussianProcess::matrix(const Shape& shape) const {
   const std::size_t n = points_.size();
   std::vector<double> out(n * n);
   for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t j = 0; j <= i; ++j) {
       out[i * n + j] = covariance(shape, points_[i], points_[j]);
       if (i == j) out[i * n + j] += errors_[i] * errors_[i] + shape.scatter * shape.scatter + kJitter;
+      out[j * n + i] = out[i * n + j];
     }
   return out;
 }
@@ -184,7 +187,7 @@ double GaussianProcess::cost(const Shape& shape) const {
   double out = 0.5 * z.dot(root.solve(z)) + lower.diagonal().array().log().sum();
   out += penalty(kAmplitude, shape.amplitude) + penalty(kScatter, shape.scatter);
   for (const double l : shape.lengths) out += penalty(kLength, l);
-  return out;
+  return std::isfinite(out) ? out : kWorst;
 }
 
 GaussianProcess::Shape GaussianProcess::shape_of(const std::vector<double>& logarithms) const {
@@ -211,6 +214,9 @@ void GaussianProcess::solve() {
   const std::size_t n = points_.size();
   const std::vector<double> k = matrix(shape_);
   const Eigen::LLT<Eigen::MatrixXd> root(square_of(k, n));
+  const bool finite = std::ranges::all_of(k, [](double x) { return std::isfinite(x); });
+  if (!finite || root.info() != Eigen::Success)
+    throw InputError("Gaussian process: the covariance of its values has no Cholesky decomposition");
   const auto size = static_cast<Eigen::Index>(n);
   const RowMatrix inverse = root.solve(Eigen::MatrixXd::Identity(size, size));
   inverse_.assign(inverse.data(), inverse.data() + inverse.size());
@@ -227,19 +233,23 @@ ProcessValue GaussianProcess::at(const std::vector<double>& u) const {
           unit_ * std::sqrt(std::max(left, 0.0) + shape_.scatter * shape_.scatter)};
 }
 
-std::vector<ProcessValue> GaussianProcess::leave_one_out() const {
-  const std::size_t n = points_.size();
-  std::vector<ProcessValue> out;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double precision = inverse_[i * n + i];
-    const double variance = std::max(1.0 / precision - errors_[i] * errors_[i], 0.0);
-    out.push_back({mean_ + unit_ * (values_[i] - pull_[i] / precision), unit_ * std::sqrt(variance)});
-  }
-  return out;
-}
-
 double GaussianProcess::scatter() const { return unit_ * shape_.scatter; }
 const std::vector<double>& GaussianProcess::lengths() const { return shape_.lengths; }
+
+std::vector<ProcessValue> leave_one_out(const std::vector<std::vector<double>>& points,
+                                        const std::vector<double>& values, const std::vector<double>& errors) {
+  require_values(points, values, errors);
+  std::vector<ProcessValue> out(values.size());
+  parallel_tasks(static_cast<std::int64_t>(values.size()), [&](std::int64_t k) {
+    const auto but_one = [k](auto all) {
+      all.erase(all.begin() + k);
+      return all;
+    };
+    const auto i = static_cast<std::size_t>(k);
+    out[i] = GaussianProcess(but_one(points), but_one(values), but_one(errors)).at(points[i]);
+  });
+  return out;
+}
 
 double distance_from_hull(const std::vector<std::vector<double>>& points, const std::vector<double>& u) {
   constexpr double kSum = 1e3;  // weight of sum w = 1

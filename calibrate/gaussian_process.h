@@ -20,7 +20,8 @@ struct ProcessValue {
 class GaussianProcess {
  public:
   /// One row of `points` per value; `errors`: standard errors of the values, at least 0. Throws InputError when sizes
-  /// do not agree, a number is not finite, or there are fewer values than least_values().
+  /// do not agree, a number is not finite, there are fewer values than least_values(), or their covariance has no
+  /// Cholesky decomposition, as of points far from [0, 1].
   GaussianProcess(std::vector<std::vector<double>> points, std::vector<double> values, std::vector<double> errors);
 
   /// Values that it needs: two more than the trend has coefficients.
@@ -28,8 +29,6 @@ class GaussianProcess {
 
   /// What another point would have: its deviation holds the scatter s, not the error of a measurement there.
   [[nodiscard]] ProcessValue at(const std::vector<double>& u) const;
-  /// What all other points say of each one, A, l_a and s as they are (eq. 5.12); deviations as of at().
-  [[nodiscard]] std::vector<ProcessValue> leave_one_out() const;
 
   [[nodiscard]] double scatter() const;                      ///< s
   [[nodiscard]] const std::vector<double>& lengths() const;  ///< l_a
@@ -58,6 +57,12 @@ class GaussianProcess {
   std::vector<double> inverse_;  ///< of the covariance of the values, row-major
   std::vector<double> pull_;     ///< inverse times values
 };
+
+/// What the others say of each value: a process of these alone, with A, l_a and s fitted to them. Deviations as of
+/// GaussianProcess::at(). In parallel; the same for any number of threads. Throws InputError as GaussianProcess does;
+/// it needs one value more.
+std::vector<ProcessValue> leave_one_out(const std::vector<std::vector<double>>& points,
+                                        const std::vector<double>& values, const std::vector<double>& errors);
 
 /// Distance of a point from the convex hull of others, in their units: min |sum_k w_k x_k - u| with w >= 0, sum w = 1,
 /// by non-negative least squares (Lawson and Hanson 1995, doi:10.1137/1.9781611971217, ch. 23). 0 inside.

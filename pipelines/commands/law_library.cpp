@@ -62,29 +62,37 @@ LawLibrary collected(const std::vector<std::string>& directories, std::string& t
 }
 
 std::string check_text(const std::vector<LibraryCheck>& checks) {
-  std::string text = fmt::format("{:<26} {:>9} {:>10} {:>12} {:>11}\n", "each left out in turn", "materials", "off by",
-                                 "over spread", "within 95 %");
+  std::string text = fmt::format("{:<26} {:>9} {:>10} {:>10} {:>8} {:>11}\n", "each left out in turn", "materials",
+                                 "off by", "mean off", "widened", "within 95 %");
   for (const LibraryCheck& c : checks)
-    text += fmt::format("  {:<24} {:>9} {:>10.3g} {:>12.2f} {:>9.0f} %\n", c.name, c.materials, c.error,
-                        c.spread > 0.0 ? c.error / c.spread : 0.0, 100.0 * c.coverage);
-  return text;
+    if (c.materials > 0)
+      text += fmt::format("  {:<24} {:>9} {:>10.3g} {:>10.3g} {:>8.2f} {:>9.0f} %{}\n", c.name, c.materials, c.error,
+                          c.error_of_mean, c.factor, 100.0 * c.coverage, c.by_mean() ? " m" : "");
+  return text + "m: answers are mean and scatter of the materials, which are off by no more\n";
 }
 
 std::string check_csv(const std::vector<LibraryCheck>& checks) {
-  std::string text = "number,materials,root mean square error,standard deviation over materials,share within 95 %\n";
+  std::string text =
+      "number,materials,root mean square error of the process,of the mean,answers by,widening factor,share within 95 "
+      "%\n";
   for (const LibraryCheck& c : checks)
-    text += fmt::format("\"{}\",{},{:.6g},{:.6g},{:.6g}\n", c.name, c.materials, c.error, c.spread, c.coverage);
+    if (c.materials > 0)
+      text += fmt::format("\"{}\",{},{:.6g},{:.6g},{},{:.6g},{:.6g}\n", c.name, c.materials, c.error, c.error_of_mean,
+                          c.by_mean() ? "mean" : "process", c.factor, c.coverage);
   return text;
 }
 
 json check_json(const std::vector<LibraryCheck>& checks) {
   json out = json::array();
   for (const LibraryCheck& c : checks)
-    out.push_back({{"number", c.name},
-                   {"materials", c.materials},
-                   {"error", c.error},
-                   {"spread", c.spread},
-                   {"coverage", c.coverage}});
+    if (c.materials > 0)
+      out.push_back({{"number", c.name},
+                     {"materials", c.materials},
+                     {"error", c.error},
+                     {"error_of_mean", c.error_of_mean},
+                     {"by", c.by_mean() ? "mean" : "process"},
+                     {"factor", c.factor},
+                     {"coverage", c.coverage}});
   return out;
 }
 
@@ -122,17 +130,21 @@ LibraryAnswer answer_of(const LawOptions& o, const LawLibrary& library, std::vec
   const LibraryPoint at{given(o, "--mu", o.friction, 0.0, 10.0), given(o, "--exponent", o.exponent, 0.0, 50.0),
                         given(o, "--ratio", o.ratio, 1.0, 1e6),
                         given(o, "--solid-fraction", o.solid_fraction, 0.0, 1.0)};
-  const LibraryAnswer answer = ask_library(library, at);
+  LibraryAnswer answer = ask_library(library, at);
   remarks.push_back(nearest_text(library, answer));
   if (o.own.empty()) return answer;
   FittedLaw own = load_law(o.own);
   if (own.table() == nullptr) throw InputError("law get: --own " + o.own + " is no law table");
   read_refits(own);
-  return corrected(library, answer, main_entry(*own.table()), remarks);
+  return corrected(library, answer, own_entry(library, at, *own.table(), "law get: --own " + o.own), remarks);
 }
 
 json answer_json(const LibraryAnswer& answer, const std::vector<std::string>& remarks, const std::string& written) {
-  json out{{"command", "law get"}, {"status", "good"}, {"distance", answer.distance}, {"remarks", remarks}};
+  json out{{"command", "law get"},
+           {"status", "good"},
+           {"distance", answer.distance},
+           {"by_mean", answer.by_mean},
+           {"remarks", remarks}};
   for (const LibraryVariable& v : kLibraryVariables) out["material"][v.name] = answer.at.*v.value;
   for (const LibraryNumber& n : answer.numbers)
     if (std::isfinite(n.value)) out["numbers"][n.name] = {n.value, n.deviation};
@@ -143,7 +155,9 @@ json answer_json(const LibraryAnswer& answer, const std::vector<std::string>& re
 std::string answer_text(const LibraryAnswer& answer, const std::vector<std::string>& remarks) {
   std::string text = point_text(answer.at) + "\n";
   for (const LibraryNumber& n : answer.numbers)
-    if (std::isfinite(n.value)) text += fmt::format("  {:<24} {:>9.4g} +- {:.2g}\n", n.name, n.value, n.deviation);
+    if (std::isfinite(n.value))
+      text += fmt::format("  {:<24} {:>9.4g} +- {:.2g}{}\n", n.name, n.value, n.deviation,
+                          std::ranges::find(answer.by_mean, n.name) == answer.by_mean.end() ? "" : "  mean");
   for (const std::string& r : remarks) text += r + "\n";
   return text;
 }
@@ -154,8 +168,9 @@ ExitStatus make_library(const LawOptions& o) {
   if (o.files.empty()) throw InputError("law library: give directories with law tables (see softgrain law library -h)");
   std::string text;
   const bool there = o.files.size() == 1 && fs::is_regular_file(o.files.front());
-  const LawLibrary library = there ? load_library(o.files.front()) : collected(o.files, text);
-  const std::vector<LibraryCheck> checks = check_library(library);
+  LawLibrary library = there ? load_library(o.files.front()) : collected(o.files, text);
+  library.checks = check_library(library);
+  const std::vector<LibraryCheck>& checks = library.checks;
   if (!o.out.empty()) {
     write_text_atomic(o.out, library_text(library, provenance_of(o)));
     write_text_atomic(fs::path(o.out).replace_filename("leave_one_out.csv").string(), check_csv(checks));
@@ -185,6 +200,7 @@ ExitStatus get_law(const LawOptions& o) {
   const LawLibrary library = load_library(o.library.empty() ? shipped_library() : o.library);
   std::vector<std::string> remarks;
   const LibraryAnswer answer = answer_of(o, library, remarks);
+  if (const std::string means = means_text(answer); !means.empty()) remarks.push_back(means);
   if (!o.out.empty())
     save_law_table(table_of(library, answer, matter, static_cast<int>(o.draws)), o.out, provenance_of(o));
   if (o.json)

@@ -6,12 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "calibrate/draws.h"
 #include "calibrate/gaussian_process.h"
 #include "common/core/error.h"
-#include "common/core/statistics.h"
 #include "common/core/text.h"
-#include "pipelines/law/law_library_numbers.h"
+#include "pipelines/law/law_library_predict.h"
 
 namespace softgrain {
 
@@ -88,14 +86,22 @@ std::string fractions_inside(const LawLibrary& library, const UnitBox& box, Libr
                     : "the combination of the other three is not";
 }
 
+/// What is wrong with one variable; empty: nothing. One that never varied serves its own value, but for rounding.
+std::string outside_text(const LibraryVariable& v, const VariableRange& range, double value, double u) {
+  if (range.high > range.low) {
+    if (u >= -kReachOfRange && u <= 1.0 + kReachOfRange) return "";
+    return fmt::format("{} = {:g}: measured from {:.3g} to {:.3g}", v.name, value, range.low, range.high);
+  }
+  if (std::abs(value - range.low) <= kReachOfNumbers * std::max(1.0, std::abs(range.low))) return "";
+  return fmt::format("{} = {:g}: all materials of this library have {:.4g}", v.name, value, range.low);
+}
+
 void require_inside(const LawLibrary& library, const UnitBox& box, const LibraryPoint& at) {
   std::string wrong;
   const std::vector<double> u = box(at);
   for (std::size_t a = 0; a < u.size(); ++a) {
     const LibraryVariable& v = kLibraryVariables[a];
-    if (u[a] >= -kReachOfRange && u[a] <= 1.0 + kReachOfRange) continue;
-    append_part(wrong, fmt::format("{} = {:g}: measured from {:.3g} to {:.3g}", v.name, at.*v.value, box.range(a).low,
-                                   box.range(a).high));
+    if (const std::string why = outside_text(v, box.range(a), at.*v.value, u[a]); !why.empty()) append_part(wrong, why);
   }
   if (!wrong.empty()) throw InputError("law library: " + wrong);
   if (distance_from_hull(box.all(library), u) <= kReachOfHull) return;
@@ -103,28 +109,16 @@ void require_inside(const LawLibrary& library, const UnitBox& box, const Library
                                fractions_inside(library, box, at)));
 }
 
-/// What is known of one number: the materials that have it.
-struct KnownNumber {
-  std::vector<std::size_t> materials;
-  std::vector<std::vector<double>> points;
-  std::vector<double> values;
-  std::vector<double> errors;
-};
-
 KnownNumber known_number(const LawLibrary& library, const UnitBox& box, std::size_t k) {
   KnownNumber out;
-  for (std::size_t i = 0; i < library.materials.size(); ++i) {
-    const LibraryMaterial& m = library.materials[i];
+  for (const LibraryMaterial& m : library.materials) {
     if (!std::isfinite(m.numbers[k]) || !std::isfinite(m.errors[k])) continue;
-    out.materials.push_back(i);
     out.points.push_back(box(m.at));
     out.values.push_back(m.numbers[k]);
     out.errors.push_back(m.errors[k]);
   }
   return out;
 }
-
-GaussianProcess process_of(const KnownNumber& n) { return {n.points, n.values, n.errors}; }
 
 /// Mean of the correlations of all materials: that of positive matrices is one.
 std::vector<double> mean_correlations(const LawLibrary& library) {
@@ -136,9 +130,9 @@ std::vector<double> mean_correlations(const LawLibrary& library) {
 }
 
 void require_materials(const LawLibrary& library) {
-  const std::size_t least = GaussianProcess::least_values(kLibraryVariables.size());
-  if (library.materials.size() < least)
-    throw InputError(fmt::format("law library: {} materials; it needs at least {}", library.materials.size(), least));
+  if (library.materials.size() < least_materials())
+    throw InputError(
+        fmt::format("law library: {} materials; it needs at least {}", library.materials.size(), least_materials()));
 }
 
 }  // namespace
@@ -152,17 +146,19 @@ LibraryAnswer ask_library(const LawLibrary& library, const LibraryPoint& at) {
   require_materials(library);
   const UnitBox box(library);
   require_inside(library, box, at);
+  const std::vector<std::string> names = library.names();
+  if (library.checks.size() != names.size()) throw InputError("law library: it is not checked");
   LibraryAnswer out;
   out.at = at;
   const std::vector<double> u = box(at);
-  const std::vector<std::string> names = library.names();
   for (std::size_t k = 0; k < names.size(); ++k) {
     const KnownNumber known = known_number(library, box, k);
     LibraryNumber number{names[k], std::nan(""), std::nan("")};
-    if (known.values.size() >= GaussianProcess::least_values(u.size())) {
-      const ProcessValue z = process_of(known).at(u);
+    if (known.values.size() >= least_materials()) {
+      const ProcessValue z = predicted_number(library.checks[k], known, u);
       number.value = z.mean;
       number.deviation = z.deviation;
+      if (library.checks[k].by_mean()) out.by_mean.push_back(names[k]);
     } else if (k < library.law_numbers()) {
       throw InputError(fmt::format("law library: too few materials have the number \"{}\"", names[k]));
     }
@@ -184,21 +180,13 @@ std::vector<LibraryCheck> check_library(const LawLibrary& library) {
   const UnitBox box(library);
   const std::vector<std::string> names = library.names();
   std::vector<LibraryCheck> out;
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    const KnownNumber known = known_number(library, box, k);
-    const auto n = static_cast<double>(known.values.size());
-    if (known.values.size() < GaussianProcess::least_values(kLibraryVariables.size())) continue;
-    const std::vector<ProcessValue> others = process_of(known).leave_one_out();
-    LibraryCheck c{names[k], 0.0, mean_error(known.values).deviation, 0.0, known.values.size()};
-    for (std::size_t i = 0; i < others.size(); ++i) {
-      const double off = others[i].mean - known.values[i];
-      c.error += off * off / n;
-      c.coverage += std::abs(off) <= kNormal95 * std::hypot(others[i].deviation, known.errors[i]) ? 1.0 / n : 0.0;
-    }
-    c.error = std::sqrt(c.error);
-    out.push_back(c);
-  }
+  for (std::size_t k = 0; k < names.size(); ++k) out.push_back(checked_number(names[k], known_number(library, box, k)));
   return out;
+}
+
+std::string means_text(const LibraryAnswer& answer) {
+  if (answer.by_mean.empty()) return "";
+  return "mean and scatter of all materials, which predict no better: " + join_text(answer.by_mean, "; ");
 }
 
 std::string nearest_text(const LawLibrary& library, const LibraryAnswer& answer) {

@@ -51,6 +51,23 @@ struct LibraryPartner {
   bool operator==(const LibraryPartner&) const = default;
 };
 
+/// How well the other materials predict one number, each material left out in turn: by a Gaussian process that is
+/// fitted to the others alone, and by their mean.
+struct LibraryCheck {
+  std::string name;
+  std::size_t materials = 0;   ///< that have the number; 0: too few
+  double error = 0.0;          ///< root mean square of process less measured
+  double error_of_mean = 0.0;  ///< of mean less measured
+  /// By how much deviations of answers are widened, at least 1: of the materials left out, the mean square of
+  /// (predicted less measured) over (widened deviation, measured error) is then 1, at most (scale factor of Birge 1932,
+  /// doi:10.1103/PhysRev.40.207).
+  double factor = 1.0;
+  double coverage = 0.0;  ///< share of materials within 1.96 widened deviations, the measured error included
+
+  /// Whether answers are the mean and scatter of the materials: the process does not beat them.
+  [[nodiscard]] bool by_mean() const { return materials > 0 && error >= error_of_mean; }
+};
+
 /// Numbers of a law, so chosen that they change smoothly and are hardly correlated: ln of the force of a plane at D =
 /// 0.35, F/(E* Rs^2) with E* = E/(1 - nu^2), b, delta; for each kind of neighbour ln nu at v = 0.02 of every size, and
 /// m; then kt/kn, friction limits, rolling, unloading, errors of the form, ln trials.
@@ -59,6 +76,7 @@ struct LawLibrary {
   double beta = 3.0;
   std::vector<LibraryPartner> partners;
   std::vector<LibraryMaterial> materials;
+  std::vector<LibraryCheck> checks{};  ///< of all names(), from check_library(); answers go by them
   std::string path{};
   std::string text{};
 
@@ -87,28 +105,24 @@ std::string shipped_library();
 struct LibraryNumber {
   std::string name;
   double value = 0.0;
-  double deviation = 0.0;  ///< of interpolation and measured errors
+  double deviation = 0.0;  ///< of interpolation and measured errors, widened by LibraryCheck::factor
 };
 
 struct LibraryAnswer {
   LibraryPoint at;
   std::vector<LibraryNumber> numbers;
-  std::vector<double> correlations;  ///< of the numbers of the law, row-major
+  std::vector<std::string> by_mean;  ///< numbers that are mean and scatter of the materials, LibraryCheck::by_mean()
+  std::vector<double> correlations;  ///< of the numbers of the law, row-major: the mean of those of the refits
   std::size_t nearest = 0;           ///< measured material that is nearest
   double distance = 0.0;             ///< to it: root of the sum of squares over the variables, each over its range
 };
 
-/// By Gaussian processes, one for each number. Throws InputError outside the measured materials, with their ranges.
+/// By Gaussian processes, one for each number, or mean and scatter, as LawLibrary::checks decide. Throws InputError
+/// outside the measured materials, with their ranges, and for a library that is not checked.
 LibraryAnswer ask_library(const LawLibrary& library, const LibraryPoint& at);
 
-/// Every measured material as the others predict it.
-struct LibraryCheck {
-  std::string name;
-  double error = 0.0;     ///< root mean square of prediction less measured
-  double spread = 0.0;    ///< standard deviation of the number over the materials
-  double coverage = 0.0;  ///< share of materials within 1.96 deviations, those of the measured value included
-  std::size_t materials = 0;
-};
+/// The checks of all numbers: a fit for each number and material, some seconds in all. Throws InputError for fewer than
+/// eight materials.
 std::vector<LibraryCheck> check_library(const LawLibrary& library);
 
 /// What else describes the soft particle of an answer.
@@ -120,15 +134,25 @@ struct LibraryMatter {
   double shell_radius = 0.016;
 };
 
-/// The answer as a law table of one entry whose refits are `draws` normal draws, for error bars of macro runs. `own`: a
-/// measured table, by whose entry nearest in solid fraction the answer is corrected (both weighted by their
-/// covariances); what differs by more than three deviations is added to `remarks`.
+/// The answer as a law table of one entry whose refits are `draws` normal draws, for error bars of macro runs.
 LawTable table_of(const LawLibrary& library, const LibraryAnswer& answer, const LibraryMatter& matter, int draws = 64);
+
+/// The entry of a measured table whose solid fraction is nearest to that of a material of the library. Throws
+/// InputError, with all differences, where the entry is of another material or shell, or its solid fraction is more
+/// than kReachOfPackings away; `source` names the table.
+const LawTableEntry& own_entry(const LawLibrary& library, const LibraryPoint& at, const LawTable& own,
+                               const std::string& source);
+
+/// The answer corrected by own packings, see own_entry(), both weighted by their covariances; the error of the form is
+/// that of the own table, where it has configurations that its fit did not see. `remarks`: which packings
+/// they are, and what differs by more than three deviations.
 LibraryAnswer corrected(const LawLibrary& library, const LibraryAnswer& prior, const LawTableEntry& own,
                         std::vector<std::string>& remarks);
 
 /// "mu = 0.5, exponent = 3, ratio = 6, solid fraction = 0.68".
 std::string point_text(const LibraryPoint& at);
+/// Which numbers are means, as one sentence without an end stop; empty: none.
+std::string means_text(const LibraryAnswer& answer);
 /// Which measured material is nearest, and how far, as one sentence without an end stop.
 std::string nearest_text(const LawLibrary& library, const LibraryAnswer& answer);
 

@@ -13,6 +13,7 @@
 #include "common/io/scene.h"
 #include "pipelines/law/law_library.h"
 #include "pipelines/law/law_library_numbers.h"
+#include "pipelines/law/law_library_predict.h"
 
 namespace softgrain {
 
@@ -21,7 +22,7 @@ namespace {
 constexpr const char* kMeaning =
     "ln force: ln F(1 - nu^2)/(E Rs^2) of one plane at D = 0.35; b, delta: as in law tables; of each kind of neighbour "
     "ln nu at v = 0.02 by size, then m; rolling: over E/(1 - nu^2); correlations: of the numbers of the law, lower "
-    "triangle without the diagonal";
+    "triangle without the diagonal; leave_one_out: of every number, see leave_one_out.csv";
 
 /// Numbers in brackets; those that are not known as 0.
 std::string list_text(const std::vector<double>& numbers) {
@@ -57,6 +58,40 @@ std::string material_text(const LibraryMaterial& m, const std::vector<std::strin
 std::vector<double> read_list(const SceneTable& t, const char* key, std::size_t count, const Range& range) {
   std::vector<double> out = t.numbers(key, Unit::none, range);
   if (out.size() != count) t.throw_error(key, fmt::format("has {} numbers, {} are needed", out.size(), count));
+  return out;
+}
+
+std::string checks_text(const std::vector<LibraryCheck>& checks) {
+  const auto column = [&](const char* name, auto of) {
+    std::vector<double> values;
+    for (const LibraryCheck& c : checks) values.push_back(of(c));
+    return fmt::format("{} = {}\n", name, list_text(values));
+  };
+  return "\n[leave_one_out]\n" +
+         column("materials", [](const LibraryCheck& c) { return static_cast<double>(c.materials); }) +
+         column("error", [](const LibraryCheck& c) { return c.error; }) +
+         column("error_of_mean", [](const LibraryCheck& c) { return c.error_of_mean; }) +
+         column("factor", [](const LibraryCheck& c) { return c.factor; }) +
+         column("coverage", [](const LibraryCheck& c) { return c.coverage; });
+}
+
+/// The checks that a file holds, in the order of the names.
+std::vector<LibraryCheck> read_checks(const SceneTable& t, const LawLibrary& library) {
+  const std::vector<std::string> names = library.names();
+  const std::vector<double> materials = read_list(t, "materials", names.size(), Range::not_negative());
+  const std::vector<double> error = read_list(t, "error", names.size(), Range::not_negative());
+  const std::vector<double> error_of_mean = read_list(t, "error_of_mean", names.size(), Range::not_negative());
+  const std::vector<double> factor = read_list(t, "factor", names.size(), Range{1.0, kInfinity, false, true});
+  const std::vector<double> coverage = read_list(t, "coverage", names.size(), Range::closed(0.0, 1.0));
+  std::vector<LibraryCheck> out;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto has = [k](const LibraryMaterial& m) { return std::isfinite(m.numbers[k]); };
+    const auto known = static_cast<std::size_t>(std::ranges::count_if(library.materials, has));
+    if (static_cast<double>(known < least_materials() ? 0 : known) != materials[k])
+      t.throw_error("materials", "are not those of [[material]]: without [leave_one_out] it is computed again");
+    out.push_back(
+        {names[k], known < least_materials() ? 0 : known, error[k], error_of_mean[k], factor[k], coverage[k]});
+  }
   return out;
 }
 
@@ -121,6 +156,7 @@ std::string library_text(const LawLibrary& library, const Provenance& provenance
                  real(library.beta), quoted_list(names));
   for (const LibraryPartner& p : library.partners)
     fmt::format_to(out, "\n[[library.partner]]\nkind = \"{}\"\nratio = {}\n", to_string(p.kind), real(p.ratio));
+  text += checks_text(library.checks);
   for (const LibraryMaterial& m : library.materials) text += material_text(m, names, library.law_numbers());
   return text;
 }
@@ -142,7 +178,9 @@ LawLibrary read_library(const Scene& file) {
     head.throw_error("names", "are not those of this program: collect the library again (softgrain law library)");
   for (const SceneTable& m : root.tables("material")) out.materials.push_back(read_material_row(m, out, names));
   if (out.materials.empty()) root.throw_error("material", "a library needs [[material]]s");
+  if (root.has("leave_one_out")) out.checks = read_checks(root.table("leave_one_out"), out);
   root.finish();
+  if (out.checks.empty()) out.checks = check_library(out);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "pipelines/law/law_library.h"
 #include "pipelines/law/press_test.h"
 
@@ -44,6 +45,7 @@ FittedLaw library_law(const SceneTable& root, const LawLibrary& library) {
     const LibraryAnswer answer = ask_library(library, at);
     LawTable table = table_of(library, answer, matter);
     law.remark = nearest_text(library, answer);
+    if (const std::string means = means_text(answer); !means.empty()) append_part(law.remark, means);
     law.text = law_table_text(table, {}, "");
     law.content = std::move(table);
     return law;

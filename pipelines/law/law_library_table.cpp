@@ -7,6 +7,7 @@
 #include "calibrate/draws.h"
 #include "common/core/error.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 #include "common/data/multi_contact_replicates.h"
 #include "pipelines/law/law_library.h"
 #include "pipelines/law/law_library_numbers.h"
@@ -17,11 +18,41 @@ namespace {
 
 constexpr double kWorstUnseen = 0.5;  ///< error on unseen configurations above which a law is no row
 
+LibraryPoint point_of(const LawTableEntry& entry) {
+  return {entry.spec.friction, entry.spec.exponent, entry.spec.polydispersity, entry.solid_fraction};
+}
+
 void require_same_shell(const LawLibrary& library, const LawTableEntry& entry, const std::string& source) {
   if (entry.spec.sizes) throw InputError(source + ": sizes of another law than P(r) ~ r^-b have no place in a library");
   if (entry.spec.rmax_over_shell != library.rmax_over_shell || entry.spec.beta != library.beta)
     throw InputError(fmt::format("{}: rmax_over_shell = {}, beta = {}; this library has {}, {}", source,
                                  entry.spec.rmax_over_shell, entry.spec.beta, library.rmax_over_shell, library.beta));
+}
+
+/// Whether a number of a table is the one that was asked for: what somebody gives is rounded.
+bool is_same(double measured, double asked) {
+  constexpr double kRounding = 1e-3;
+  return std::abs(measured - asked) <= kRounding * std::max(1.0, std::abs(asked));
+}
+
+/// In what an own table differs from the library and the material that was asked for; empty: in nothing.
+std::string differences_of(const LawLibrary& library, const LibraryPoint& at, const LawTableEntry& own) {
+  std::string out;
+  const LibraryPoint measured = point_of(own);
+  for (const LibraryVariable& v : kLibraryVariables)
+    if (v.value != &LibraryPoint::solid_fraction && !is_same(measured.*v.value, at.*v.value))
+      append_part(out, fmt::format("{} = {:.6g}, asked {:.6g}", v.name, measured.*v.value, at.*v.value));
+  if (!(std::abs(own.solid_fraction - at.solid_fraction) <= kReachOfPackings))
+    append_part(out, fmt::format("its nearest solid fraction is {:.4f}, asked {:.4f}: must be at most {:g} apart",
+                                 own.solid_fraction, at.solid_fraction, kReachOfPackings));
+  if (own.spec.sizes) append_part(out, "grain sizes of another law than P(r) ~ r^-b");
+  const auto shell = [&](const char* name, double its, double of_library) {
+    if (!is_same(its, of_library))
+      append_part(out, fmt::format("{} = {:g}, the library has {:g}", name, its, of_library));
+  };
+  shell("rmax_over_shell", own.spec.rmax_over_shell, library.rmax_over_shell);
+  shell("beta", own.spec.beta, library.beta);
+  return out;
 }
 
 std::vector<LibraryPartner> partners_of(const MultiContactLaw& law) {
@@ -116,17 +147,34 @@ OwnNumbers own_numbers(const LawLibrary& library, const LawTableEntry& own) {
   return out;
 }
 
-/// Numbers that own measurements tell.
-std::vector<std::size_t> told(const OwnNumbers& own, std::size_t begin, std::size_t end) {
+/// Numbers of the law that own measurements tell: one whose refits do not scatter was not fitted.
+std::vector<std::size_t> told_of_law(const OwnNumbers& own, std::size_t law_numbers) {
   std::vector<std::size_t> out;
-  for (std::size_t k = begin; k < end; ++k)
+  for (std::size_t k = 0; k < law_numbers; ++k)
     if (std::isfinite(own.values[k]) && std::isfinite(own.errors[k]) && own.errors[k] > 0.0) out.push_back(k);
   return out;
 }
 
-void compare_with_own(const LibraryAnswer& prior, const OwnNumbers& own, std::vector<std::string>& remarks) {
+/// The same of all else. Errors of the form and trials have no error of their own: they are as measured.
+std::vector<std::size_t> told_of_sides(const OwnNumbers& own, std::size_t law_numbers) {
+  std::vector<std::size_t> out;
+  for (std::size_t k = law_numbers; k < own.values.size(); ++k)
+    if (std::isfinite(own.values[k]) && std::isfinite(own.errors[k])) out.push_back(k);
+  return out;
+}
+
+/// A number of the library and one of own packings, weighted by their variances.
+void correct_side(LibraryNumber& n, double value, double error) {
+  const double variance = n.deviation * n.deviation;
+  const double share = std::isfinite(n.value) && error > 0.0 ? variance / (variance + error * error) : 1.0;
+  n.value = share < 1.0 ? n.value + share * (value - n.value) : value;
+  n.deviation = std::sqrt(share) * error;
+}
+
+void compare_with_own(const LibraryAnswer& prior, const OwnNumbers& own, const std::vector<std::size_t>& told,
+                      std::vector<std::string>& remarks) {
   constexpr double kMost = 3.0;
-  for (const std::size_t k : told(own, 0, own.values.size())) {
+  for (const std::size_t k : told) {
     const LibraryNumber& n = prior.numbers[k];
     if (!std::isfinite(n.value)) continue;
     const double off = (own.values[k] - n.value) / std::hypot(own.errors[k], n.deviation);
@@ -155,7 +203,7 @@ std::optional<LibraryMaterial> library_row(LawLibrary& library, const LawTableEn
     throw InputError(source + ": measured with other kinds or sizes of neighbours than the first table");
   LibraryMaterial m;
   m.source = source;
-  m.at = {entry.spec.friction, entry.spec.exponent, entry.spec.polydispersity, entry.solid_fraction};
+  m.at = point_of(entry);
   m.packings = entry.packings;
   const OwnNumbers numbers = own_numbers(library, entry);
   m.numbers = numbers.values;
@@ -189,6 +237,7 @@ LawTable table_of(const LawLibrary& library, const LibraryAnswer& answer, const 
   e.packings = nearest.packings;
   e.relaxation = fmt::format("interpolated between {} measured materials; {}", library.materials.size(),
                              nearest_text(library, answer));
+  if (const std::string means = means_text(answer); !means.empty()) append_part(e.relaxation, means);
   e.volume_max = nearest.volume_max;
   e.overlap_max = nearest.overlap_max;
   e.grain_overlap_max = nearest.grain_overlap_max;
@@ -202,31 +251,40 @@ LawTable table_of(const LawLibrary& library, const LibraryAnswer& answer, const 
   return table;
 }
 
+const LawTableEntry& own_entry(const LawLibrary& library, const LibraryPoint& at, const LawTable& own,
+                               const std::string& source) {
+  const LawTableEntry& out = *std::ranges::min_element(
+      own.entries, {}, [&](const LawTableEntry& e) { return std::abs(e.solid_fraction - at.solid_fraction); });
+  if (const std::string other = differences_of(library, at, out); !other.empty())
+    throw InputError(source + ": is of another material: " + other);
+  return out;
+}
+
 LibraryAnswer corrected(const LawLibrary& library, const LibraryAnswer& prior, const LawTableEntry& own,
                         std::vector<std::string>& remarks) {
   const OwnNumbers numbers = own_numbers(library, own);
-  compare_with_own(prior, numbers, remarks);
-  LibraryAnswer out = prior;
+  remarks.push_back(
+      fmt::format("corrected by {} own packings of solid fraction {:.4f}", own.packings, own.solid_fraction));
   const std::size_t count = library.law_numbers();
+  const std::vector<std::size_t> of_law = told_of_law(numbers, count);
+  const std::vector<std::size_t> of_sides = told_of_sides(numbers, count);
+  compare_with_own(prior, numbers, of_law, remarks);
+  compare_with_own(prior, numbers, of_sides, remarks);
+  LibraryAnswer out = prior;
   NormalNumbers before{{}, covariance_of(deviations_of(prior, count), prior.correlations)};
   for (std::size_t k = 0; k < count; ++k) before.mean.push_back(prior.numbers[k].value);
   std::vector<double> own_errors(numbers.errors.begin(), numbers.errors.begin() + static_cast<std::ptrdiff_t>(count));
   for (double& e : own_errors) e = std::isfinite(e) ? e : 0.0;
   const NormalNumbers after =
-      updated(before, told(numbers, 0, count), {numbers.values, covariance_of(own_errors, numbers.correlations)});
+      updated(before, of_law, {numbers.values, covariance_of(own_errors, numbers.correlations)});
   for (std::size_t k = 0; k < count; ++k) {
     out.numbers[k].value = after.mean[k];
     out.numbers[k].deviation = std::sqrt(std::max(after.covariance[k * count + k], 0.0));
   }
   out.correlations = correlations_of(after.covariance, count);
-  for (const std::size_t k : told(numbers, count, numbers.values.size())) {
-    LibraryNumber& n = out.numbers[k];
-    const double value = numbers.values[k];
-    const double error = numbers.errors[k];
-    const double share =
-        std::isfinite(n.value) ? n.deviation * n.deviation / (n.deviation * n.deviation + error * error) : 1.0;
-    n.value = std::isfinite(n.value) ? n.value + share * (value - n.value) : value;
-    n.deviation = std::sqrt(share) * error;
+  for (const std::size_t k : of_sides) {
+    correct_side(out.numbers[k], numbers.values[k], numbers.errors[k]);
+    std::erase(out.by_mean, out.numbers[k].name);
   }
   return out;
 }

@@ -8,6 +8,7 @@
 #include "calibrate/draws.h"
 #include "calibrate/gaussian_process.h"
 #include "common/core/error.h"
+#include "common/core/parallel_tasks.h"
 #include "common/core/random.h"
 #include "common/core/statistics.h"
 
@@ -72,24 +73,52 @@ TEST(GaussianProcess, ALineIsExact) {
   EXPECT_NEAR(z.mean, 3.0 + 0.2 - 0.8, 1e-3);
 }
 
+std::vector<ProcessValue> left_out(const Sample& s) { return leave_one_out(s.points, s.values, s.errors); }
+
+Sample without(const Sample& all, std::size_t k) {
+  Sample others = all;
+  const auto at = static_cast<std::ptrdiff_t>(k);
+  others.points.erase(others.points.begin() + at);
+  others.values.erase(others.values.begin() + at);
+  others.errors.erase(others.errors.begin() + at);
+  return others;
+}
+
 TEST(GaussianProcess, LeavingOneOutIsThePredictionOfTheOthers) {
   const Sample all = sample(40, 7);
-  const std::vector<ProcessValue> left = process(all).leave_one_out();
-  double apart = 0.0;
+  const std::vector<ProcessValue> left = left_out(all);
   int inside = 0;
   for (std::size_t k = 0; k < all.values.size(); ++k) {
     inside +=
         std::abs(left[k].mean - all.values[k]) <= kNormal95 * std::hypot(left[k].deviation, all.errors[k]) ? 1 : 0;
     if (k % 10 != 0) continue;
-    Sample others = all;
-    const auto at = static_cast<std::ptrdiff_t>(k);
-    others.points.erase(others.points.begin() + at);
-    others.values.erase(others.values.begin() + at);
-    others.errors.erase(others.errors.begin() + at);
-    apart = std::max(apart, std::abs(process(others).at(all.points[k]).mean - left[k].mean));
+    const ProcessValue z = process(without(all, k)).at(all.points[k]);
+    EXPECT_EQ(z.mean, left[k].mean);
+    EXPECT_EQ(z.deviation, left[k].deviation);
   }
-  EXPECT_LT(apart, kNoise) << "but for lengths that are fitted again";
   EXPECT_GE(inside, 35);
+}
+
+/// Without the one point that the first variable moves, nothing says that it does: the others predict their own mean,
+/// with lengths of their own. Lengths of all points would know better.
+TEST(GaussianProcess, TheOneLeftOutHasNoSayInTheLengths) {
+  Sample s = sample(14, 3);
+  for (std::size_t k = 0; k < s.points.size(); ++k) {
+    s.points[k][0] = k == 0 ? 1.0 : 0.0;
+    s.values[k] = (k == 0 ? 5.0 : 0.0) + 0.1 * std::sin(7.0 * static_cast<double>(k));
+  }
+  const std::vector<ProcessValue> left = left_out(s);
+  s.values[0] = -40.0;
+  EXPECT_EQ(left_out(s)[0].mean, left[0].mean) << "whatever its value";
+  EXPECT_EQ(left_out(s)[0].deviation, left[0].deviation);
+}
+
+TEST(GaussianProcess, LeavingOneOutIsTheSameForAnyNumberOfThreads) {
+  const Sample all = sample(16, 11);
+  const std::vector<ProcessValue> many = left_out(all);
+  const OneThread one;
+  const std::vector<ProcessValue> alone = left_out(all);
+  for (std::size_t k = 0; k < many.size(); ++k) EXPECT_EQ(many[k].mean, alone[k].mean) << k;
 }
 
 TEST(GaussianProcess, ScatterOfThePointsIsInTheBand) {
@@ -107,6 +136,16 @@ TEST(GaussianProcess, RefusesWhatDoesNotGoTogether) {
   s = sample(12, 1);
   s.values[3] = std::nan("");
   EXPECT_THROW((void)process(s), InputError);
+  EXPECT_THROW((void)left_out(sample(7, 1)), InputError) << "six are too few";
+}
+
+TEST(GaussianProcess, RefusesACovarianceWithoutCholeskyDecomposition) {
+  for (const double far : {1e10, 1e170}) {
+    Sample s = sample(12, 1);
+    for (std::vector<double>& u : s.points)
+      for (double& x : u) x *= far;
+    EXPECT_THROW((void)process(s), InputError) << far;
+  }
 }
 
 TEST(DistanceFromHull, OfASquareAndItsInside) {
