@@ -14,6 +14,7 @@
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
 #include "pipelines/commands/law_options.h"
+#include "pipelines/law/law_library_press.h"
 #include "pipelines/law/value_output.h"
 
 namespace softgrain {
@@ -61,9 +62,9 @@ LawLibrary collected(const std::vector<std::string>& directories, std::string& t
   return library;
 }
 
-std::string check_text(const std::vector<LibraryCheck>& checks) {
-  std::string text = fmt::format("{:<26} {:>9} {:>10} {:>10} {:>8} {:>11}\n", "each left out in turn", "materials",
-                                 "off by", "mean off", "widened", "within 95 %");
+std::string check_text(const char* title, const std::vector<LibraryCheck>& checks) {
+  std::string text = fmt::format("{:<26} {:>9} {:>10} {:>10} {:>8} {:>11}\n", title, "materials", "off by", "mean off",
+                                 "widened", "within 95 %");
   for (const LibraryCheck& c : checks)
     if (c.materials > 0)
       text += fmt::format("  {:<24} {:>9} {:>10.3g} {:>10.3g} {:>8.2f} {:>9.0f} %{}\n", c.name, c.materials, c.error,
@@ -139,13 +140,24 @@ LibraryAnswer answer_of(const LawOptions& o, const LawLibrary& library, std::vec
   return corrected(library, answer, own_entry(library, at, *own.table(), "law get: --own " + o.own), remarks);
 }
 
+/// The law of all neighbours that goes with a press test, and what was said of it.
+PressTestLaw press_test_law(const LawOptions& o, const LawLibrary& library) {
+  for (const char* name : {"--exponent", "--ratio", "--solid-fraction", "--nu", "--E", "--radius", "--own"})
+    if (std::ranges::find(o.given, name) != o.given.end())
+      throw InputError(fmt::format("law get: {} does not go with --press-test, whose table says all but mu", name));
+  std::optional<double> friction;
+  if (std::ranges::find(o.given, "--mu") != o.given.end()) friction = given(o, "--mu", o.friction, 0.0, 10.0);
+  return law_of_press_test(library, o.press_test, friction, static_cast<int>(o.draws));
+}
+
 json answer_json(const LibraryAnswer& answer, const std::vector<std::string>& remarks, const std::string& written) {
   json out{{"command", "law get"},
            {"status", "good"},
            {"distance", answer.distance},
            {"by_mean", answer.by_mean},
            {"remarks", remarks}};
-  for (const LibraryVariable& v : kLibraryVariables) out["material"][v.name] = answer.at.*v.value;
+  for (const LibraryVariable& v : kLibraryVariables)
+    if (is_known(answer.at.*v.value)) out["material"][v.name] = answer.at.*v.value;
   for (const LibraryNumber& n : answer.numbers)
     if (std::isfinite(n.value)) out["numbers"][n.name] = {n.value, n.deviation};
   if (!written.empty()) out["written"] = written;
@@ -153,7 +165,7 @@ json answer_json(const LibraryAnswer& answer, const std::vector<std::string>& re
 }
 
 std::string answer_text(const LibraryAnswer& answer, const std::vector<std::string>& remarks) {
-  std::string text = point_text(answer.at) + "\n";
+  std::string text = of_press_test(answer) ? "" : point_text(answer.at) + "\n";
   for (const LibraryNumber& n : answer.numbers)
     if (std::isfinite(n.value))
       text += fmt::format("  {:<24} {:>9.4g} +- {:.2g}{}\n", n.name, n.value, n.deviation,
@@ -170,21 +182,27 @@ ExitStatus make_library(const LawOptions& o) {
   const bool there = o.files.size() == 1 && fs::is_regular_file(o.files.front());
   LawLibrary library = there ? load_library(o.files.front()) : collected(o.files, text);
   library.checks = check_library(library);
+  library.press_checks = check_press_tests(library);
   const std::vector<LibraryCheck>& checks = library.checks;
   if (!o.out.empty()) {
     write_text_atomic(o.out, library_text(library, provenance_of(o)));
     write_text_atomic(fs::path(o.out).replace_filename("leave_one_out.csv").string(), check_csv(checks));
+    if (!library.press_checks.empty())
+      write_text_atomic(fs::path(o.out).replace_filename("leave_one_out_press_test.csv").string(),
+                        check_csv(library.press_checks));
   }
   if (o.json) {
     json out{{"command", "law library"},
              {"status", "good"},
              {"materials", library.materials.size()},
-             {"leave_one_out", check_json(checks)}};
+             {"leave_one_out", check_json(checks)},
+             {"leave_one_out_press_test", check_json(library.press_checks)}};
     if (!o.out.empty()) out["written"] = o.out;
     write_standard_output(out.dump(2) + "\n");
     return ExitStatus::good;
   }
-  text += fmt::format("{} materials\n", library.materials.size()) + check_text(checks);
+  text += fmt::format("{} materials\n", library.materials.size()) + check_text("each left out in turn", checks);
+  if (!library.press_checks.empty()) text += check_text("known by a press test alone", library.press_checks);
   if (!o.out.empty()) text += "written: " + o.out + "\n";
   write_standard_output(text);
   return ExitStatus::good;
@@ -199,10 +217,19 @@ ExitStatus get_law(const LawOptions& o) {
   const LibraryMatter matter = matter_of(o);
   const LawLibrary library = load_library(o.library.empty() ? shipped_library() : o.library);
   std::vector<std::string> remarks;
-  const LibraryAnswer answer = answer_of(o, library, remarks);
-  if (const std::string means = means_text(answer); !means.empty()) remarks.push_back(means);
-  if (!o.out.empty())
-    save_law_table(table_of(library, answer, matter, static_cast<int>(o.draws)), o.out, provenance_of(o));
+  LibraryAnswer answer;
+  LawTable table;
+  if (!o.press_test.empty()) {
+    PressTestLaw law = press_test_law(o, library);
+    answer = std::move(law.answer);
+    table = std::move(law.table);
+    remarks = std::move(law.remarks);
+  } else {
+    answer = answer_of(o, library, remarks);
+    if (const std::string means = means_text(answer); !means.empty()) remarks.push_back(means);
+    table = table_of(library, answer, matter, static_cast<int>(o.draws));
+  }
+  if (!o.out.empty()) save_law_table(table, o.out, provenance_of(o));
   if (o.json)
     write_standard_output(answer_json(answer, remarks, o.out).dump(2) + "\n");
   else
