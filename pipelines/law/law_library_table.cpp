@@ -73,10 +73,10 @@ std::string unfit(const LawTableEntry& entry, const MultiContactLaw* law) {
   return entry.solid_fraction > 0.0 ? "" : "no solid fraction";
 }
 
-/// Empty where no law of pairs was fitted.
+/// Empty where no law of pairs was fitted. It is always inaccurate, being off where there are more neighbours.
 std::optional<PressNumbers> press_numbers_of(const LawTableEntry& entry) {
   const MultiContactLaw* law = entry.find(LawForm::pair);
-  if (law == nullptr || !has_numbers(law->status)) return std::nullopt;
+  if (law == nullptr || !(has_numbers(law->status) || law->status == LawStatus::inaccurate)) return std::nullopt;
   return press_numbers(law->a.value, law->b.value, law->delta.value, entry.spec.poisson_ratio);
 }
 
