@@ -150,8 +150,12 @@ struct UnloadingBranch {
 /// the threshold. kt of the overlap falls with the force that is left, so that a contact without force has none. SI
 /// units.
 struct SoftUnloading : SoftContact {
-  static constexpr LawTraits traits{
-      .needs_velocity = true, .has_tangential = true, .has_memory = true, .has_onset = true, .is_fitted = true};
+  static constexpr LawTraits traits{.needs_velocity = true,
+                                    .has_tangential = true,
+                                    .has_memory = true,
+                                    .has_onset = true,
+                                    .is_fitted = true,
+                                    .has_unloading = true};
 
   UnloadingBranch branch;
 
