@@ -19,6 +19,7 @@ struct UnloadingFit {
 /// Fits UnloadingLaw to all unloadings of the samples, least squares of the force,
 ///   F = A [(Delta - Delta_p)/(Delta_max - Delta_p)]^exponent, Delta_p = delta + residual (Delta_max - delta),
 /// with an A for each unloading: samples of one law differ in their force, and creep at the turning point lowers it.
+/// Unloadings without readings, or that begin below the threshold or without force, count in no number.
 /// `delta` and `loading_exponent` b are those of the loading law. Errors: of several samples by leaving out one after
 /// the other (jackknife; Efron and Tibshirani 1993, ch. 11) with Student's t, so that they hold what samples differ by;
 /// of one sample from its residuals, as many of which count as are not correlated. That of the residual holds the error

@@ -44,7 +44,7 @@ struct UnloadingLaw {
   Estimate residual;         ///< in [0, 1)
   Estimate exponent;         ///< at least least_unloading_exponent()
   double correlation = 0.0;  ///< of their errors
-  int samples = 0;           ///< samples that were unloaded
+  int samples = 0;           ///< samples of which an unloading was fitted
   int points = 0;            ///< readings of unloading and reloading
 };
 

@@ -1,4 +1,5 @@
 // Press tests with an unloading branch: the law of the loop, its file and card, the fit, and what tables may hold.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -257,14 +258,58 @@ TEST(UnloadingFit, RepeatsGiveErrorsBetweenThem) {
   EXPECT_NEAR(half / expected, 1.0, 0.2);
 }
 
-TEST(UnloadingFit, TooFewReadingsAreNoBranch) {
-  ForceCurves curves = made(1, 0.0, 0.0, {0.1, 2.8});
-  curves.samples[0].unloaded[0].points.resize(2);
-  const UnloadingFit fit = fit_unloading(curves.samples, {0.065, 0.0, 0.065, 0.065}, 2.799);
+constexpr Estimate kExactDelta{0.065, 0.0, 0.065, 0.065};
+
+void expect_no_branch(const ForceCurves& curves, const std::string& why) {
+  const UnloadingFit fit = fit_unloading(curves.samples, kExactDelta, 2.799);
   EXPECT_FALSE(fit.law);
-  EXPECT_NE(fit.remark.find("no unloading branch"), std::string::npos);
-  curves.samples[0].unloaded.clear();
-  EXPECT_EQ(fit_unloading(curves.samples, {0.065, 0.0, 0.065, 0.065}, 2.799).remark, "");
+  EXPECT_EQ(fit.remark.rfind("no unloading branch: ", 0), 0U) << fit.remark;
+  EXPECT_NE(fit.remark.find(why), std::string::npos) << fit.remark;
+}
+
+/// The message says what happened, not what usually does.
+TEST(UnloadingFit, WithoutABranchItSaysWhy) {
+  ForceCurves few = made(1, 0.0, 0.0, {0.1, 2.8});
+  few.samples[0].unloaded[0].points.resize(2);
+  expect_no_branch(few, "2 readings of unloading from above the threshold of the law, at least 4 are needed");
+  few.samples[0].unloaded.clear();
+  EXPECT_EQ(fit_unloading(few.samples, kExactDelta, 2.799).remark, "");
+  ForceCurves below = made(2, 0.0, 0.0, {0.1, 2.8});
+  for (ForceCurve& s : below.samples) s.unloaded[0].deepest = 0.06;
+  expect_no_branch(below, "of 2 of 2 samples that were unloaded nothing counts");
+  ForceCurves flat = made(1, 0.0, 0.0, {0.1, 2.8});
+  for (ForcePoint& p : flat.samples[0].unloaded[0].points) p.delta = 0.3;
+  expect_no_branch(flat, "30 readings do not determine residual and exponent");
+  ForceCurves one = made(2, 0.0, 0.0, {0.1, 2.8});
+  one.samples[1].unloaded[0].points.resize(3);
+  expect_no_branch(one, "without sample \"S0\" (3 readings of unloading");
+}
+
+/// A sample whose unloading begins below the threshold changes neither the numbers nor their errors.
+TEST(UnloadingFit, SamplesThatSayNothingDoNotCount) {
+  for (const int samples : {1, 3}) {
+    ForceCurves curves = made(samples, 0.002, 0.03, {0.1, 2.8});
+    const UnloadingFit alone = fit_unloading(curves.samples, kExactDelta, 2.799);
+    ASSERT_TRUE(alone.law) << alone.remark;
+    EXPECT_EQ(alone.law->samples, samples);
+    const ForceCurves more = made(2, 0.002, 0.03, {0.1, 2.8});
+    curves.samples.push_back(more.samples[0]);
+    curves.samples.back().unloaded[0].deepest = 0.05;
+    curves.samples.push_back(more.samples[1]);
+    curves.samples.back().unloaded[0].points.clear();
+    const UnloadingFit fit = fit_unloading(curves.samples, kExactDelta, 2.799);
+    ASSERT_TRUE(fit.law) << fit.remark;
+    EXPECT_EQ(fit.law->samples, samples);
+    EXPECT_EQ(fit.law->points, alone.law->points);
+    for (const auto of : {&UnloadingLaw::residual, &UnloadingLaw::exponent}) {
+      EXPECT_EQ(((*fit.law).*of).value, ((*alone.law).*of).value);
+      EXPECT_EQ(((*fit.law).*of).standard_error, ((*alone.law).*of).standard_error);
+      EXPECT_EQ(((*fit.law).*of).high, ((*alone.law).*of).high);
+    }
+    EXPECT_NE(fit.remark.find(fmt::format("of 2 of {} samples that were unloaded nothing counts", samples + 2)),
+              std::string::npos)
+        << fit.remark;
+  }
 }
 
 class PressTestTable : public ::testing::Test {
