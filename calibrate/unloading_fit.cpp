@@ -189,11 +189,10 @@ BetweenSamples jackknife(const std::vector<const ForceCurve*>& samples, double t
   return {out, ""};
 }
 
-/// The residual is the share of a depth below the threshold, whose error shifts it, dr/d delta = -(1 - r)/(Delta_max -
-/// delta): what is left after unloading is measured, not its share.
+/// The residual is the share of a depth below the threshold, whose error takes it along.
 void add_threshold_error(const Estimate& delta, double deepest, Estimate& residual) {
   if (!std::isfinite(delta.standard_error)) return;
-  const double shift = (1.0 - residual.value) / (deepest - delta.value) * delta.standard_error;
+  const double shift = residual_slope(residual.value, deepest, delta.value) * delta.standard_error;
   residual.standard_error = std::hypot(residual.standard_error, shift);
   residual.low = std::max(0.0, residual.value - std::hypot(residual.value - residual.low, kNormal95 * shift));
   residual.high = std::min(1.0, residual.value + std::hypot(residual.high - residual.value, kNormal95 * shift));
@@ -223,6 +222,7 @@ UnloadingFit fit_unloading(const std::vector<ForceCurve>& samples, const Estimat
   UnloadingLaw law;
   law.samples = static_cast<int>(used.size());
   law.points = static_cast<int>(problem.readings());
+  law.deepest = problem.deepest();
   std::array<double, 3> covariance = found.fit->covariance;
   double freedom = static_cast<double>(problem.readings() - kShape - problem.unloadings());
   if (used.size() > 1) {
@@ -233,7 +233,7 @@ UnloadingFit fit_unloading(const std::vector<ForceCurve>& samples, const Estimat
   }
   law.residual = student_estimate(found.fit->residual, std::sqrt(covariance[0]), freedom, 0.0, 1.0);
   law.exponent = student_estimate(found.fit->exponent, std::sqrt(covariance[2]), freedom, 1.0);
-  add_threshold_error(delta, problem.deepest(), law.residual);
+  add_threshold_error(delta, law.deepest, law.residual);
   const double scale = law.residual.standard_error * law.exponent.standard_error;
   law.correlation = scale > 0.0 ? std::clamp(covariance[1] / scale, -1.0, 1.0) : 0.0;
   UnloadingFit out{law, ""};

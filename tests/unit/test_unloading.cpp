@@ -12,6 +12,7 @@
 #include "common/core/random.h"
 #include "common/data/law_words.h"
 #include "common/io/text_file.h"
+#include "pipelines/law/law_draws.h"
 #include "pipelines/law/law_values.h"
 #include "pipelines/law/press_test.h"
 #include "tests/support/synthetic_law.h"
@@ -121,6 +122,7 @@ LawCard card_with_branch() {
   set(u.residual, 0.1);
   set(u.exponent, 2.8);
   u.correlation = -0.5;
+  u.deepest = 0.28;
   u.samples = 3;
   u.points = 93;
   law.unloading = u;
@@ -140,6 +142,7 @@ TEST(UnloadingCard, IsReadBackAndUsed) {
   EXPECT_EQ(u.residual.value, 0.1);
   EXPECT_EQ(u.exponent.high, 1.2 * 2.8);
   EXPECT_EQ(u.correlation, -0.5);
+  EXPECT_EQ(u.deepest, 0.28);
   EXPECT_EQ(u.samples, 3);
   EXPECT_EQ(u.points, 93);
   const CardLaw law = make_card_law(again, PairKind::soft_solid, 5e5, 0.3, 0.0, false, std::nullopt, true);
@@ -154,6 +157,51 @@ TEST(UnloadingCard, IsReadBackAndUsed) {
   EXPECT_NEAR(values[0].force.value, branch_value({}, 0.2, 0.3, {0.1, 2.8}), 1e-12);
   EXPECT_NEAR(values[1].force.value, KnownLaw{}.value(0.3), 1e-12);
   EXPECT_THROW((void)law::card_values(again, PairKind::soft_soft, {0.2}, std::nullopt, 0.3), InputError);
+}
+
+double spread(const std::vector<double>& values) {
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const double v : values) {
+    sum += v;
+    squares += v * v;
+  }
+  const auto n = static_cast<double>(values.size());
+  return std::sqrt(squares / n - sum * sum / (n * n));
+}
+
+/// The residual takes the error of the threshold along: what stays of the depth, which is measured, scatters by the
+/// error of its own alone.
+TEST(UnloadingCard, TheErrorOfTheThresholdIsDrawnOnce) {
+  constexpr double kDeepest = 0.3;
+  constexpr double kError = 1e-3;  // of the threshold
+  for (const double own : {0.0, 2e-3}) {
+    LawCard card = card_with_branch();
+    PairLaw& law = card.pairs[0];
+    law.covariance.assign(49, 0.0);
+    law.covariance[2 * 7 + 2] = kError * kError;
+    law.normal.delta.standard_error = kError;
+    UnloadingLaw& u = *law.unloading;
+    const double delta = law.normal.delta.value;
+    const double total = std::hypot(own, residual_slope(0.1, kDeepest, delta) * kError);
+    u.residual = {0.1, total, 0.1 - kNormal95 * total, 0.1 + kNormal95 * total};
+    u.exponent = {2.8, 0.0, 2.8, 2.8};
+    u.deepest = kDeepest;
+    LawSources sources;
+    sources.laws = {FittedLaw{card}};
+    NamedLaws named;
+    named.form = LawForm::pair;
+    const LawDraws drawn = law_draws(sources, named, MacroSpec{}, 0.0, 4000);
+    std::vector<double> residuals;
+    std::vector<double> left;
+    for (const std::vector<double>& numbers : drawn.draws) {
+      ASSERT_EQ(numbers.size(), 9U);
+      residuals.push_back(numbers[7]);
+      left.push_back(numbers[2] + numbers[7] * (kDeepest - numbers[2]));
+    }
+    EXPECT_NEAR(spread(residuals), total, 0.04 * total) << "as the card says";
+    EXPECT_NEAR(spread(left), own * (kDeepest - delta), 0.04 * own * (kDeepest - delta) + 1e-2 * kError);
+  }
 }
 
 TEST(UnloadingCard, ABranchThatWouldGiveEnergyIsRefused) {
@@ -199,6 +247,7 @@ TEST(UnloadingFit, AnExactBranchComesBack) {
     EXPECT_NEAR(fit.law->residual.value, u.residual, 1e-5);
     EXPECT_NEAR(fit.law->exponent.value, u.exponent, 1e-4);
     EXPECT_EQ(fit.law->points, 31);
+    EXPECT_EQ(fit.law->deepest, 0.3);
   }
 }
 
@@ -219,6 +268,7 @@ TEST(UnloadingFit, RepeatsWithOffsetsAndNoiseHoldTheTruth) {
   EXPECT_NEAR(law.unloading->residual.value, truth.residual, 0.02);
   ASSERT_TRUE(fit.card.pairs[1].unloading) << "by symmetry";
   EXPECT_EQ(fit.card.pairs[1].unloading->residual.value, law.unloading->residual.value);
+  EXPECT_NEAR(fit.card.pairs[1].unloading->deepest, 2.0 * law.unloading->deepest, 1e-12) << "half of the overlap each";
 }
 
 /// Were 95 % of the intervals to hold the truth, more than five of twenty would miss it once in 3000 such tests.
