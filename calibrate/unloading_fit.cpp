@@ -18,9 +18,8 @@ namespace softgrain {
 namespace {
 
 constexpr std::size_t kMostReadings = 120;  ///< readings of one unloading; longer series are averaged
-constexpr double kMostResidual = 0.98;
-constexpr double kMostExcess = 20.0;  ///< of the exponent above the least one
-constexpr std::size_t kShape = 2;     ///< residual and excess of the exponent; the rest are forces
+constexpr double kMostExcess = 20.0;        ///< of the exponent above the least one
+constexpr std::size_t kShape = 2;           ///< residual and excess of the exponent; the rest are forces
 
 /// Averages of so many neighbouring readings that few enough are left.
 std::vector<ForcePoint> thinned(const std::vector<ForcePoint>& points) {
@@ -45,6 +44,7 @@ struct BranchFit {
   double exponent = 0.0;
   std::array<double, 3> covariance{};  ///< variance of the residual, covariance, variance of the exponent
   bool at_least = false;               ///< the exponent is as small as it may be
+  bool at_most = false;                ///< the residual is as large as it may be
 };
 
 /// A fit, or why there is none.
@@ -91,7 +91,7 @@ class BranchProblem {
     LeastSquaresProblem problem;
     problem.residuals = readings_;
     problem.evaluate = [this](std::span<const double> x, std::span<double> r) { return residuals(x, r); };
-    problem.bounds = {{0.0, kMostResidual}, {0.0, kMostExcess}};
+    problem.bounds = {{0.0, kLargestResidual}, {0.0, kMostExcess}};
     problem.bounds.resize(kShape + curves_.size());
     std::vector<std::vector<double>> starts;
     for (const double residual : {0.1, 0.3, 0.6}) {
@@ -136,7 +136,7 @@ class BranchProblem {
 
   [[nodiscard]] BranchFit branch_of(const LeastSquaresFit& found) const {
     const std::vector<double>& x = found.parameters;
-    BranchFit out{x[0], exponent(x[0], x[1]), {}, found.at_bound[1]};
+    BranchFit out{x[0], exponent(x[0], x[1]), {}, found.at_bound[1], found.at_bound[0] && x[0] > 0.0};
     const std::size_t n = x.size();
     const double block = correlated(x);
     const double rr = block * found.covariance[0];
@@ -195,7 +195,8 @@ void add_threshold_error(const Estimate& delta, double deepest, Estimate& residu
   const double shift = residual_slope(residual.value, deepest, delta.value) * delta.standard_error;
   residual.standard_error = std::hypot(residual.standard_error, shift);
   residual.low = std::max(0.0, residual.value - std::hypot(residual.value - residual.low, kNormal95 * shift));
-  residual.high = std::min(1.0, residual.value + std::hypot(residual.high - residual.value, kNormal95 * shift));
+  residual.high =
+      std::min(kLargestResidual, residual.value + std::hypot(residual.high - residual.value, kNormal95 * shift));
 }
 
 }  // namespace
@@ -231,7 +232,7 @@ UnloadingFit fit_unloading(const std::vector<ForceCurve>& samples, const Estimat
     covariance = *between.covariance;
     freedom = static_cast<double>(used.size() - 1);
   }
-  law.residual = student_estimate(found.fit->residual, std::sqrt(covariance[0]), freedom, 0.0, 1.0);
+  law.residual = student_estimate(found.fit->residual, std::sqrt(covariance[0]), freedom, 0.0, kLargestResidual);
   law.exponent = student_estimate(found.fit->exponent, std::sqrt(covariance[2]), freedom, 1.0);
   add_threshold_error(delta, law.deepest, law.residual);
   const double scale = law.residual.standard_error * law.exponent.standard_error;
@@ -241,6 +242,8 @@ UnloadingFit fit_unloading(const std::vector<ForceCurve>& samples, const Estimat
     out.remark =
         fmt::format("the exponent of unloading is {:.4g}, the least with which no cycle gives back more than it took",
                     found.fit->exponent);
+  if (found.fit->at_most)
+    append_part(out.remark, fmt::format("the residual is {:g}, the largest that a law may have", kLargestResidual));
   if (used.size() < unloaded) append_part(out.remark, idle);
   return out;
 }

@@ -23,7 +23,7 @@ struct UnloadingFit {
 /// `delta` and `loading_exponent` b are those of the loading law. Errors: of several samples by leaving out one after
 /// the other (jackknife; Efron and Tibshirani 1993, ch. 11) with Student's t, so that they hold what samples differ by;
 /// of one sample from its residuals, as many of which count as are not correlated. That of the residual holds the error
-/// of delta. An exponent on its bound, least_unloading_exponent(), is said to be so.
+/// of delta. An exponent on its bound, least_unloading_exponent(), and a residual on kLargestResidual are said to be so.
 UnloadingFit fit_unloading(const std::vector<ForceCurve>& samples, const Estimate& delta, double loading_exponent);
 
 }  // namespace softgrain

@@ -41,8 +41,8 @@ struct ThresholdPowerLaw {
 /// How a contact unloads from its deepest Delta_max, and comes back: F = F(Delta_max) [(Delta - Delta_p)/(Delta_max -
 /// Delta_p)]^exponent, 0 below Delta_p = delta + residual (Delta_max - delta); see UnloadingBranch. Dimensionless.
 struct UnloadingLaw {
-  Estimate residual;         ///< its error holds that of the threshold, see residual_slope()
-  Estimate exponent;         ///< at least least_unloading_exponent()
+  Estimate residual;  ///< from 0 to kLargestResidual; its error holds that of the threshold, see residual_slope()
+  Estimate exponent;  ///< at least least_unloading_exponent()
   double correlation = 0.0;  ///< of their errors
   double deepest = 0.0;      ///< mean Delta_max of the unloadings that it was fitted to; 0: not said
   int samples = 0;           ///< samples of which an unloading was fitted

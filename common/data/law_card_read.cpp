@@ -76,7 +76,7 @@ UnloadingLaw read_unloading(const SceneTable& table, const ThresholdPowerLaw& lo
   u.samples = static_cast<int>(table.count("samples", 0, kMany));
   u.points = static_cast<int>(table.count("points", 0, kMany));
   u.correlation = table.number("correlation", Unit::none, Range::closed(-1.0, 1.0));
-  u.residual = read_estimate(table.table("residual"), Range{0.0, 1.0, false, true}, true);
+  u.residual = read_estimate(table.table("residual"), Range::closed(0.0, kLargestResidual), true);
   u.exponent = read_estimate(table.table("exponent"), Range{1.0, kLargestExponent, false, false}, true);
   if (table.has("deepest"))
     u.deepest = table.number("deepest", Unit::none, Range{loading.delta.value, kLargestDelta, true, false});

@@ -209,9 +209,10 @@ AnyLaw law_of_card(const std::string& path, const std::string& kind, const CardC
   const UnloadingBranch branch{number(pair, "unloading.residual.value", where),
                                number(pair, "unloading.exponent.value", where)};
   constexpr double kRounding = 1e-9;
-  if (!(branch.residual >= 0.0 && branch.residual < 1.0) ||
+  if (!(branch.residual >= 0.0 && branch.residual <= kLargestResidual) ||
       branch.exponent < least_unloading_exponent(branch.residual, law.normal.b) * (1.0 - kRounding))
-    throw InputError(where + ": unloading needs a residual in [0, 1) and an exponent with which no cycle gains energy");
+    throw InputError(where + ": unloading needs a residual from 0 to " + std::to_string(kLargestResidual) +
+                     " and an exponent with which no cycle gains energy");
   return SoftUnloading{
       law, {branch.residual, std::max(branch.exponent, least_unloading_exponent(branch.residual, law.normal.b))}};
 }

@@ -184,8 +184,7 @@ bool is_by_symmetry_of(const PairLaw* measured, const PairLaw& law) {
 }
 
 void set_branch(UnloadingLaw& branch, double residual, double exponent, double loading_exponent) {
-  constexpr double kMost = 0.98;  // a contact that gives back nothing has no stiffness
-  branch.residual.value = std::clamp(residual, 0.0, kMost);
+  branch.residual.value = std::clamp(residual, 0.0, kLargestResidual);
   branch.exponent.value = std::max(exponent, least_unloading_exponent(branch.residual.value, loading_exponent));
 }
 

@@ -159,6 +159,42 @@ TEST(UnloadingCard, IsReadBackAndUsed) {
   EXPECT_THROW((void)law::card_values(again, PairKind::soft_soft, {0.2}, std::nullopt, 0.3), InputError);
 }
 
+/// One limit for what is fitted, read and drawn.
+TEST(UnloadingCard, TheResidualHasOneLimit) {
+  const TemporaryDirectory directory;
+  LawCard card = card_with_branch();
+  UnloadingLaw& u = *card.pairs[0].unloading;
+  u.residual.value = kLargestResidual;
+  save_card(card, directory.file("largest.toml"));
+  EXPECT_EQ(load_card(directory.file("largest.toml")).pairs.at(0).unloading->residual.value, kLargestResidual);
+  u.residual.value = kLargestResidual + 0.001;
+  save_card(card, directory.file("beyond.toml"));
+  try {
+    (void)load_card(directory.file("beyond.toml"));
+    FAIL() << "was read";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("0.98"), std::string::npos) << e.what();
+  }
+  card = card_with_branch();
+  card.pairs[0].covariance.assign(49, 0.0);
+  card.pairs[0].covariance[0] = 1e-6;
+  card.pairs[0].unloading->residual = {0.9, 0.5, 0.0, kLargestResidual};
+  card.pairs.push_back(card.pairs[0]);
+  card.pairs[1].kind = PairKind::soft_soft;
+  LawSources sources;
+  sources.laws = {FittedLaw{card}};
+  NamedLaws named;
+  named.form = LawForm::pair;
+  const LawDraws drawn = law_draws(sources, named, MacroSpec{}, 0.0, 50);
+  double largest = 0.0;
+  for (const std::vector<double>& numbers : drawn.draws) {
+    const AnyLaw law = drawn.with(numbers).laws.soft_solid;
+    ASSERT_TRUE(std::holds_alternative<SoftUnloading>(law));
+    largest = std::max(largest, std::get<SoftUnloading>(law).branch.residual);
+  }
+  EXPECT_EQ(largest, kLargestResidual);
+}
+
 double spread(const std::vector<double>& values) {
   double sum = 0.0;
   double squares = 0.0;
@@ -333,6 +369,20 @@ TEST(UnloadingFit, WithoutABranchItSaysWhy) {
   ForceCurves one = made(2, 0.0, 0.0, {0.1, 2.8});
   one.samples[1].unloaded[0].points.resize(3);
   expect_no_branch(one, "without sample \"S0\" (3 readings of unloading");
+}
+
+TEST(UnloadingFit, AResidualOnItsLimitIsSaidToBe) {
+  ForceCurves curves = made(1, 0.0, 0.0, {0.1, 2.8});
+  std::vector<ForcePoint>& points = curves.samples[0].unloaded[0].points;
+  points.clear();
+  for (int k = 1; k < 30; ++k) {
+    const double delta = 0.3 - 1e-4 * k;
+    points.push_back({delta, kUnit * branch_value({}, delta, 0.3, {0.995, 1.0})});
+  }
+  const UnloadingFit fit = fit_unloading(curves.samples, kExactDelta, 2.799);
+  ASSERT_TRUE(fit.law) << fit.remark;
+  EXPECT_EQ(fit.law->residual.value, kLargestResidual);
+  EXPECT_NE(fit.remark.find("the residual is 0.98, the largest that a law may have"), std::string::npos) << fit.remark;
 }
 
 /// A sample whose unloading begins below the threshold changes neither the numbers nor their errors.
