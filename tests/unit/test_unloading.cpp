@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "calibrate/experiment_fit.h"
@@ -449,6 +450,28 @@ TEST_F(PressTestTable, RepeatsInColumnsAndTheBranchByReversal) {
   EXPECT_EQ(c.samples[0].unloaded[0].points.size(), 4U) << "reloading is part of it";
   EXPECT_EQ(c.samples[1].unloaded[0].points.size(), 3U) << "an empty cell is no reading";
   EXPECT_EQ(c.samples[1].unloaded[0].force, 7.1);
+}
+
+/// Repeats are numbers, not texts: 10 comes after 2, and 01 is 1.
+TEST_F(PressTestTable, RepeatsAreInTheOrderOfTheirNumbers) {
+  const ForceCurves c = read(
+      "hn [mm]; Fn 10 [N]; Fn 2 [N]; Fn 01 [N]\n0.5; 10; 2; 1\n1; 11; 3; 2\n1.5; 12; 4; 3\n2; 13; 5; 4\n"
+      "2.5; 14; 6; 5\n");
+  ASSERT_EQ(c.samples.size(), 3U);
+  const std::array names{"data 1", "data 2", "data 10"};
+  const std::array forces{1.0, 2.0, 10.0};
+  for (std::size_t s = 0; s < 3; ++s) {
+    EXPECT_EQ(c.samples[s].name, names[s]);
+    EXPECT_EQ(c.samples[s].normal.at(0).force, forces[s]);
+  }
+  const std::string rows = "0.5; 0; 0\n1; 1; 1\n1.5; 2; 2\n2; 4; 4\n2.5; 7; 7\n";
+  expect_refused("hn [mm]; Fn 1 [N]; Fn 01 [N]\n" + rows,
+                 "columns \"Fn 1 [N]\" and \"Fn 01 [N]\" both name Fn of repeat 1");
+  const ForceCurves pairs = read(
+      "hn 1 [mm]; Fn 01 [N]; Fn 2 [N]; hn 02 [mm]\n0.5; 0; 0; 0.6\n1; 1; 1; 1.1\n"
+      "1.5; 2; 2; 1.6\n2; 4; 4; 2.1\n2.5; 7; 7; 2.6\n");
+  ASSERT_EQ(pairs.samples.size(), 2U);
+  EXPECT_NEAR(pairs.samples[1].normal[0].delta, 0.06, 1e-12);
 }
 
 TEST_F(PressTestTable, PairsOfColumnsTouchPointOffsetAndMachine) {
