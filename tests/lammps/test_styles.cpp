@@ -172,9 +172,44 @@ TEST(Styles, ALawCardIsReadAsTheProgramReadsIt) {
   };
   EXPECT_NO_THROW((void)slope(false)) << "the one that it has";
   EXPECT_THROW((void)slope(true), InputError);
+  EXPECT_THROW((void)lammps::law_of_card(path, "soft-solid", {5e5, 0.3, 0.1, false, "", false, true}, MPI_COMM_WORLD),
+               InputError)
+      << "the card has no unloading branch";
   EXPECT_THROW((void)lammps::law_of_card(path, "soft", {5e5, 0.3, 0.0, false, ""}, MPI_COMM_WORLD), InputError);
   EXPECT_THROW((void)lammps::law_of_card("no such file", "soft-soft", {}, MPI_COMM_WORLD), IoError);
   EXPECT_THROW((void)lammps::law_of_file(path, "x", MPI_COMM_WORLD), InputError);
+}
+
+/// A script takes the unloading branch of a card or leaves it out, for pairs and for walls.
+TEST(Styles, UnloadingOfACardIsSwitchedByItsKeyword) {
+  LawCard card = load_card(SOFTGRAIN_SOURCE_DIR "/results/published/law.toml");
+  for (PairLaw& law : card.pairs) {
+    law.unloading.emplace();
+    law.unloading->residual = {0.3, 0.0, 0.3, 0.3};
+    law.unloading->exponent = {2.0 + law.normal.b.value, 0.0, 2.0, 9.0};
+  }
+  const TemporaryDirectory directory;
+  save_card(card, directory.path() + "/law.toml");
+  const auto ours = [&](bool unloading) {
+    const CardLaw law = make_card_law(card, PairKind::soft_solid, 5e5, 0.3, 0.0, false, std::nullopt, unloading);
+    return laws_text({{"law", std::visit([](const auto& l) { return AnyLaw(l); }, law)}});
+  };
+  for (const auto& [words, unloading] :
+       {std::pair{"", true}, std::pair{" unloading yes", true}, std::pair{" unloading no", false}}) {
+    const std::string of_card = std::string(" card law.toml soft-solid modulus 5e5 friction 0.3 kt initial") + words;
+    InProcess lammps;
+    for (const std::string& line : lid_script(directory)) {
+      if (line.starts_with("pair_style"))
+        lammps("pair_style softgrain soft 1");
+      else if (line.starts_with("fix lid"))
+        lammps("fix lid all softgrain/wall plane 0 0 0.03 0 0 -1 law 1" + of_card);
+      else
+        lammps(line);
+    }
+    lammps("run 0 post no");
+    EXPECT_EQ(laws_text({{"law", lammps.pair().walls.at(0)->laws.at(0)}}), ours(unloading)) << words;
+  }
+  EXPECT_NE(ours(true), ours(false));
 }
 
 }  // namespace
