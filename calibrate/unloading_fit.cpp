@@ -54,7 +54,7 @@ struct BranchOutcome {
 };
 
 /// Whether an unloading says anything of the branch. Where it begins is what its own force A is fitted to.
-bool counts(const UnloadedCurve& u, double threshold) {
+bool is_informative(const UnloadedCurve& u, double threshold) {
   return u.deepest > threshold && u.force > 0.0 && !u.points.empty();
 }
 
@@ -65,7 +65,7 @@ class BranchProblem {
       : threshold_(threshold), b_(loading_exponent) {
     for (const ForceCurve* s : samples)
       for (UnloadedCurve u : s->unloaded) {
-        if (!counts(u, threshold)) continue;
+        if (!is_informative(u, threshold)) continue;
         u.points = thinned(u.points);
         readings_ += u.points.size() + 1;  // and the one where it begins
         curves_.push_back(std::move(u));
@@ -207,7 +207,7 @@ UnloadingFit fit_unloading(const std::vector<ForceCurve>& samples, const Estimat
   std::size_t unloaded = 0;
   for (const ForceCurve& s : samples) {
     unloaded += s.unloaded.empty() ? 0 : 1;
-    if (std::ranges::any_of(s.unloaded, [&](const UnloadedCurve& u) { return counts(u, threshold); }))
+    if (std::ranges::any_of(s.unloaded, [&](const UnloadedCurve& u) { return is_informative(u, threshold); }))
       used.push_back(&s);
   }
   if (unloaded == 0) return {};
