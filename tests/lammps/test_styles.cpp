@@ -12,6 +12,7 @@
 #include "macrosim/lammps/words.h"
 #include "tests/lammps/in_process.h"
 #include "tests/lammps/macro_scene.h"
+#include "tests/lammps/run_ranks.h"
 #include "tests/support/temporary_directory.h"
 // After the headers of LAMMPS.
 #include "compute.h"
@@ -210,6 +211,34 @@ TEST(Styles, UnloadingOfACardIsSwitchedByItsKeyword) {
     EXPECT_EQ(laws_text({{"law", lammps.pair().walls.at(0)->laws.at(0)}}), ours(unloading)) << words;
   }
   EXPECT_NE(ours(true), ours(false));
+}
+
+/// Boxes that lean are not strained: lengths alone would change, and the box would be sheared besides.
+TEST(Styles, ATiltedBoxIsRelaxedButNotStrained) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.path();
+  std::string script;
+  for (std::string line : lid_script(directory)) {
+    if (line.starts_with("boundary")) line = "boundary p p p";
+    if (line.starts_with("region")) line = "region box prism 0 0.1 0 0.1 0 0.1 0 0.03 0";
+    if (!line.starts_with("shell") && !line.starts_with("fix lid") && !line.starts_with("thermo_style"))
+      script += line + "\n";
+  }
+  const auto status_with = [&](const std::string& words, const std::string& strain = "") {
+    std::ofstream(path + "/tilted.in") << script << "fix relax all softgrain/relax tolerance 0.01 " << words
+                                       << "\nrun 1\n"
+                                       << strain << "\nrun 1\n";
+    return run_ranks(1, path, "-in tilted.in");
+  };
+  const auto refused = [&](const std::string& why) {
+    return read_text(path + "/screen.txt").find(why) != std::string::npos;
+  };
+  const std::string strain = "change_box all x scale 0.99 remap";
+  EXPECT_EQ(status_with("track_box no", strain), 0) << read_text(path + "/screen.txt");
+  EXPECT_NE(status_with("", strain), 0);
+  EXPECT_TRUE(refused("a triclinic box has been strained; give track_box no"));
+  EXPECT_NE(status_with("stress 10 10 10"), 0);
+  EXPECT_TRUE(refused("stress and log_lists need a box with right angles"));
 }
 
 }  // namespace
