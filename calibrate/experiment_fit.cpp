@@ -220,6 +220,7 @@ FitReport mirrored(const FitReport& measured) {
                            to_string(measured.law.kind));
   law.delta_min *= stretch;
   law.delta_max *= stretch;
+  if (law.unloading) law.unloading->deepest *= stretch;
   law.initial_angle_deg *= stretch;
   law.secant_angle_deg *= stretch;
   law.points = 0;  // its errors are those of the samples that were measured: law.packings stays

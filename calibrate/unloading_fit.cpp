@@ -11,15 +11,15 @@
 #include "common/core/few_samples.h"
 #include "common/core/law_range.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 
 namespace {
 
 constexpr std::size_t kMostReadings = 120;  ///< readings of one unloading; longer series are averaged
-constexpr double kMostResidual = 0.98;
-constexpr double kMostExcess = 20.0;  ///< of the exponent above the least one
-constexpr std::size_t kShape = 2;     ///< residual and excess of the exponent; the rest are forces
+constexpr double kMostExcess = 20.0;        ///< of the exponent above the least one
+constexpr std::size_t kShape = 2;           ///< residual and excess of the exponent; the rest are forces
 
 /// Averages of so many neighbouring readings that few enough are left.
 std::vector<ForcePoint> thinned(const std::vector<ForcePoint>& points) {
@@ -44,16 +44,28 @@ struct BranchFit {
   double exponent = 0.0;
   std::array<double, 3> covariance{};  ///< variance of the residual, covariance, variance of the exponent
   bool at_least = false;               ///< the exponent is as small as it may be
+  bool at_most = false;                ///< the residual is as large as it may be
 };
 
-/// All unloadings of some samples under one branch.
+/// A fit, or why there is none.
+struct BranchOutcome {
+  std::optional<BranchFit> fit{};
+  std::string why{};
+};
+
+/// Whether an unloading says anything of the branch. Where it begins is what its own force A is fitted to.
+bool is_informative(const UnloadedCurve& u, double threshold) {
+  return u.deepest > threshold && u.force > 0.0 && !u.points.empty();
+}
+
+/// All unloadings of some samples under one branch, of which each sample has one that counts.
 class BranchProblem {
  public:
   BranchProblem(const std::vector<const ForceCurve*>& samples, double threshold, double loading_exponent)
       : threshold_(threshold), b_(loading_exponent) {
     for (const ForceCurve* s : samples)
       for (UnloadedCurve u : s->unloaded) {
-        if (!(u.deepest > threshold) || !(u.force > 0.0)) continue;
+        if (!is_informative(u, threshold)) continue;
         u.points = thinned(u.points);
         readings_ += u.points.size() + 1;  // and the one where it begins
         curves_.push_back(std::move(u));
@@ -69,12 +81,17 @@ class BranchProblem {
     return sum / static_cast<double>(curves_.size());
   }
 
-  [[nodiscard]] std::optional<BranchFit> fit() const {
-    if (readings_ < kShape + curves_.size() + 2) return std::nullopt;
+  [[nodiscard]] BranchOutcome fit() const {
+    constexpr std::size_t kLeast = kShape + 2;
+    if (const std::size_t below = readings_ - curves_.size(); below < kLeast)
+      return {std::nullopt,
+              fmt::format("{} reading{} of unloading from above the threshold of the law, at least {} are "
+                          "needed",
+                          below, below == 1 ? "" : "s", kLeast)};
     LeastSquaresProblem problem;
     problem.residuals = readings_;
     problem.evaluate = [this](std::span<const double> x, std::span<double> r) { return residuals(x, r); };
-    problem.bounds = {{0.0, kMostResidual}, {0.0, kMostExcess}};
+    problem.bounds = {{0.0, kLargestResidual}, {0.0, kMostExcess}};
     problem.bounds.resize(kShape + curves_.size());
     std::vector<std::vector<double>> starts;
     for (const double residual : {0.1, 0.3, 0.6}) {
@@ -82,8 +99,11 @@ class BranchProblem {
       for (const UnloadedCurve& u : curves_) starts.back().push_back(u.force);
     }
     const LeastSquaresFit found = fit_least_squares(problem, starts);
-    if (!found.usable()) return std::nullopt;
-    return branch_of(found);
+    if (found.rank_deficient)
+      return {std::nullopt,
+              fmt::format("{} readings do not determine residual and exponent", readings_ - curves_.size())};
+    if (!found.usable()) return {std::nullopt, "the fit found no minimum: " + found.message};
+    return {branch_of(found), ""};
   }
 
  private:
@@ -116,7 +136,7 @@ class BranchProblem {
 
   [[nodiscard]] BranchFit branch_of(const LeastSquaresFit& found) const {
     const std::vector<double>& x = found.parameters;
-    BranchFit out{x[0], exponent(x[0], x[1]), {}, found.at_bound[1]};
+    BranchFit out{x[0], exponent(x[0], x[1]), {}, found.at_bound[1], found.at_bound[0] && x[0] > 0.0};
     const std::size_t n = x.size();
     const double block = correlated(x);
     const double rr = block * found.covariance[0];
@@ -134,16 +154,22 @@ class BranchProblem {
   std::size_t readings_ = 0;
 };
 
-/// Covariance from fits without one sample each; nothing where one of them fails.
-std::optional<std::array<double, 3>> jackknife(const std::vector<const ForceCurve*>& samples, double threshold,
-                                               double loading_exponent) {
+/// Covariance from fits without one sample each, or why there is none.
+struct BetweenSamples {
+  std::optional<std::array<double, 3>> covariance{};
+  std::string why{};
+};
+
+BetweenSamples jackknife(const std::vector<const ForceCurve*>& samples, double threshold, double loading_exponent) {
   std::vector<BranchFit> left;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     std::vector<const ForceCurve*> others = samples;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-    const auto fit = BranchProblem(others, threshold, loading_exponent).fit();
-    if (!fit) return std::nullopt;
-    left.push_back(*fit);
+    const BranchOutcome one = BranchProblem(others, threshold, loading_exponent).fit();
+    if (!one.fit)
+      return {std::nullopt, fmt::format("its error is not known, as there is none without sample \"{}\" ({})",
+                                        samples[k]->name, one.why)};
+    left.push_back(*one.fit);
   }
   const auto n = static_cast<double>(left.size());
   double residual = 0.0;
@@ -160,56 +186,65 @@ std::optional<std::array<double, 3>> jackknife(const std::vector<const ForceCurv
     out[1] += (n - 1.0) / n * dr * dm;
     out[2] += (n - 1.0) / n * dm * dm;
   }
-  return out;
+  return {out, ""};
 }
 
-/// The residual is the share of a depth below the threshold, whose error shifts it, dr/d delta = -(1 - r)/(Delta_max -
-/// delta): what is left after unloading is measured, not its share.
+/// The residual is the share of a depth below the threshold, whose error takes it along.
 void add_threshold_error(const Estimate& delta, double deepest, Estimate& residual) {
   if (!std::isfinite(delta.standard_error)) return;
-  const double shift = (1.0 - residual.value) / (deepest - delta.value) * delta.standard_error;
+  const double shift = residual_slope(residual.value, deepest, delta.value) * delta.standard_error;
   residual.standard_error = std::hypot(residual.standard_error, shift);
   residual.low = std::max(0.0, residual.value - std::hypot(residual.value - residual.low, kNormal95 * shift));
-  residual.high = std::min(1.0, residual.value + std::hypot(residual.high - residual.value, kNormal95 * shift));
+  residual.high =
+      std::min(kLargestResidual, residual.value + std::hypot(residual.high - residual.value, kNormal95 * shift));
 }
 
 }  // namespace
 
 UnloadingFit fit_unloading(const std::vector<ForceCurve>& samples, const Estimate& delta, double loading_exponent) {
   const double threshold = delta.value;
-  std::vector<const ForceCurve*> unloaded;
-  for (const ForceCurve& s : samples)
-    if (!s.unloaded.empty()) unloaded.push_back(&s);
-  if (unloaded.empty()) return {};
-  const BranchProblem problem(unloaded, threshold, loading_exponent);
-  const auto fit = problem.fit();
-  if (!fit)
-    return {
-        std::nullopt,
-        fmt::format("no unloading branch could be fitted to {} readings of {} unloadings: at least four of each above "
-                    "the threshold are needed",
-                    problem.readings(), problem.unloadings())};
-  UnloadingLaw law;
-  law.samples = static_cast<int>(unloaded.size());
-  law.points = static_cast<int>(problem.readings());
-  std::array<double, 3> covariance = fit->covariance;
-  double freedom = static_cast<double>(problem.readings() - kShape - problem.unloadings());
-  if (unloaded.size() > 1) {
-    const auto between = jackknife(unloaded, threshold, loading_exponent);
-    if (!between) return {std::nullopt, "the unloading branch depends on a single sample: none is given"};
-    covariance = *between;
-    freedom = static_cast<double>(unloaded.size() - 1);
+  std::vector<const ForceCurve*> used;
+  std::size_t unloaded = 0;
+  for (const ForceCurve& s : samples) {
+    unloaded += s.unloaded.empty() ? 0 : 1;
+    if (std::ranges::any_of(s.unloaded, [&](const UnloadedCurve& u) { return is_informative(u, threshold); }))
+      used.push_back(&s);
   }
-  law.residual = student_estimate(fit->residual, std::sqrt(covariance[0]), freedom, 0.0, 1.0);
-  law.exponent = student_estimate(fit->exponent, std::sqrt(covariance[2]), freedom, 1.0);
-  add_threshold_error(delta, problem.deepest(), law.residual);
+  if (unloaded == 0) return {};
+  const std::string idle = fmt::format(
+      "of {} of {} samples that were unloaded nothing counts: no unloading with readings begins above the threshold of "
+      "the law (Delta = {:.4g}) under a force",
+      unloaded - used.size(), unloaded, threshold);
+  const auto none = [](const std::string& why) { return UnloadingFit{std::nullopt, "no unloading branch: " + why}; };
+  if (used.empty()) return none(idle);
+  const BranchProblem problem(used, threshold, loading_exponent);
+  const BranchOutcome found = problem.fit();
+  if (!found.fit) return none(found.why);
+  UnloadingLaw law;
+  law.samples = static_cast<int>(used.size());
+  law.points = static_cast<int>(problem.readings());
+  law.deepest = problem.deepest();
+  std::array<double, 3> covariance = found.fit->covariance;
+  double freedom = static_cast<double>(problem.readings() - kShape - problem.unloadings());
+  if (used.size() > 1) {
+    const BetweenSamples between = jackknife(used, threshold, loading_exponent);
+    if (!between.covariance) return none(between.why);
+    covariance = *between.covariance;
+    freedom = static_cast<double>(used.size() - 1);
+  }
+  law.residual = student_estimate(found.fit->residual, std::sqrt(covariance[0]), freedom, 0.0, kLargestResidual);
+  law.exponent = student_estimate(found.fit->exponent, std::sqrt(covariance[2]), freedom, 1.0);
+  add_threshold_error(delta, law.deepest, law.residual);
   const double scale = law.residual.standard_error * law.exponent.standard_error;
   law.correlation = scale > 0.0 ? std::clamp(covariance[1] / scale, -1.0, 1.0) : 0.0;
   UnloadingFit out{law, ""};
-  if (fit->at_least)
+  if (found.fit->at_least)
     out.remark =
         fmt::format("the exponent of unloading is {:.4g}, the least with which no cycle gives back more than it took",
-                    fit->exponent);
+                    found.fit->exponent);
+  if (found.fit->at_most)
+    append_part(out.remark, fmt::format("the residual is {:g}, the largest that a law may have", kLargestResidual));
+  if (used.size() < unloaded) append_part(out.remark, idle);
   return out;
 }
 

@@ -19,10 +19,11 @@ struct UnloadingFit {
 /// Fits UnloadingLaw to all unloadings of the samples, least squares of the force,
 ///   F = A [(Delta - Delta_p)/(Delta_max - Delta_p)]^exponent, Delta_p = delta + residual (Delta_max - delta),
 /// with an A for each unloading: samples of one law differ in their force, and creep at the turning point lowers it.
+/// Unloadings without readings, or that begin below the threshold or without force, count in no number.
 /// `delta` and `loading_exponent` b are those of the loading law. Errors: of several samples by leaving out one after
 /// the other (jackknife; Efron and Tibshirani 1993, ch. 11) with Student's t, so that they hold what samples differ by;
 /// of one sample from its residuals, as many of which count as are not correlated. That of the residual holds the error
-/// of delta. An exponent on its bound, least_unloading_exponent(), is said to be so.
+/// of delta. An exponent on its bound, least_unloading_exponent(), and a residual on kLargestResidual are said to be so.
 UnloadingFit fit_unloading(const std::vector<ForceCurve>& samples, const Estimate& delta, double loading_exponent);
 
 }  // namespace softgrain

@@ -84,11 +84,12 @@ void PressedBox::carry(System3& s, double step) {
   in_pieces(at(p.grains), carry, piece_threads(s));
   carry(at(p.grains), carried_.size());
   if (!box_.periodic) return;
+  Vec3 factor;
   for (int k = 0; k < 3; ++k) {
-    const double shrink = velocity_[k] * step;
-    for (int edge = k; edge < 3; ++edge) s.cell.edges[k][edge] *= 1.0 - shrink;  // of a cell that was sheared
-    s.cell.velocity_gradient[k][k] = -velocity_[k] / (1.0 - shrink);
+    factor[k] = 1.0 - velocity_[k] * step;
+    s.cell.velocity_gradient[k][k] = -velocity_[k] / factor[k];
   }
+  s.cell.stretch(factor);
 }
 
 void PressedBox::release(System3& s) {

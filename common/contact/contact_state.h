@@ -27,6 +27,7 @@ struct LawTraits {
   bool stores_energy = false;        ///< stored_energy() of a contact by itself
   bool is_fitted = false;            ///< measured over a range that it can leave
   bool is_multi_contact = false;  ///< the law is one of a table of laws whose soft particles know of all their contacts
+  bool has_unloading = false;     ///< the memory is the largest overlap, from which the contact unloads along a branch
 };
 
 /// Numbers that depend on the two bodies alone, computed by the law when a pair enters the list.

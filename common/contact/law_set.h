@@ -119,7 +119,7 @@ inline AnyLaw hertz_law(const HertzCoefficients& k, bool rescaled) {
 class LawSet {
  public:
   static constexpr std::int32_t kNoContact = -1;  ///< the pair passes through itself
-  static constexpr std::size_t kMostLaws = 96;    ///< a scene with more has lost its way
+  static constexpr std::size_t kMostLaws = 64;    ///< a scene with more has lost its way
 
   explicit LawSet(std::int32_t materials = 0)
       : materials_(materials),
@@ -132,7 +132,8 @@ class LawSet {
 
   /// A law for use() by several pairs of materials: they share sections of the contact list.
   std::int32_t add(const AnyLaw& law) {
-    if (laws_.size() == kMostLaws) throw std::length_error("more than 96 contact laws in one system");
+    if (laws_.size() == kMostLaws)
+      throw std::length_error("more than " + std::to_string(kMostLaws) + " contact laws in one system");
     laws_.push_back(law);
     return size() - 1;
   }

@@ -142,7 +142,7 @@ struct SoftContact {
 /// power in place of their straight line; residual = 1 - 1/s with the exponent of loading and delta = 0 is the branch
 /// of law tables (SoftMultiContact). Dimensionless.
 struct UnloadingBranch {
-  double residual = 0.0;  ///< share of the depth below the threshold that stays, 0 <= residual < 1
+  double residual = 0.0;  ///< share of the depth below the threshold that stays, 0 to kLargestResidual
   double exponent = 1.0;  ///< at least least_unloading_exponent()
 };
 
@@ -150,8 +150,12 @@ struct UnloadingBranch {
 /// the threshold. kt of the overlap falls with the force that is left, so that a contact without force has none. SI
 /// units.
 struct SoftUnloading : SoftContact {
-  static constexpr LawTraits traits{
-      .needs_velocity = true, .has_tangential = true, .has_memory = true, .has_onset = true, .is_fitted = true};
+  static constexpr LawTraits traits{.needs_velocity = true,
+                                    .has_tangential = true,
+                                    .has_memory = true,
+                                    .has_onset = true,
+                                    .is_fitted = true,
+                                    .has_unloading = true};
 
   UnloadingBranch branch;
 

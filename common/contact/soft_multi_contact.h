@@ -55,7 +55,8 @@ struct SoftMultiContact {
                                     .directions_in_sums = kLawForm == LawForm::directional,
                                     .memory_in_sums = kUnloading,
                                     .is_fitted = true,
-                                    .is_multi_contact = true};
+                                    .is_multi_contact = true,
+                                    .has_unloading = kUnloading};
 
   static constexpr LawForm kForm = kLawForm;
 

@@ -91,6 +91,11 @@ struct Cell {
     return v;
   }
 
+  /// Stretches space along each axis by a factor: every edge vector has a component there, of a cell that was sheared.
+  void stretch(const Vec<D>& factor) {
+    for (int k = 0; k < D; ++k) edges[k] *= factor[k];
+  }
+
   /// Moves the edges by one explicit step of their velocity gradient.
   void advance(double dt) {
     Matrix<D> next = edges;

@@ -33,6 +33,11 @@ inline constexpr auto enum_names<LawStatus> =
                                {LawStatus::inaccurate, "inaccurate"},
                                {LawStatus::not_run, "not run"}});
 
+/// Largest residual r of an unloading branch (UnloadingBranch) that is fitted, read and drawn. Unloading is about
+/// 1/(1 - r) times as steep as loading, and as much shorter are time steps: a contact that gives back nothing has no
+/// stiffness.
+inline constexpr double kLargestResidual = 0.98;
+
 /// Smallest exponent m of an unloading branch (UnloadingBranch) with the residual r with which no cycle gives back more
 /// than it took. Along the branch work is stored and given back; where loading goes on at Delta_max the stored energy,
 /// F (1 - r) (Delta_max - delta)/(m + 1), must grow by no more than the work of loading. With F' (D - delta)/F <= B =

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <numeric>
@@ -110,28 +112,33 @@ std::optional<std::size_t> quantity_of(const std::string& name) {
   return std::nullopt;
 }
 
-/// "fn 2" is Fn of repeat 2; without a number the repeat is empty. Overlap, force and its error may be numbered.
+/// Number of a repeat, however it is written (1, 01); empty: all repeats.
+using Repeat = std::optional<std::int64_t>;
+
+/// "fn 2" is Fn of repeat 2. Overlap, force and its error may be numbered.
 struct NamedColumn {
   std::size_t quantity = 0;
-  std::string repeat;
+  Repeat repeat{};
 };
 
 std::optional<NamedColumn> named_column(const std::string& name) {
   constexpr std::size_t kNumbered = 4;  // hn, Delta, Fn, error
-  if (const auto q = quantity_of(name)) return NamedColumn{*q, ""};
+  if (const auto q = quantity_of(name)) return NamedColumn{*q};
   const std::size_t digits = name.find_last_not_of("0123456789") + 1;
   if (digits == name.size() || digits == 0) return std::nullopt;
   const std::size_t end = name.find_last_not_of(" _-.#", digits - 1) + 1;
   const auto q = quantity_of(name.substr(0, end));
   if (!q || *q >= kNumbered) return std::nullopt;
-  return NamedColumn{*q, name.substr(digits)};
+  std::int64_t repeat = 0;
+  if (std::from_chars(name.data() + digits, name.data() + name.size(), repeat).ec != std::errc()) return std::nullopt;
+  return NamedColumn{*q, repeat};
 }
 
-/// Columns by the repeat that they belong to; those without a number belong to all.
-using RepeatLayouts = std::map<std::string, CurveLayout>;
+/// Columns by the repeat that they belong to, in the order of their numbers; those without one belong to all.
+using RepeatLayouts = std::map<Repeat, CurveLayout>;
 
 RepeatLayouts columns_of(const CsvFile& file, std::vector<std::string>& remarks) {
-  RepeatLayouts out{{"", {}}};
+  RepeatLayouts out{{std::nullopt, {}}};
   std::string unused;
   refuse_ambiguous(file);
   for (std::size_t c = 0; c < file.columns().size(); ++c) {
@@ -142,10 +149,10 @@ RepeatLayouts columns_of(const CsvFile& file, std::vector<std::string>& remarks)
     }
     std::size_t& at = place(out[named->repeat], named->quantity);
     if (at != CurveLayout::none)
-      throw InputError(
-          fmt::format("{}: columns \"{}\" and \"{}\" both name {}; repeats are numbered: Fn 1 [N], Fn 2 [N]",
-                      file.where(file.header_line()), file.columns()[at].title, file.columns()[c].title,
-                      column_names()[named->quantity].quantity));
+      throw InputError(fmt::format(
+          "{}: columns \"{}\" and \"{}\" both name {}{}; repeats are numbered: Fn 1 [N], Fn 2 [N]",
+          file.where(file.header_line()), file.columns()[at].title, file.columns()[c].title,
+          column_names()[named->quantity].quantity, named->repeat ? fmt::format(" of repeat {}", *named->repeat) : ""));
     at = c;
   }
   if (!unused.empty()) remarks.push_back(file.path() + ": not used: " + unused);
@@ -155,7 +162,7 @@ RepeatLayouts columns_of(const CsvFile& file, std::vector<std::string>& remarks)
 /// One layout, or one for each repeat.
 std::vector<CurveLayout> layouts_of(const CsvFile& file, std::vector<std::string>& remarks) {
   const RepeatLayouts columns = columns_of(file, remarks);
-  const CurveLayout& common = columns.at("");
+  const CurveLayout& common = columns.at(std::nullopt);
   if (columns.size() == 1) return {common};
   const auto refuse = [&](const std::string& problem) {
     throw InputError(fmt::format("{}: {}", file.where(file.header_line()), problem));
@@ -168,11 +175,10 @@ std::vector<CurveLayout> layouts_of(const CsvFile& file, std::vector<std::string
     refuse("a tangential stiffness goes with one column of the force: give repeats by a column \"sample\"");
   std::vector<CurveLayout> out;
   for (const auto& [repeat, own] : columns) {
-    if (repeat.empty()) continue;
-    if (own.fn == CurveLayout::none)
-      refuse(fmt::format("repeat {} has no column of the force: Fn {} [N]", repeat, repeat));
+    if (!repeat) continue;
+    if (own.fn == CurveLayout::none) refuse(fmt::format("repeat {0} has no column of the force: Fn {0} [N]", *repeat));
     CurveLayout one = common;
-    one.repeat = repeat;
+    one.repeat = std::to_string(*repeat);
     for (std::size_t CurveLayout::*at : {&CurveLayout::hn, &CurveLayout::delta, &CurveLayout::fn, &CurveLayout::error})
       if (own.*at != CurveLayout::none) one.*at = own.*at;
     out.push_back(one);
@@ -349,7 +355,8 @@ ForceCurves read_force_curves(const std::string& path, const ForceCurveOptions& 
   std::vector<CurveLayout> layouts = layouts_of(file, out.remarks);
   for (const CurveLayout& at : layouts) require_columns(file, at);
   file.require_known_comments(
-      {kRadius, kModulus, kKind, kPoisson, kFriction, kDensity, kSample, kTouchNames, kZeroForce, kMachine}, "a press test");
+      {kRadius, kModulus, kKind, kPoisson, kFriction, kDensity, kSample, kTouchNames, kZeroForce, kMachine},
+      "a press test");
   const CurveLayout& first = layouts.front();
   const auto sample = file.word(kSample);
   if (sample && first.sample != CurveLayout::none)

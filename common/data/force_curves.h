@@ -74,8 +74,9 @@ struct ForceCurveOptions {
 /// Reads one CSV file. Columns (any order, name [unit]): hn or overlap (with a unit of length) or Delta; Fn or force;
 /// optional sample, a standard error of Fn (se, error), and for the tangential law ht with Ft (Ft at ht = 0 is the
 /// prestrain), or kt; `branch` (loading, unloading, reloading), which else is told by the overlap. Repeats in columns:
-/// numbered Fn 1, Fn 2, ... with a common overlap or hn 1, hn 2, ..., each a sample, whose cells may be empty. Other
-/// columns are named in a remark. Comments may say "# kind = soft-solid", "# Rs = 16 mm",
+/// numbered Fn 1, Fn 2, ... with a common overlap or hn 1, hn 2, ..., each a sample, in the order of their numbers,
+/// whose cells may be empty. Other columns are named in a remark. Comments may say "# kind = soft-solid", "# Rs = 16
+/// mm",
 /// "# E [MPa] = 0.5", "# nu = ...", "# mu = ...", "# density [kg/m^3] = ...", "# sample = ..."; and of the machine "#
 /// touch = 0.31 mm" (displacement at first touch),
 /// "# force offset = 12 mN" (force read without contact) and "# machine stiffness = 80 N/mm" (in series with the

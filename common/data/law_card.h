@@ -41,12 +41,19 @@ struct ThresholdPowerLaw {
 /// How a contact unloads from its deepest Delta_max, and comes back: F = F(Delta_max) [(Delta - Delta_p)/(Delta_max -
 /// Delta_p)]^exponent, 0 below Delta_p = delta + residual (Delta_max - delta); see UnloadingBranch. Dimensionless.
 struct UnloadingLaw {
-  Estimate residual;         ///< in [0, 1)
-  Estimate exponent;         ///< at least least_unloading_exponent()
+  Estimate residual;  ///< from 0 to kLargestResidual; its error holds that of the threshold, see residual_slope()
+  Estimate exponent;  ///< at least least_unloading_exponent()
   double correlation = 0.0;  ///< of their errors
-  int samples = 0;           ///< samples that were unloaded
+  double deepest = 0.0;      ///< mean Delta_max of the unloadings that it was fitted to; 0: not said
+  int samples = 0;           ///< samples of which an unloading was fitted
   int points = 0;            ///< readings of unloading and reloading
 };
+
+/// How far the threshold takes the residual along, d residual/d delta = -(1 - residual)/(Delta_max - delta): what is
+/// left after unloading is measured, Delta_p, and not its share of the depth.
+constexpr double residual_slope(double residual, double deepest, double delta) {
+  return -(1.0 - residual) / (deepest - delta);
+}
 
 /// The mean measured curve behind a law, one entry per Delta. Dimensionless.
 struct LawTableRows {

@@ -69,22 +69,24 @@ void read_tangential(const SceneTable& table, ThresholdPowerLaw& law, double& an
   law = read_law(table, good && fitted);
 }
 
-UnloadingLaw read_unloading(const SceneTable& table, double loading_exponent) {
+UnloadingLaw read_unloading(const SceneTable& table, const ThresholdPowerLaw& loading) {
   constexpr double kRounding = 1e-9;
   constexpr std::int64_t kMany = std::numeric_limits<int>::max();
   UnloadingLaw u;
   u.samples = static_cast<int>(table.count("samples", 0, kMany));
   u.points = static_cast<int>(table.count("points", 0, kMany));
   u.correlation = table.number("correlation", Unit::none, Range::closed(-1.0, 1.0));
-  u.residual = read_estimate(table.table("residual"), Range{0.0, 1.0, false, true}, true);
+  u.residual = read_estimate(table.table("residual"), Range::closed(0.0, kLargestResidual), true);
   u.exponent = read_estimate(table.table("exponent"), Range{1.0, kLargestExponent, false, false}, true);
-  const double least = least_unloading_exponent(u.residual.value, loading_exponent);
+  if (table.has("deepest"))
+    u.deepest = table.number("deepest", Unit::none, Range{loading.delta.value, kLargestDelta, true, false});
+  const double least = least_unloading_exponent(u.residual.value, loading.b.value);
   if (u.exponent.value < least * (1.0 - kRounding))
     table.table("exponent")
         .throw_error("value",
                      fmt::format("must be at least {:.6g} with this residual and b = {:.6g}: with less, cycles would "
                                  "give back more than they took",
-                                 least, loading_exponent));
+                                 least, loading.b.value));
   return u;
 }
 
@@ -117,7 +119,7 @@ PairLaw read_pair(const SceneTable& table, const std::string& intervals) {
                   law.has_tangential_secant, good);
   if (table.has("tangential_assumed"))
     law.kt_ratio = table.table("tangential_assumed").number("kt_ratio", Unit::none, Range::closed(0.0, 2.0));
-  if (good && table.has("unloading")) law.unloading = read_unloading(table.table("unloading"), law.normal.b.value);
+  if (good && table.has("unloading")) law.unloading = read_unloading(table.table("unloading"), law.normal);
   law.covariance = read_covariance(table);
   return law;
 }

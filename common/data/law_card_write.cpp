@@ -114,6 +114,11 @@ void write_unloading(Out out, const UnloadingLaw& u) {
       "contact gives back what it took.\n[pair.unloading]\nsamples = {}\npoints = {}\ncorrelation = {}  # "
       "of the errors of both numbers\n",
       u.samples, u.points, real(u.correlation));
+  if (u.deepest > 0.0)
+    fmt::format_to(out,
+                   "deepest = {}  # mean Delta_max; the error of the residual holds that of delta with Delta_p from "
+                   "there\n",
+                   real(u.deepest));
   write_estimate(out, "pair.unloading.residual", u.residual, "");
   write_estimate(out, "pair.unloading.exponent", u.exponent, "");
 }

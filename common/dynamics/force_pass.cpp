@@ -130,10 +130,12 @@ void displace(System<D>& s, const std::vector<Vec<D>>& moves) {
 
 template <int D>
 void displace(System<D>& s, const std::vector<Vec<D>>& moves, const Vec<D>& growth) {
+  Vec<D> factor;
   for (int k = 0; k < D; ++k) {
-    s.cell.edges[k][k] *= 1.0 + growth[k];
-    s.cell.velocity_gradient[k][k] = growth[k] / (1.0 + growth[k]);  // over the unit of time that displace() takes
+    factor[k] = 1.0 + growth[k];
+    s.cell.velocity_gradient[k][k] = growth[k] / factor[k];  // over the unit of time that displace() takes
   }
+  s.cell.stretch(factor);
   displace(s, moves);
   s.cell.velocity_gradient = {};
 }

@@ -58,8 +58,8 @@ std::vector<ContactRecord<D>> contact_records(const System<D>& system);
 template <int D>
 void displace(System<D>& system, const std::vector<Vec<D>>& moves);
 
-/// Moves every body as displace() above does, while the edges of a periodic rectangular cell grow by the factors 1 +
-/// growth. A contact across a face sees the image move with it.
+/// Moves every body as displace() above does, while space in a periodic cell, sheared or not, is stretched by the
+/// factors 1 + growth per axis. A contact across a face sees the image move with it.
 template <int D>
 void displace(System<D>& system, const std::vector<Vec<D>>& moves, const Vec<D>& growth);
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/dynamics/pair_loop.h"
+#include "common/dynamics/steepest_response.h"
 #include "common/neighbours/spatial_order.h"
 #include "common/neighbours/verlet_list.h"
 
@@ -36,7 +37,7 @@ Joint<D> joint_of(const Source& source, const Law& law, std::size_t c, const Pai
   state.normal_speed = 1.0;
   state.spring = {};
   if constexpr (Law::traits.needs_particle_pass) source.give_sums(pair, state);
-  const ContactResponse<D> r = law.evaluate(state);
+  const ContactResponse<D> r = steepest_response(law, state);
   out.kn = std::max(r.normal_stiffness, 0.0);
   out.kt = 2.0 * r.tangential_stiffness;
   out.eta = dashpots == Dashpots::count ? std::max(r.elastic_force - r.normal_force, 0.0) : 0.0;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "common/dynamics/steepest_response.h"
+
 namespace softgrain {
 
 namespace {
@@ -24,10 +26,11 @@ MultiContactSum<3> crowded(const Law& law, ContactState<3> state) {
   return sum;
 }
 
-/// The stiffest of a contact. Across the normal only springs of rolling are set by hand, and may be as stiff as a scene
-/// likes: K_r m/I, I = 2/5 m r^2.
+/// The stiffest of a contact, with which it loads or begins to unload. Across the normal only springs of rolling are
+/// set by hand, and may be as stiff as a scene likes: K_r m/I, I = 2/5 m r^2.
 template <class Law>
-double stiffness_of(const ContactResponse<3>& r, double radius) {
+double stiffness_of(const Law& law, const ContactState<3>& state, double radius) {
+  const ContactResponse<3> r = steepest_response(law, state);
   if constexpr (Law::traits.has_rolling && !Law::traits.is_fitted)
     return std::max(r.normal_stiffness, 2.5 * r.rolling_stiffness / (radius * radius));
   else
@@ -45,11 +48,14 @@ double stiffness_of(const AnyLaw& any, double radius, double inverse_mass, doubl
         if constexpr (Law::traits.needs_particle_pass) {
           const MultiContactSum<3> sum = crowded(law, state);
           state.sum_i = state.sum_j = &sum;
-          return law.evaluate(state).normal_stiffness;
+          return stiffness_of(law, state, radius);
         } else if constexpr (Law::traits.acts_at_distance) {
           return law.stiffest(radius);
         } else {
-          return stiffness_of<Law>(law.evaluate(state), radius);
+          // Beyond the end of a clamped law the force stays and the way back grows: there it is less steep.
+          if constexpr (Law::traits.has_unloading && Law::traits.has_onset)
+            state.overlap = std::min(state.overlap, law.range.clamp_at() * state.constants.a);
+          return stiffness_of(law, state, radius);
         }
       },
       any);

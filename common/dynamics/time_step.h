@@ -18,8 +18,9 @@ struct StepLimit {
 
 /// sqrt(m/k) of the lightest, stiffest pairing: for every grain and every law its material takes part in, k is the
 /// tangent stiffness against an equal partner at an overlap of `overlap_ratio` of its radius (soft contacts: at Delta =
-/// 0.35; cohesive disks: the stiffest of their springs and of the slope of the attraction). A stable step is a fraction
-/// of it: 0.2 is as good as 0.05 in soft-particle measurements, 0.4 is biased by 7-16 %.
+/// 0.35, loading or beginning to unload; cohesive disks: the stiffest of their springs and of the slope of the
+/// attraction). A stable step is a fraction of it: 0.2 is as good as 0.05 in soft-particle measurements, 0.4 is biased
+/// by 7-16 %.
 template <int D>
 StepLimit step_limit(const System<D>& system, double overlap_ratio = 0.05);
 
@@ -43,9 +44,10 @@ struct StableStep {
 /// of the network of contacts, translation and rotation, C its dashpots (a mode that changes its sign in every step
 /// solves the equations of motion where it is 1). Kt counts twice because tangential springs add up predicted
 /// velocities. One normal spring without dashpot: h < 2/omega. Multi-contact laws count with what each contact feels of
-/// itself. `enough`: when a bound for every body by itself, from
-/// the sums over its contacts, says that this step is stable, that bound is what comes back; otherwise the mode is
-/// found by iteration. Throws UnusableResult as update_neighbours does. The state is left alone.
+/// itself, contacts with an unloading branch as if they began to unload where that is stiffer. `enough`: when a bound
+/// for every body by itself, from the sums over its contacts, says that this step is stable, that bound is what comes
+/// back; otherwise the mode is found by iteration. Throws UnusableResult as update_neighbours does. The state is left
+/// alone.
 template <int D>
 StableStep stable_step(const System<D>& system, double enough, Dashpots dashpots = Dashpots::count);
 

@@ -20,7 +20,7 @@ Vec3 CellRoom::centre() const { return periodic() ? Vec3{} : (planes().low + pla
 
 void CellRoom::stretch(const Vec3& factor) {
   if (auto* cell = std::get_if<Cell<3>>(&where_)) {
-    for (int k = 0; k < 3; ++k) cell->edges[k] *= factor[k];
+    cell->stretch(factor);
     return;
   }
   auto& box = std::get<PlaneBox>(where_);

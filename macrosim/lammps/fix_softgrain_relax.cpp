@@ -149,6 +149,9 @@ void FixSoftgrainRelax::init() {
     if (!before && dynamic_cast<FixSoftgrainWall*>(modify->fix[k]) != nullptr)
       error->all(FLERR, std::string("fix softgrain/wall must come before fix softgrain/relax in the script"));
   }
+  // What moves the box knows lengths alone: a strain of x would shear a tilted box besides.
+  if (domain->triclinic != 0 && (pressed() || log_lists_))
+    error->all(FLERR, std::string("fix softgrain/relax: stress and log_lists need a box with right angles"));
   const bool periodic = domain->xperiodic != 0 && domain->yperiodic != 0 && domain->zperiodic != 0;
   if (pressed() && !periodic && box_walls() == nullptr)
     error->all(FLERR, std::string("fix softgrain/relax: stress needs boundary p p p, or fix softgrain/wall box"));
@@ -163,13 +166,18 @@ void FixSoftgrainRelax::stop_motion() {
 
 void FixSoftgrainRelax::note_box() {
   for (int k = 0; k < 3; ++k) box_[k] = domain->boxhi[k] - domain->boxlo[k];
+  tilt_ = {{domain->xy, domain->xz, domain->yz}};
 }
 
 /// Stops all motion and finds the strain of the box since the last run. Ghosts, which are made afterwards, need the
 /// velocities too.
 void FixSoftgrainRelax::setup_pre_exchange() {
   const softgrain::Vec<3> before = box_;
+  const softgrain::Vec<3> tilt_before = tilt_;
   note_box();
+  if (track_box_ && domain->triclinic != 0 && (before != box_ || tilt_before != tilt_))
+    error->all(FLERR, std::string("fix softgrain/relax: contact springs follow boxes with right angles: a triclinic "
+                                  "box has been strained; give track_box no"));
   stop_motion();
   pair_->strained = pair_->flows = track_box_ && before != box_;
   for (int k = 0; k < 3; ++k) pair_->flow[k] = 0.0;

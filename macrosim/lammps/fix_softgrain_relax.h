@@ -105,7 +105,8 @@ class FixSoftgrainRelax : public Fix {
   double unbalanced_fraction_ = 0.0;
   double least_stiffness_ = 0.0;  ///< least stiffness of a body over its radius [Pa]
   bool track_box_ = true;
-  softgrain::Vec<3> box_{};  ///< lengths of the box at the last run
+  softgrain::Vec<3> box_{};   ///< lengths of the box at the last run
+  softgrain::Vec<3> tilt_{};  ///< xy, xz and yz of a triclinic box then
   softgrain::Fire fire_;
   std::vector<double> inverse_mass_;  ///< inverse pseudo-masses, per atom
   std::vector<double> inverse_inertia_;

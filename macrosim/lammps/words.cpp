@@ -47,10 +47,12 @@ AnyLaw read_card(char** words, int count, MPI_Comm world, LAMMPS_NS::Error* erro
     } else if (key == "kt" && (value == "initial" || value == "secant")) {
       choices.secant = value == "secant";
       choices.slope_said = true;
+    } else if (key == "unloading" && (value == "yes" || value == "no")) {
+      choices.unloading = value == "yes";
     } else {
       error->all(FLERR, "softgrain: '" + key + " " + value +
                             "': a card knows modulus E, friction MU, kt initial|secant, damping Z, beyond "
-                            "error|clamp|extrapolate");
+                            "error|clamp|extrapolate, unloading yes|no");
     }
   }
   if (!(choices.modulus > 0.0) || !friction || choices.friction < 0.0 || choices.damping < 0.0)
@@ -205,13 +207,17 @@ AnyLaw law_of_card(const std::string& path, const std::string& kind, const CardC
   law.damping = choices.damping;
   law.range = range_of(pair, choices.beyond, where);
   law.partner_is_soft = kind == "soft-soft";
-  if (pair.at_path("unloading").as_table() == nullptr) return law;
+  const bool unloads = pair.at_path("unloading").as_table() != nullptr;
+  if (choices.unloading.value_or(false) && !unloads)
+    throw InputError(where + ": unloading yes: the card has no unloading branch: leave it out");
+  if (!unloads || !choices.unloading.value_or(true)) return law;
   const UnloadingBranch branch{number(pair, "unloading.residual.value", where),
                                number(pair, "unloading.exponent.value", where)};
   constexpr double kRounding = 1e-9;
-  if (!(branch.residual >= 0.0 && branch.residual < 1.0) ||
+  if (!(branch.residual >= 0.0 && branch.residual <= kLargestResidual) ||
       branch.exponent < least_unloading_exponent(branch.residual, law.normal.b) * (1.0 - kRounding))
-    throw InputError(where + ": unloading needs a residual in [0, 1) and an exponent with which no cycle gains energy");
+    throw InputError(where + ": unloading needs a residual from 0 to " + std::to_string(kLargestResidual) +
+                     " and an exponent with which no cycle gains energy");
   return SoftUnloading{
       law, {branch.residual, std::max(branch.exponent, least_unloading_exponent(branch.residual, law.normal.b))}};
 }

@@ -4,6 +4,7 @@
 
 #include <mpi.h>
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,7 +23,8 @@ std::pair<int, int> type_range(const std::string& word, int types, LAMMPS_NS::Er
 /// A finite number.
 double number(const std::string& word, const std::string& what, LAMMPS_NS::Error* error);
 
-/// FILE NAME, or: card FILE KIND modulus E friction MU [kt ..] [damping ..] [beyond ..].
+/// FILE NAME, or: card FILE KIND modulus E friction MU [kt ..] [damping ..] [beyond ..]
+/// [unloading yes|no].
 AnyLaw read_law_words(char** words, int count, MPI_Comm world, LAMMPS_NS::Error* error);
 
 /// Refuses laws of disks in three dimensions, and those of three in two (`dimension` of the script).
@@ -39,10 +41,11 @@ AnyLaw law_of_file(const std::string& path, const std::string& name, MPI_Comm wo
 struct CardChoices {
   double modulus = 0.0;  ///< E of what is inside the soft particles [Pa]
   double friction = 0.0;
-  double damping = 0.0;     ///< zeta, fraction of critical
-  bool secant = false;      ///< kt at 1 degree instead of the initial slope
-  std::string beyond;       ///< error, clamp or extrapolate; empty: as the card says
-  bool slope_said = false;  ///< whether the script says which slope: no other takes its place
+  double damping = 0.0;             ///< zeta, fraction of critical
+  bool secant = false;              ///< kt at 1 degree instead of the initial slope
+  std::string beyond;               ///< error, clamp or extrapolate; empty: as the card says
+  bool slope_said = false;          ///< whether the script says which slope: no other takes its place
+  std::optional<bool> unloading{};  ///< false: without the unloading branch of the card; true: it must have one
 };
 
 /// The law of kind "soft-solid" (first body soft) or "soft-soft" of a card as calibrate writes it. Throws InputError,

@@ -199,7 +199,7 @@ void read_contact(const SceneTable& t, const std::vector<Material>& materials, i
   if (before != LawSet::kNoContact)
     t.throw_error("pair", "has a law already: " + out.description[static_cast<std::size_t>(before)]);
   if (out.laws.size() + 2 > static_cast<std::int32_t>(LawSet::kMostLaws))
-    t.throw_error("pair", "more than 64 laws in one scene");
+    t.throw_error("pair", "more than " + std::to_string(LawSet::kMostLaws) + " laws in one scene");
   const std::string law = t.choice(
       {"law",
        "law of the contact; `\"law-card\"`: law card or law table; for disks `\"linear-spring\"` or `\"cohesive\"`"},

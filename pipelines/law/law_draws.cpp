@@ -156,6 +156,7 @@ LawDraws table_draws(const LawSources& sources, const NamedLaws& named, const Ma
 // kLawParameterNames; a as logarithms.
 constexpr std::size_t kPairNumbers = kLawParameterNames.size();
 constexpr std::array<bool, kPairNumbers> kPairLogarithm{true, false, false, true, false, true, false};
+constexpr std::size_t kPlaceOfDelta = 2;
 
 std::vector<double> pair_numbers(const PairLaw& p) {
   return {p.normal.a.value,
@@ -183,8 +184,7 @@ bool is_by_symmetry_of(const PairLaw* measured, const PairLaw& law) {
 }
 
 void set_branch(UnloadingLaw& branch, double residual, double exponent, double loading_exponent) {
-  constexpr double kMost = 0.98;  // a contact that gives back nothing has no stiffness
-  branch.residual.value = std::clamp(residual, 0.0, kMost);
+  branch.residual.value = std::clamp(residual, 0.0, kLargestResidual);
   branch.exponent.value = std::max(exponent, least_unloading_exponent(branch.residual.value, loading_exponent));
 }
 
@@ -209,8 +209,10 @@ LawCard card_of_numbers(const LawCard& card, const std::vector<double>& numbers)
 }
 
 /// Normal draws of the branch, by the half-width of its intervals, which holds Student's t; errors that are not known
-/// scatter nothing.
-std::vector<std::vector<double>> branch_draws(const UnloadingLaw& u, std::int64_t count, std::uint64_t stream) {
+/// scatter nothing. The error of the threshold, which that of the residual holds, comes with `thresholds`, drawn
+/// before.
+std::vector<std::vector<double>> branch_draws(const PairLaw& p, const std::vector<double>& thresholds,
+                                              std::uint64_t stream) {
   const auto deviation = [](const Estimate& e) {
     const double above = (e.high - e.value) / kNormal95;
     const double below = (e.value - e.low) / kNormal95;
@@ -218,11 +220,21 @@ std::vector<std::vector<double>> branch_draws(const UnloadingLaw& u, std::int64_
     return one > 0.0 ? one : std::isfinite(e.standard_error) ? e.standard_error : 0.0;
   };
   constexpr double kMostCorrelation = 0.999;  // of two samples it is 1, which has no draws
-  const double correlation = std::clamp(u.correlation, -kMostCorrelation, kMostCorrelation);
+  const UnloadingLaw& u = *p.unloading;
+  const Estimate& delta = p.normal.delta;
+  const double slope = u.deepest > delta.value && std::isfinite(delta.standard_error)
+                           ? residual_slope(u.residual.value, u.deepest, delta.value)
+                           : 0.0;
+  const double taken = slope != 0.0 ? slope * delta.standard_error : 0.0;
   const double r = deviation(u.residual);
+  const double own = std::sqrt(std::max(0.0, r * r - taken * taken));
   const double m = deviation(u.exponent);
-  return normal_draws({u.residual.value, u.exponent.value}, {r * r, correlation * r * m, correlation * r * m, m * m},
-                      count, stream);
+  const double most = kMostCorrelation * own * m;
+  const double both = std::clamp(u.correlation * r * m, -most, most);
+  auto out = normal_draws({u.residual.value, u.exponent.value}, {own * own, both, both, m * m},
+                          static_cast<std::int64_t>(thresholds.size()), stream);
+  for (std::size_t k = 0; k < out.size(); ++k) out[k][0] += slope * (std::max(thresholds[k], 0.0) - delta.value);
+  return out;
 }
 
 /// Normal in the logarithm of what is positive: its variance there is that of the number over its square.
@@ -309,7 +321,7 @@ std::vector<double> card_probes(const LawCard& card) {
 }
 
 /// Adds the draws of all unloading branches; one that follows by symmetry is drawn with the other.
-void add_branches(const LawCard& card, std::int64_t count, LawDraws& out) {
+void add_branches(const LawCard& card, LawDraws& out) {
   constexpr std::uint64_t kStream = 101;  // apart from those of pairs
   for (std::size_t k = 0; k < card.pairs.size(); ++k) {
     const PairLaw& p = card.pairs[k];
@@ -317,7 +329,9 @@ void add_branches(const LawCard& card, std::int64_t count, LawDraws& out) {
     const PairLaw* measured = mirrored_from(card, p);
     const bool together = is_by_symmetry_of(measured, p);
     const std::size_t place = together ? static_cast<std::size_t>(measured - card.pairs.data()) : k;
-    const auto own = branch_draws(*p.unloading, count, kStream + place);
+    std::vector<double> thresholds;
+    for (const std::vector<double>& draw : out.draws) thresholds.push_back(draw[k * kPairNumbers + kPlaceOfDelta]);
+    const auto own = branch_draws(p, thresholds, kStream + place);
     for (std::size_t r = 0; r < own.size(); ++r) out.draws[r].insert(out.draws[r].end(), own[r].begin(), own[r].end());
     out.numbers.insert(out.numbers.end(), {p.unloading->residual.value, p.unloading->exponent.value});
   }
@@ -339,7 +353,7 @@ LawDraws card_draws(const LawCard& of, const LawSources& sources, const NamedLaw
       if (kPairLogarithm[j]) numbers[j] = std::log(std::max(numbers[j], 1e-300));
     out.numbers.insert(out.numbers.end(), numbers.begin(), numbers.end());
   }
-  add_branches(card, count, out);
+  add_branches(card, out);
   out.origin = fmt::format("{} draws from the covariance of the law card", count);
   out.discrepancy_origin = "not known: a law card has no configurations that its fit did not see";
   const LogForces log_forces(card_probes(card));

@@ -12,6 +12,7 @@
 #include "macrosim/lammps/words.h"
 #include "tests/lammps/in_process.h"
 #include "tests/lammps/macro_scene.h"
+#include "tests/lammps/run_ranks.h"
 #include "tests/support/temporary_directory.h"
 // After the headers of LAMMPS.
 #include "compute.h"
@@ -172,9 +173,72 @@ TEST(Styles, ALawCardIsReadAsTheProgramReadsIt) {
   };
   EXPECT_NO_THROW((void)slope(false)) << "the one that it has";
   EXPECT_THROW((void)slope(true), InputError);
+  EXPECT_THROW((void)lammps::law_of_card(path, "soft-solid", {5e5, 0.3, 0.1, false, "", false, true}, MPI_COMM_WORLD),
+               InputError)
+      << "the card has no unloading branch";
   EXPECT_THROW((void)lammps::law_of_card(path, "soft", {5e5, 0.3, 0.0, false, ""}, MPI_COMM_WORLD), InputError);
   EXPECT_THROW((void)lammps::law_of_card("no such file", "soft-soft", {}, MPI_COMM_WORLD), IoError);
   EXPECT_THROW((void)lammps::law_of_file(path, "x", MPI_COMM_WORLD), InputError);
+}
+
+/// A script takes the unloading branch of a card or leaves it out, for pairs and for walls.
+TEST(Styles, UnloadingOfACardIsSwitchedByItsKeyword) {
+  LawCard card = load_card(SOFTGRAIN_SOURCE_DIR "/results/published/law.toml");
+  for (PairLaw& law : card.pairs) {
+    law.unloading.emplace();
+    law.unloading->residual = {0.3, 0.0, 0.3, 0.3};
+    law.unloading->exponent = {2.0 + law.normal.b.value, 0.0, 2.0, 9.0};
+  }
+  const TemporaryDirectory directory;
+  save_card(card, directory.path() + "/law.toml");
+  const auto ours = [&](bool unloading) {
+    const CardLaw law = make_card_law(card, PairKind::soft_solid, 5e5, 0.3, 0.0, false, std::nullopt, unloading);
+    return laws_text({{"law", std::visit([](const auto& l) { return AnyLaw(l); }, law)}});
+  };
+  for (const auto& [words, unloading] :
+       {std::pair{"", true}, std::pair{" unloading yes", true}, std::pair{" unloading no", false}}) {
+    const std::string of_card = std::string(" card law.toml soft-solid modulus 5e5 friction 0.3 kt initial") + words;
+    InProcess lammps;
+    for (const std::string& line : lid_script(directory)) {
+      if (line.starts_with("pair_style"))
+        lammps("pair_style softgrain soft 1");
+      else if (line.starts_with("fix lid"))
+        lammps("fix lid all softgrain/wall plane 0 0 0.03 0 0 -1 law 1" + of_card);
+      else
+        lammps(line);
+    }
+    lammps("run 0 post no");
+    EXPECT_EQ(laws_text({{"law", lammps.pair().walls.at(0)->laws.at(0)}}), ours(unloading)) << words;
+  }
+  EXPECT_NE(ours(true), ours(false));
+}
+
+/// Boxes that lean are not strained: lengths alone would change, and the box would be sheared besides.
+TEST(Styles, ATiltedBoxIsRelaxedButNotStrained) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.path();
+  std::string script;
+  for (std::string line : lid_script(directory)) {
+    if (line.starts_with("boundary")) line = "boundary p p p";
+    if (line.starts_with("region")) line = "region box prism 0 0.1 0 0.1 0 0.1 0 0.03 0";
+    if (!line.starts_with("shell") && !line.starts_with("fix lid") && !line.starts_with("thermo_style"))
+      script += line + "\n";
+  }
+  const auto status_with = [&](const std::string& words, const std::string& strain = "") {
+    std::ofstream(path + "/tilted.in") << script << "fix relax all softgrain/relax tolerance 0.01 " << words
+                                       << "\nrun 1\n"
+                                       << strain << "\nrun 1\n";
+    return run_ranks(1, path, "-in tilted.in");
+  };
+  const auto refused = [&](const std::string& why) {
+    return read_text(path + "/screen.txt").find(why) != std::string::npos;
+  };
+  const std::string strain = "change_box all x scale 0.99 remap";
+  EXPECT_EQ(status_with("track_box no", strain), 0) << read_text(path + "/screen.txt");
+  EXPECT_NE(status_with("", strain), 0);
+  EXPECT_TRUE(refused("a triclinic box has been strained; give track_box no"));
+  EXPECT_NE(status_with("stress 10 10 10"), 0);
+  EXPECT_TRUE(refused("stress and log_lists need a box with right angles"));
 }
 
 }  // namespace

@@ -107,20 +107,24 @@ TEST_F(PeriodicTwin, NothingChangesWhereFacesLieElsewhere) {
   }
 }
 
-/// sigma_k V = -dU/de_k of frictionless bodies that move with the cell.
-TEST(PeriodicCell, StressIsTheWorkOfStrain) {
+/// sigma_k V = -dU/de_k of frictionless bodies that move with the cell, which leans by this shear strain.
+void expect_stress_to_be_the_work_of_strain(double shear) {
   MacroSpec spec = periodic_spec();
   spec.friction = 0.0;
   spec.soft_share = 0.0;
   const MacroPacking packing = make_macro_packing(spec, 4, 0);
-  const auto energy_at = [&](const Vec3& strain) {
+  const auto squeezed = [&] {
     MacroSystem macro = make_law_system(spec, packing, pair_soft_laws({}, {}, 0.0), 1.0);
     strain_box(macro.system, macro.box, {{0.03, 0.02, 0.05}});
+    shear_cell(macro.system, shear);
+    return macro;
+  };
+  const auto energy_at = [&](const Vec3& strain) {
+    MacroSystem macro = squeezed();
     strain_box(macro.system, macro.box, strain);
     return watch_contacts(macro.system).stored;
   };
-  MacroSystem macro = make_law_system(spec, packing, pair_soft_laws({}, {}, 0.0), 1.0);
-  strain_box(macro.system, macro.box, {{0.03, 0.02, 0.05}});
+  MacroSystem macro = squeezed();
   const Vec3 size = box_high(macro.system, macro.box);
   const Vec3 stress = contact_stress(macro.system, macro.box);
   for (int k = 0; k < 3; ++k) {
@@ -128,7 +132,34 @@ TEST(PeriodicCell, StressIsTheWorkOfStrain) {
     Vec3 strain{};
     strain[k] = kStep;
     const double work = (energy_at(strain) - energy_at(-strain)) / (2.0 * kStep);
-    EXPECT_NEAR(work, stress[k] * size[0] * size[1] * size[2], 1e-6 * work);
+    EXPECT_NEAR(work, stress[k] * size[0] * size[1] * size[2], 1e-6 * work) << k << ", shear " << shear;
+  }
+}
+
+TEST(PeriodicCell, StressIsTheWorkOfStrain) { expect_stress_to_be_the_work_of_strain(0.0); }
+
+TEST(PeriodicCell, StressOfATiltedCellIsTheWorkOfStrain) {
+  for (const double shear : {0.15, -0.3}) expect_stress_to_be_the_work_of_strain(shear);
+}
+
+/// Coordinates in units of the edges stay, and the lean with them: a strain of x adds no shear.
+TEST(PeriodicCell, StrainOfATiltedCellIsAffine) {
+  MacroSpec spec = periodic_spec();
+  spec.soft_share = 0.0;
+  MacroSystem macro = make_law_system(spec, make_macro_packing(spec, 6, 0), pair_soft_laws({}, {}, 0.0), 1.0);
+  System3& s = macro.system;
+  shear_cell(s, 0.25);
+  const Cell<3> before = s.cell;
+  std::vector<Vec3> places;
+  for (const Sphere<3>& sphere : s.particles.sphere) places.push_back(before.fractional(sphere.x));
+  const Vec3 strain{{0.05, 0.02, -0.03}};
+  strain_box(s, macro.box, strain);
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c)
+      EXPECT_DOUBLE_EQ(s.cell.edges[r][c], (1.0 - strain[r]) * before.edges[r][c]) << r << ", " << c;
+  for (std::size_t u = 0; u < places.size(); ++u) {
+    const Vec3 now = s.cell.fractional(s.particles.sphere[u].x);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(std::remainder(now[k] - places[u][k], 1.0), 0.0, 1e-12) << u << ", " << k;
   }
 }
 

@@ -50,6 +50,84 @@ TEST(StableStep, OfTwoGrainsIsThatOfTheirOscillators) {
       << "tangential springs: sqrt(2)/omega";
 }
 
+SoftUnloading soft_law(const UnloadingBranch& branch) {
+  SoftUnloading law;
+  law.normal = threshold_term(0.58, 2.8, 0.065);
+  law.delta = 0.065;
+  law.modulus = 5e5;
+  law.partner_is_soft = true;
+  law.branch = branch;
+  return law;
+}
+
+/// Stiffness of loading at this Delta, and that at which the contact begins to unload from there [N/m].
+std::pair<double, double> slopes(const SoftUnloading& law, double ratio) {
+  const double unit = law.modulus * kRadius;
+  const double force = law.normal.a * (std::pow(ratio, law.normal.b) - std::pow(law.delta, law.normal.b));
+  return {unit * law.normal.a * law.normal.b * std::pow(ratio, law.normal.b - 1.0),
+          unit * law.branch.exponent * force / ((1.0 - law.branch.residual) * (ratio - law.delta))};
+}
+
+System3 two_spheres(const AnyLaw& law, double overlap_ratio) {
+  System3 s;
+  s.materials.resize(1);
+  s.laws = LawSet(1);
+  s.laws.set(0, 0, law);
+  for (const double x : {0.0, (2.0 - overlap_ratio) * kRadius})
+    add_grain(s.particles, test_sphere<3>({{x, 0.0, 0.0}}, kRadius, 2500.0));
+  return s;
+}
+
+/// The step goes by the way back where that is steeper, up to the end of a clamped law.
+TEST(StepLimit, TakesTheSteeperOfLoadingAndUnloading) {
+  for (const double residual : {0.0, 0.5, 0.8, 0.95}) {
+    SoftUnloading law = soft_law({residual, least_unloading_exponent(residual, 2.8)});
+    const auto [loading, unloading] = slopes(law, 0.35);
+    const StepLimit limit = step_limit(two_spheres(law, -1.0));
+    EXPECT_NEAR(limit.stiffness / std::max(loading, unloading), 1.0, 1e-12) << residual;
+    EXPECT_NEAR(limit.natural_time / std::sqrt(kMass / limit.stiffness), 1.0, 1e-12);
+    EXPECT_EQ(unloading > loading, residual != 0.5) << "of both kinds";
+    EXPECT_NEAR(step_limit(two_spheres(static_cast<SoftContact>(law), -1.0)).stiffness / loading, 1.0, 1e-12);
+    law.range = {0.2, Extrapolation::clamp};
+    const auto [at_end, back] = slopes(law, 0.2);
+    EXPECT_NEAR(step_limit(two_spheres(law, -1.0)).stiffness / std::max(at_end, back), 1.0, 1e-12) << residual;
+  }
+}
+
+template <LawForm kLawForm>
+void expect_steeper_by_unloading() {
+  constexpr double kSteeper = 3.5;
+  const auto law_of = []<bool kUnloading>(std::bool_constant<kUnloading>) {
+    SoftMultiContact<kLawForm, kUnloading> law;
+    law.form.pressure = {0.8, 3.0, 0.02, {0.5, Extrapolation::extrapolate}};
+    law.form.coupling = {0.8, 0.15, 0.1};
+    law.partner.common_exponent = 1.25;
+    law.modulus = 5e5;
+    law.j_is_soft = true;
+    law.unloading = kSteeper;
+    return law;
+  };
+  const double loading = step_limit(two_spheres(law_of(std::false_type{}), -1.0)).stiffness;
+  const double unloading = step_limit(two_spheres(law_of(std::true_type{}), -1.0)).stiffness;
+  EXPECT_GT(loading, 0.0);
+  EXPECT_NEAR(unloading / loading, kSteeper, 1e-9) << to_string(kLawForm);
+}
+
+TEST(StepLimit, OfLawTablesTakesTheUnloadingBranch) {
+  expect_steeper_by_unloading<LawForm::pair>();
+  expect_steeper_by_unloading<LawForm::isotropic>();
+  expect_steeper_by_unloading<LawForm::directional>();
+}
+
+/// Two spheres that touch: 2/omega, omega^2 = 2 k/m, k that with which they would part.
+TEST(StableStep, TakesTheSteeperOfLoadingAndUnloading) {
+  for (const double residual : {0.2, 0.9}) {
+    const SoftUnloading law = soft_law({residual, least_unloading_exponent(residual, 2.8)});
+    const double unit = std::sqrt(kMass / slopes(law, 0.25).second);
+    EXPECT_NEAR(network_step(two_spheres(law, 0.25)), std::sqrt(2.0) * unit, 2e-3 * unit) << residual;
+  }
+}
+
 TEST(StableStep, ABoundFromSumsIsBelowItAndNotFar) {
   for (const double tangential : {0.0, 300.0, kStiffness})
     for (const double zeta : {0.0, 0.2}) {

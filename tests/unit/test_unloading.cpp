@@ -1,7 +1,9 @@
 // Press tests with an unloading branch: the law of the loop, its file and card, the fit, and what tables may hold.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "calibrate/experiment_fit.h"
@@ -11,6 +13,7 @@
 #include "common/core/random.h"
 #include "common/data/law_words.h"
 #include "common/io/text_file.h"
+#include "pipelines/law/law_draws.h"
 #include "pipelines/law/law_values.h"
 #include "pipelines/law/press_test.h"
 #include "tests/support/synthetic_law.h"
@@ -120,6 +123,7 @@ LawCard card_with_branch() {
   set(u.residual, 0.1);
   set(u.exponent, 2.8);
   u.correlation = -0.5;
+  u.deepest = 0.28;
   u.samples = 3;
   u.points = 93;
   law.unloading = u;
@@ -139,6 +143,7 @@ TEST(UnloadingCard, IsReadBackAndUsed) {
   EXPECT_EQ(u.residual.value, 0.1);
   EXPECT_EQ(u.exponent.high, 1.2 * 2.8);
   EXPECT_EQ(u.correlation, -0.5);
+  EXPECT_EQ(u.deepest, 0.28);
   EXPECT_EQ(u.samples, 3);
   EXPECT_EQ(u.points, 93);
   const CardLaw law = make_card_law(again, PairKind::soft_solid, 5e5, 0.3, 0.0, false, std::nullopt, true);
@@ -153,6 +158,87 @@ TEST(UnloadingCard, IsReadBackAndUsed) {
   EXPECT_NEAR(values[0].force.value, branch_value({}, 0.2, 0.3, {0.1, 2.8}), 1e-12);
   EXPECT_NEAR(values[1].force.value, KnownLaw{}.value(0.3), 1e-12);
   EXPECT_THROW((void)law::card_values(again, PairKind::soft_soft, {0.2}, std::nullopt, 0.3), InputError);
+}
+
+/// One limit for what is fitted, read and drawn.
+TEST(UnloadingCard, TheResidualHasOneLimit) {
+  const TemporaryDirectory directory;
+  LawCard card = card_with_branch();
+  UnloadingLaw& u = *card.pairs[0].unloading;
+  u.residual.value = kLargestResidual;
+  save_card(card, directory.file("largest.toml"));
+  EXPECT_EQ(load_card(directory.file("largest.toml")).pairs.at(0).unloading->residual.value, kLargestResidual);
+  u.residual.value = kLargestResidual + 0.001;
+  save_card(card, directory.file("beyond.toml"));
+  try {
+    (void)load_card(directory.file("beyond.toml"));
+    FAIL() << "was read";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("0.98"), std::string::npos) << e.what();
+  }
+  card = card_with_branch();
+  card.pairs[0].covariance.assign(49, 0.0);
+  card.pairs[0].covariance[0] = 1e-6;
+  card.pairs[0].unloading->residual = {0.9, 0.5, 0.0, kLargestResidual};
+  card.pairs.push_back(card.pairs[0]);
+  card.pairs[1].kind = PairKind::soft_soft;
+  LawSources sources;
+  sources.laws = {FittedLaw{card}};
+  NamedLaws named;
+  named.form = LawForm::pair;
+  const LawDraws drawn = law_draws(sources, named, MacroSpec{}, 0.0, 50);
+  double largest = 0.0;
+  for (const std::vector<double>& numbers : drawn.draws) {
+    const AnyLaw law = drawn.with(numbers).laws.soft_solid;
+    ASSERT_TRUE(std::holds_alternative<SoftUnloading>(law));
+    largest = std::max(largest, std::get<SoftUnloading>(law).branch.residual);
+  }
+  EXPECT_EQ(largest, kLargestResidual);
+}
+
+double spread(const std::vector<double>& values) {
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const double v : values) {
+    sum += v;
+    squares += v * v;
+  }
+  const auto n = static_cast<double>(values.size());
+  return std::sqrt(squares / n - sum * sum / (n * n));
+}
+
+/// The residual takes the error of the threshold along: what stays of the depth, which is measured, scatters by the
+/// error of its own alone.
+TEST(UnloadingCard, TheErrorOfTheThresholdIsDrawnOnce) {
+  constexpr double kDeepest = 0.3;
+  constexpr double kError = 1e-3;  // of the threshold
+  for (const double own : {0.0, 2e-3}) {
+    LawCard card = card_with_branch();
+    PairLaw& law = card.pairs[0];
+    law.covariance.assign(49, 0.0);
+    law.covariance[2 * 7 + 2] = kError * kError;
+    law.normal.delta.standard_error = kError;
+    UnloadingLaw& u = *law.unloading;
+    const double delta = law.normal.delta.value;
+    const double total = std::hypot(own, residual_slope(0.1, kDeepest, delta) * kError);
+    u.residual = {0.1, total, 0.1 - kNormal95 * total, 0.1 + kNormal95 * total};
+    u.exponent = {2.8, 0.0, 2.8, 2.8};
+    u.deepest = kDeepest;
+    LawSources sources;
+    sources.laws = {FittedLaw{card}};
+    NamedLaws named;
+    named.form = LawForm::pair;
+    const LawDraws drawn = law_draws(sources, named, MacroSpec{}, 0.0, 4000);
+    std::vector<double> residuals;
+    std::vector<double> left;
+    for (const std::vector<double>& numbers : drawn.draws) {
+      ASSERT_EQ(numbers.size(), 9U);
+      residuals.push_back(numbers[7]);
+      left.push_back(numbers[2] + numbers[7] * (kDeepest - numbers[2]));
+    }
+    EXPECT_NEAR(spread(residuals), total, 0.04 * total) << "as the card says";
+    EXPECT_NEAR(spread(left), own * (kDeepest - delta), 0.04 * own * (kDeepest - delta) + 1e-2 * kError);
+  }
 }
 
 TEST(UnloadingCard, ABranchThatWouldGiveEnergyIsRefused) {
@@ -198,6 +284,7 @@ TEST(UnloadingFit, AnExactBranchComesBack) {
     EXPECT_NEAR(fit.law->residual.value, u.residual, 1e-5);
     EXPECT_NEAR(fit.law->exponent.value, u.exponent, 1e-4);
     EXPECT_EQ(fit.law->points, 31);
+    EXPECT_EQ(fit.law->deepest, 0.3);
   }
 }
 
@@ -218,6 +305,7 @@ TEST(UnloadingFit, RepeatsWithOffsetsAndNoiseHoldTheTruth) {
   EXPECT_NEAR(law.unloading->residual.value, truth.residual, 0.02);
   ASSERT_TRUE(fit.card.pairs[1].unloading) << "by symmetry";
   EXPECT_EQ(fit.card.pairs[1].unloading->residual.value, law.unloading->residual.value);
+  EXPECT_NEAR(fit.card.pairs[1].unloading->deepest, 2.0 * law.unloading->deepest, 1e-12) << "half of the overlap each";
 }
 
 /// Were 95 % of the intervals to hold the truth, more than five of twenty would miss it once in 3000 such tests.
@@ -257,14 +345,72 @@ TEST(UnloadingFit, RepeatsGiveErrorsBetweenThem) {
   EXPECT_NEAR(half / expected, 1.0, 0.2);
 }
 
-TEST(UnloadingFit, TooFewReadingsAreNoBranch) {
-  ForceCurves curves = made(1, 0.0, 0.0, {0.1, 2.8});
-  curves.samples[0].unloaded[0].points.resize(2);
-  const UnloadingFit fit = fit_unloading(curves.samples, {0.065, 0.0, 0.065, 0.065}, 2.799);
+constexpr Estimate kExactDelta{0.065, 0.0, 0.065, 0.065};
+
+void expect_no_branch(const ForceCurves& curves, const std::string& why) {
+  const UnloadingFit fit = fit_unloading(curves.samples, kExactDelta, 2.799);
   EXPECT_FALSE(fit.law);
-  EXPECT_NE(fit.remark.find("no unloading branch"), std::string::npos);
-  curves.samples[0].unloaded.clear();
-  EXPECT_EQ(fit_unloading(curves.samples, {0.065, 0.0, 0.065, 0.065}, 2.799).remark, "");
+  EXPECT_EQ(fit.remark.rfind("no unloading branch: ", 0), 0U) << fit.remark;
+  EXPECT_NE(fit.remark.find(why), std::string::npos) << fit.remark;
+}
+
+/// The message says what happened, not what usually does.
+TEST(UnloadingFit, WithoutABranchItSaysWhy) {
+  ForceCurves few = made(1, 0.0, 0.0, {0.1, 2.8});
+  few.samples[0].unloaded[0].points.resize(2);
+  expect_no_branch(few, "2 readings of unloading from above the threshold of the law, at least 4 are needed");
+  few.samples[0].unloaded.clear();
+  EXPECT_EQ(fit_unloading(few.samples, kExactDelta, 2.799).remark, "");
+  ForceCurves below = made(2, 0.0, 0.0, {0.1, 2.8});
+  for (ForceCurve& s : below.samples) s.unloaded[0].deepest = 0.06;
+  expect_no_branch(below, "of 2 of 2 samples that were unloaded nothing counts");
+  ForceCurves flat = made(1, 0.0, 0.0, {0.1, 2.8});
+  for (ForcePoint& p : flat.samples[0].unloaded[0].points) p.delta = 0.3;
+  expect_no_branch(flat, "30 readings do not determine residual and exponent");
+  ForceCurves one = made(2, 0.0, 0.0, {0.1, 2.8});
+  one.samples[1].unloaded[0].points.resize(3);
+  expect_no_branch(one, "without sample \"S0\" (3 readings of unloading");
+}
+
+TEST(UnloadingFit, AResidualOnItsLimitIsSaidToBe) {
+  ForceCurves curves = made(1, 0.0, 0.0, {0.1, 2.8});
+  std::vector<ForcePoint>& points = curves.samples[0].unloaded[0].points;
+  points.clear();
+  for (int k = 1; k < 30; ++k) {
+    const double delta = 0.3 - 1e-4 * k;
+    points.push_back({delta, kUnit * branch_value({}, delta, 0.3, {0.995, 1.0})});
+  }
+  const UnloadingFit fit = fit_unloading(curves.samples, kExactDelta, 2.799);
+  ASSERT_TRUE(fit.law) << fit.remark;
+  EXPECT_EQ(fit.law->residual.value, kLargestResidual);
+  EXPECT_NE(fit.remark.find("the residual is 0.98, the largest that a law may have"), std::string::npos) << fit.remark;
+}
+
+/// A sample whose unloading begins below the threshold changes neither the numbers nor their errors.
+TEST(UnloadingFit, SamplesThatSayNothingDoNotCount) {
+  for (const int samples : {1, 3}) {
+    ForceCurves curves = made(samples, 0.002, 0.03, {0.1, 2.8});
+    const UnloadingFit alone = fit_unloading(curves.samples, kExactDelta, 2.799);
+    ASSERT_TRUE(alone.law) << alone.remark;
+    EXPECT_EQ(alone.law->samples, samples);
+    const ForceCurves more = made(2, 0.002, 0.03, {0.1, 2.8});
+    curves.samples.push_back(more.samples[0]);
+    curves.samples.back().unloaded[0].deepest = 0.05;
+    curves.samples.push_back(more.samples[1]);
+    curves.samples.back().unloaded[0].points.clear();
+    const UnloadingFit fit = fit_unloading(curves.samples, kExactDelta, 2.799);
+    ASSERT_TRUE(fit.law) << fit.remark;
+    EXPECT_EQ(fit.law->samples, samples);
+    EXPECT_EQ(fit.law->points, alone.law->points);
+    for (const auto of : {&UnloadingLaw::residual, &UnloadingLaw::exponent}) {
+      EXPECT_EQ(((*fit.law).*of).value, ((*alone.law).*of).value);
+      EXPECT_EQ(((*fit.law).*of).standard_error, ((*alone.law).*of).standard_error);
+      EXPECT_EQ(((*fit.law).*of).high, ((*alone.law).*of).high);
+    }
+    EXPECT_NE(fit.remark.find(fmt::format("of 2 of {} samples that were unloaded nothing counts", samples + 2)),
+              std::string::npos)
+        << fit.remark;
+  }
 }
 
 class PressTestTable : public ::testing::Test {
@@ -304,6 +450,28 @@ TEST_F(PressTestTable, RepeatsInColumnsAndTheBranchByReversal) {
   EXPECT_EQ(c.samples[0].unloaded[0].points.size(), 4U) << "reloading is part of it";
   EXPECT_EQ(c.samples[1].unloaded[0].points.size(), 3U) << "an empty cell is no reading";
   EXPECT_EQ(c.samples[1].unloaded[0].force, 7.1);
+}
+
+/// Repeats are numbers, not texts: 10 comes after 2, and 01 is 1.
+TEST_F(PressTestTable, RepeatsAreInTheOrderOfTheirNumbers) {
+  const ForceCurves c = read(
+      "hn [mm]; Fn 10 [N]; Fn 2 [N]; Fn 01 [N]\n0.5; 10; 2; 1\n1; 11; 3; 2\n1.5; 12; 4; 3\n2; 13; 5; 4\n"
+      "2.5; 14; 6; 5\n");
+  ASSERT_EQ(c.samples.size(), 3U);
+  const std::array names{"data 1", "data 2", "data 10"};
+  const std::array forces{1.0, 2.0, 10.0};
+  for (std::size_t s = 0; s < 3; ++s) {
+    EXPECT_EQ(c.samples[s].name, names[s]);
+    EXPECT_EQ(c.samples[s].normal.at(0).force, forces[s]);
+  }
+  const std::string rows = "0.5; 0; 0\n1; 1; 1\n1.5; 2; 2\n2; 4; 4\n2.5; 7; 7\n";
+  expect_refused("hn [mm]; Fn 1 [N]; Fn 01 [N]\n" + rows,
+                 "columns \"Fn 1 [N]\" and \"Fn 01 [N]\" both name Fn of repeat 1");
+  const ForceCurves pairs = read(
+      "hn 1 [mm]; Fn 01 [N]; Fn 2 [N]; hn 02 [mm]\n0.5; 0; 0; 0.6\n1; 1; 1; 1.1\n"
+      "1.5; 2; 2; 1.6\n2; 4; 4; 2.1\n2.5; 7; 7; 2.6\n");
+  ASSERT_EQ(pairs.samples.size(), 2U);
+  EXPECT_NEAR(pairs.samples[1].normal[0].delta, 0.06, 1e-12);
 }
 
 TEST_F(PressTestTable, PairsOfColumnsTouchPointOffsetAndMachine) {

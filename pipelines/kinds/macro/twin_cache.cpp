@@ -2,6 +2,7 @@
 
 #include "common/data/snapshot_io.h"
 #include "common/io/text_file.h"
+#include "macrosim/test_protocol.h"
 #include "pipelines/run/result_cache.h"
 
 namespace softgrain {
@@ -56,6 +57,8 @@ MacroSpec without_laws(MacroSpec spec) {
   return spec;
 }
 
+int schema_of(const MacroSpec& spec) { return any_slides(stages_of(spec)) ? kSlidingTwinSchema : kTwinSchema; }
+
 /// What a setup says of one sample beside its spec and its packing. Bands and law_increments are of runs with laws.
 KeyText& add_setup(KeyText& key, const MacroSetup& setup, std::int64_t sample) {
   // Every member: one more does not compile until it is named here, and part of the key or known to change nothing.
@@ -76,14 +79,14 @@ std::string test_key(const MacroSetup& setup, const MacroPacking& packing, std::
     bytes.add(b.soft);
   }
   add_springs(bytes, packing);
-  KeyText key("test", kTwinSchema, bytes.hash(), without_laws(setup.spec), setup.law_increments);
+  KeyText key("test", schema_of(setup.spec), bytes.hash(), without_laws(setup.spec), setup.law_increments);
   return add_setup(key, setup, sample).text();
 }
 
 std::string twin_key(const MacroSpec& spec, const MacroSetup& setup, const MacroPacking& packing,
                      const MacroSystem& macro, const std::string& engine, std::int64_t sample,
                      const std::string& runs) {
-  KeyText key("twin", kTwinSchema, engine, sample, hash_of(macro, packing), runs, without_laws(spec));
+  KeyText key("twin", schema_of(spec), engine, sample, hash_of(macro, packing), runs, without_laws(spec));
   return add_setup(key, setup, sample).text();
 }
 

@@ -14,6 +14,8 @@ namespace softgrain {
 /// Raised whenever the same key would give another curve: when contact laws, relaxations, twins or what is recorded
 /// change. The test of cached results holds a curve of this number.
 inline constexpr int kTwinSchema = 2;
+/// The same of tests that slide: since 3 a strain after a slide keeps the lean of the cell.
+inline constexpr int kSlidingTwinSchema = 3;
 
 /// The text of all that determines the curve of a twin and the states that are kept of it: where every grain and shell
 /// is at the start (`macro`), its springs (`packing`), material, test and motion (`spec`), and what of it is recorded
