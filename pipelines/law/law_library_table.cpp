@@ -188,19 +188,22 @@ void compare_with_own(const LibraryAnswer& prior, const OwnNumbers& own, const s
 
 }  // namespace
 
-std::optional<LibraryMaterial> library_row(LawLibrary& library, const LawTableEntry& entry, const std::string& source,
-                                           std::string& why) {
+LawLibrary library_like(const LawTableEntry& entry) {
+  LawLibrary out;
+  out.partners = partners_of(*entry.find(LawForm::isotropic));
+  out.rmax_over_shell = entry.spec.rmax_over_shell;
+  out.beta = entry.spec.beta;
+  return out;
+}
+
+std::optional<LibraryMaterial> library_row(const LawLibrary& library, const LawTableEntry& entry,
+                                           const std::string& source, std::string& why) {
   const MultiContactLaw* law = entry.find(LawForm::isotropic);
   why = unfit(entry, law);
   if (!why.empty()) return std::nullopt;
-  if (library.materials.empty()) {
-    library.partners = partners_of(*law);
-    library.rmax_over_shell = entry.spec.rmax_over_shell;
-    library.beta = entry.spec.beta;
-  }
   require_same_shell(library, entry, source);
   if (partners_of(*law) != library.partners)
-    throw InputError(source + ": measured with other kinds or sizes of neighbours than the first table");
+    throw InputError(source + ": measured with other kinds or sizes of neighbours than the library");
   LibraryMaterial m;
   m.source = source;
   m.at = point_of(entry);
