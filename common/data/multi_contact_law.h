@@ -121,6 +121,7 @@ struct LawTableEntry {
   bool main = false;    ///< whether the table was made for this packing; true for at most one entry
   int packings = 0;
   std::string relaxation;
+  bool from_press_test = false;    ///< what is inside the soft particle is not known: spec may lack it
   double volume_max = 0.0;         ///< validity: largest equivalent volume S among the fitted states
   double overlap_max = 0.0;        ///< validity: largest overlap with a plane, h/Rs
   double grain_overlap_max = 0.0;  ///< largest overlap of grains over the smaller radius in that range

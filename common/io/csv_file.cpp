@@ -4,7 +4,6 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <ranges>
 
 #include "common/core/error.h"
 #include "common/core/text.h"
@@ -241,9 +240,10 @@ void CsvFile::read_row(const std::string& line, int number) {
   if (is_header_) {
     const std::string& first = row.cells.front();
     const bool text = !first.empty() && first.find_first_of("0123456789") == std::string::npos;  // below the table
-    const auto beyond = row.cells | std::views::drop(columns_.size());
-    const bool words = std::ranges::all_of(
-        beyond, [](const std::string& c) { return c.find_first_of("0123456789") == std::string::npos; });
+    const std::size_t known = std::min(columns_.size(), row.cells.size());
+    const bool words =
+        std::all_of(row.cells.begin() + static_cast<std::ptrdiff_t>(known), row.cells.end(),
+                    [](const std::string& c) { return c.find_first_of("0123456789") == std::string::npos; });
     row.cells.resize(text && words ? columns_.size() : std::max(row.cells.size(), columns_.size()));
   }
   while (row.cells.size() > columns_.size() && row.cells.back().empty()) row.cells.pop_back();

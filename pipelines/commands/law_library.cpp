@@ -16,6 +16,7 @@
 #include "pipelines/commands/commands.h"
 #include "pipelines/commands/law_options.h"
 #include "pipelines/law/law_library_collect.h"
+#include "pipelines/law/law_library_press.h"
 #include "pipelines/law/value_output.h"
 #include "pipelines/results/summary.h"
 
@@ -32,9 +33,9 @@ Provenance provenance_of(const LawOptions& o) {
   return p;
 }
 
-std::string check_text(const std::vector<LibraryCheck>& checks) {
-  std::string text = fmt::format("{:<26} {:>9} {:>10} {:>10} {:>8} {:>11}\n", "each left out in turn", "materials",
-                                 "off by", "mean off", "widened", "within 95 %");
+std::string check_text(const char* title, const std::vector<LibraryCheck>& checks) {
+  std::string text = fmt::format("{:<26} {:>9} {:>10} {:>10} {:>8} {:>11}\n", title, "materials", "off by", "mean off",
+                                 "widened", "within 95 %");
   for (const LibraryCheck& c : checks)
     if (c.materials > 0)
       text += fmt::format("  {:<24} {:>9} {:>10.3g} {:>10.3g} {:>8.2f} {:>9.0f} %{}\n", c.name, c.materials, c.error,
@@ -73,12 +74,33 @@ json left_out_json(const std::vector<LeftOutTable>& left_out) {
   return out;
 }
 
-/// The library and the table of leaving one out, which `law library --out` writes.
+/// Both of a library; that of press tests where there is one.
+std::string checks_text(const LawLibrary& library) {
+  std::string text = check_text("each left out in turn", library.checks);
+  if (!library.press_checks.empty()) text += check_text("known by a press test alone", library.press_checks);
+  return text;
+}
+
+/// What `law library --out` may write: the library, and tables of leaving one out, that of press tests last.
 std::vector<std::string> files_of(const std::string& out) {
   if (out.empty()) return {};
   if (fs::path(out).extension() != ".toml")
     throw InputError("law library: --out " + out + ": a library ends with .toml");
-  return {out, fs::path(out).replace_filename("leave_one_out.csv").string()};
+  const auto beside = [&](const char* name) { return fs::path(out).replace_filename(name).string(); };
+  return {out, beside("leave_one_out.csv"), beside("leave_one_out_press_test.csv")};
+}
+
+/// Writes a library to the files of files_of(), if any, and returns those that it wrote.
+std::vector<std::string> write_library(const LawLibrary& library, std::vector<std::string> files,
+                                       const Provenance& provenance) {
+  if (files.empty()) return files;
+  write_text_atomic(files[0], library_text(library, provenance));
+  write_text_atomic(files[1], check_csv(library.checks));
+  if (library.press_checks.empty())
+    files.pop_back();
+  else
+    write_text_atomic(files[2], check_csv(library.press_checks));
+  return files;
 }
 
 /// Of directories, or of the file of a library, which is checked anew.
@@ -86,6 +108,7 @@ LibraryCollection library_of(const std::vector<std::string>& files) {
   if (files.size() > 1 || !fs::is_regular_file(files.front())) return collect_library(files);
   LibraryCollection out{load_library(files.front()), {}};
   out.library.checks = check_library(out.library);
+  out.library.press_checks = check_press_tests(out.library);
   return out;
 }
 
@@ -132,13 +155,24 @@ LibraryAnswer answer_of(const LawOptions& o, const LawLibrary& library, std::vec
   return corrected(library, answer, own_entry(library, at, *own.table(), "law get: --own " + o.own), remarks);
 }
 
+/// The law of all neighbours that goes with a press test, and what was said of it.
+PressTestLaw press_test_law(const LawOptions& o, const LawLibrary& library) {
+  for (const char* name : {"--exponent", "--ratio", "--solid-fraction", "--nu", "--E", "--radius", "--own"})
+    if (std::ranges::find(o.given, name) != o.given.end())
+      throw InputError(fmt::format("law get: {} does not go with --press-test, whose table says all but mu", name));
+  std::optional<double> friction;
+  if (std::ranges::find(o.given, "--mu") != o.given.end()) friction = given(o, "--mu", o.friction, 0.0, 10.0);
+  return law_of_press_test(library, o.press_test, friction, static_cast<int>(o.draws));
+}
+
 json answer_json(const LibraryAnswer& answer, const std::vector<std::string>& remarks, const std::string& written) {
   json out{{"command", "law get"},
            {"status", "good"},
            {"distance", answer.distance},
            {"by_mean", answer.by_mean},
            {"remarks", remarks}};
-  for (const LibraryVariable& v : kLibraryVariables) out["material"][v.name] = answer.at.*v.value;
+  for (const LibraryVariable& v : kLibraryVariables)
+    if (is_known(answer.at.*v.value)) out["material"][v.name] = answer.at.*v.value;
   for (const LibraryNumber& n : answer.numbers)
     if (std::isfinite(n.value)) out["numbers"][n.name] = {n.value, n.deviation};
   if (!written.empty()) out["written"] = written;
@@ -146,7 +180,7 @@ json answer_json(const LibraryAnswer& answer, const std::vector<std::string>& re
 }
 
 std::string answer_text(const LibraryAnswer& answer, const std::vector<std::string>& remarks) {
-  std::string text = point_text(answer.at) + "\n";
+  std::string text = of_press_test(answer) ? "" : point_text(answer.at) + "\n";
   for (const LibraryNumber& n : answer.numbers)
     if (std::isfinite(n.value))
       text += fmt::format("  {:<24} {:>9.4g} +- {:.2g}{}\n", n.name, n.value, n.deviation,
@@ -159,26 +193,23 @@ std::string answer_text(const LibraryAnswer& answer, const std::vector<std::stri
 
 ExitStatus make_library(const LawOptions& o) {
   if (o.files.empty()) throw InputError("law library: give directories with law tables (see softgrain law library -h)");
-  const std::vector<std::string> written = files_of(o.out);
-  for (const std::string& path : written) refuse_to_overwrite(path, "choose another directory, or move it away");
+  const std::vector<std::string> files = files_of(o.out);
+  for (const std::string& path : files) refuse_to_overwrite(path, "choose another directory, or move it away");
   const LibraryCollection all = library_of(o.files);
-  if (!written.empty()) {
-    write_text_atomic(written[0], library_text(all.library, provenance_of(o)));
-    write_text_atomic(written[1], check_csv(all.library.checks));
-  }
+  const std::vector<std::string> written = write_library(all.library, files, provenance_of(o));
   const bool good = std::ranges::none_of(all.left_out, &LeftOutTable::damaged);
   if (o.json) {
     json out{{"command", "law library"},
              {"status", to_string(good ? RunStatus::good : RunStatus::not_usable)},
              {"materials", all.library.materials.size()},
              {"left_out", left_out_json(all.left_out)},
-             {"leave_one_out", check_json(all.library.checks)}};
+             {"leave_one_out", check_json(all.library.checks)},
+             {"leave_one_out_press_test", check_json(all.library.press_checks)}};
     if (!written.empty()) out["written"] = written;
     write_standard_output(out.dump(2) + "\n");
   } else {
     write_standard_output(left_out_text(all.left_out) + fmt::format("{} materials\n", all.library.materials.size()) +
-                          check_text(all.library.checks) +
-                          (written.empty() ? "" : "written: " + join_text(written) + "\n"));
+                          checks_text(all.library) + (written.empty() ? "" : "written: " + join_text(written) + "\n"));
   }
   return good ? ExitStatus::good : ExitStatus::not_usable;
 }
@@ -192,10 +223,19 @@ ExitStatus get_law(const LawOptions& o) {
   const LibraryMatter matter = matter_of(o);
   const LawLibrary library = load_library(o.library.empty() ? shipped_library() : o.library);
   std::vector<std::string> remarks;
-  const LibraryAnswer answer = answer_of(o, library, remarks);
-  if (const std::string means = means_text(answer); !means.empty()) remarks.push_back(means);
-  if (!o.out.empty())
-    save_law_table(table_of(library, answer, matter, static_cast<int>(o.draws)), o.out, provenance_of(o));
+  LibraryAnswer answer;
+  LawTable table;
+  if (!o.press_test.empty()) {
+    PressTestLaw law = press_test_law(o, library);
+    answer = std::move(law.answer);
+    table = std::move(law.table);
+    remarks = std::move(law.remarks);
+  } else {
+    answer = answer_of(o, library, remarks);
+    if (const std::string means = means_text(answer); !means.empty()) remarks.push_back(means);
+    table = table_of(library, answer, matter, static_cast<int>(o.draws));
+  }
+  if (!o.out.empty()) save_law_table(table, o.out, provenance_of(o));
   if (o.json)
     write_standard_output(answer_json(answer, remarks, o.out).dump(2) + "\n");
   else

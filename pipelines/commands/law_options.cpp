@@ -106,6 +106,10 @@ void add_get(CLI::App& app, LawOptions& o) {
   app.add_option("--library", o.library, "Library; default that of the program")->option_text("FILE");
   app.add_option("--own", o.own, "Law table of own packings of this material, with its .h5: corrects the answer")
       ->option_text("TABLE");
+  app.add_option(
+         "--press-test", o.press_test,
+         "Press test of one soft particle on a plane (table or law card) instead of the material; --mu beside it")
+      ->option_text("TABLE");
   app.add_option("--draws", o.draws, "Draws of the law for error bars of macro runs; default 64")->option_text("N");
   app.add_option("--out", o.out, "Law table to write, and an .h5 beside it; default: numbers alone, on the terminal")
       ->option_text("FILE.toml");

@@ -74,6 +74,7 @@ struct LawOptions {
   double exponent = -1.0;      ///< --exponent of get
   double poisson_ratio = 0.3;  ///< --nu of get
   std::string own;             ///< --own of get: a measured table, by which the answer is corrected
+  std::string press_test;      ///< --press-test of get: what the law of all neighbours is concluded from
   std::int64_t draws = 64;     ///< --draws of get
   std::string command_line{};  ///< command line as given, for provenance
 

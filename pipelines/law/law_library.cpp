@@ -20,65 +20,28 @@ namespace {
 constexpr double kReachOfHull = 0.1;
 constexpr double kReachOfRange = 0.02;
 
-struct VariableRange {
-  double low = 0.0;
-  double high = 0.0;
-};
-
 double on_axis(const LibraryVariable& v, double x) { return v.logarithm ? std::log(x) : x; }
 
-std::array<VariableRange, kLibraryVariables.size()> ranges_of(const LawLibrary& library) {
-  std::array<VariableRange, kLibraryVariables.size()> out;
-  for (std::size_t a = 0; a < out.size(); ++a) {
-    const auto of = [&](const LibraryMaterial& m) { return m.at.*kLibraryVariables[a].value; };
-    const auto [low, high] = std::ranges::minmax(library.materials, {}, of);
-    out[a] = {of(low), of(high)};
-  }
+std::vector<double> coordinates(const LibraryPoint& at) {
+  std::vector<double> out;
+  for (const LibraryVariable& v : kLibraryVariables) out.push_back(on_axis(v, at.*v.value));
   return out;
 }
 
-/// A point with every variable from 0 to 1 over the measured range.
-class UnitBox {
- public:
-  explicit UnitBox(const LawLibrary& library) : ranges_(ranges_of(library)) {}
-
-  [[nodiscard]] std::vector<double> operator()(const LibraryPoint& at) const {
-    std::vector<double> u;
-    for (std::size_t a = 0; a < ranges_.size(); ++a) {
-      const LibraryVariable& v = kLibraryVariables[a];
-      const double low = on_axis(v, ranges_[a].low);
-      const double width = on_axis(v, ranges_[a].high) - low;
-      u.push_back(width > 0.0 ? (on_axis(v, at.*v.value) - low) / width : 0.5);
-    }
-    return u;
-  }
-  [[nodiscard]] std::vector<std::vector<double>> all(const LawLibrary& library) const {
-    std::vector<std::vector<double>> out;
-    for (const LibraryMaterial& m : library.materials) out.push_back((*this)(m.at));
-    return out;
-  }
-  [[nodiscard]] const VariableRange& range(std::size_t a) const { return ranges_[a]; }
-
- private:
-  std::array<VariableRange, kLibraryVariables.size()> ranges_;
-};
-
-double apart(const std::vector<double>& u, const std::vector<double>& v) {
-  double square = 0.0;
-  for (std::size_t a = 0; a < u.size(); ++a) square += (u[a] - v[a]) * (u[a] - v[a]);
-  return std::sqrt(square);
+UnitBox box_of(const LawLibrary& library) {
+  std::vector<std::vector<double>> rows;
+  for (const LibraryMaterial& m : library.materials) rows.push_back(coordinates(m.at));
+  return UnitBox(rows);
 }
 
 /// Solid fractions that are inside with all else as in `at`; empty text: none.
-std::string fractions_inside(const LawLibrary& library, const UnitBox& box, LibraryPoint at) {
+std::string fractions_inside(const UnitBox& box, LibraryPoint at) {
   constexpr double kStep = 0.005;
-  const VariableRange range = box.range(3);
-  const std::vector<std::vector<double>> points = box.all(library);
   double low = std::numeric_limits<double>::infinity();
   double high = 0.0;
-  for (double f = range.low; f <= range.high + 0.5 * kStep; f += kStep) {
+  for (double f = box.low(3); f <= box.high(3) + 0.5 * kStep; f += kStep) {
     at.solid_fraction = f;
-    if (distance_from_hull(points, box(at)) > kReachOfHull) continue;
+    if (distance_from_hull(box.points(), box(coordinates(at))) > kReachOfHull) continue;
     low = std::min(low, f);
     high = std::max(high, f);
   }
@@ -87,52 +50,28 @@ std::string fractions_inside(const LawLibrary& library, const UnitBox& box, Libr
 }
 
 /// What is wrong with one variable; empty: nothing. One that never varied serves its own value, but for rounding.
-std::string outside_text(const LibraryVariable& v, const VariableRange& range, double value, double u) {
-  if (range.high > range.low) {
+std::string outside_text(const LibraryVariable& v, double low, double high, double value, double u) {
+  if (high > low) {
     if (u >= -kReachOfRange && u <= 1.0 + kReachOfRange) return "";
-    return fmt::format("{} = {:g}: measured from {:.3g} to {:.3g}", v.name, value, range.low, range.high);
+    return fmt::format("{} = {:g}: measured from {:.3g} to {:.3g}", v.name, value, low, high);
   }
-  if (std::abs(value - range.low) <= kReachOfNumbers * std::max(1.0, std::abs(range.low))) return "";
-  return fmt::format("{} = {:g}: all materials of this library have {:.4g}", v.name, value, range.low);
+  if (std::abs(value - low) <= kReachOfNumbers * std::max(1.0, std::abs(low))) return "";
+  return fmt::format("{} = {:g}: all materials of this library have {:.4g}", v.name, value, low);
 }
 
-void require_inside(const LawLibrary& library, const UnitBox& box, const LibraryPoint& at) {
+void require_inside(const UnitBox& box, const LibraryPoint& at) {
   std::string wrong;
-  const std::vector<double> u = box(at);
+  const std::vector<double> u = box(coordinates(at));
   for (std::size_t a = 0; a < u.size(); ++a) {
     const LibraryVariable& v = kLibraryVariables[a];
-    if (const std::string why = outside_text(v, box.range(a), at.*v.value, u[a]); !why.empty()) append_part(wrong, why);
+    const auto real = [&](double x) { return v.logarithm ? std::exp(x) : x; };
+    if (const std::string why = outside_text(v, real(box.low(a)), real(box.high(a)), at.*v.value, u[a]); !why.empty())
+      append_part(wrong, why);
   }
   if (!wrong.empty()) throw InputError("law library: " + wrong);
-  if (distance_from_hull(box.all(library), u) <= kReachOfHull) return;
+  if (distance_from_hull(box.points(), u) <= kReachOfHull) return;
   throw InputError(fmt::format("law library: {}: no such combination was measured; {} inside", point_text(at),
-                               fractions_inside(library, box, at)));
-}
-
-KnownNumber known_number(const LawLibrary& library, const UnitBox& box, std::size_t k) {
-  KnownNumber out;
-  for (const LibraryMaterial& m : library.materials) {
-    if (!std::isfinite(m.numbers[k]) || !std::isfinite(m.errors[k])) continue;
-    out.points.push_back(box(m.at));
-    out.values.push_back(m.numbers[k]);
-    out.errors.push_back(m.errors[k]);
-  }
-  return out;
-}
-
-/// Mean of the correlations of all materials: that of positive matrices is one.
-std::vector<double> mean_correlations(const LawLibrary& library) {
-  const std::size_t size = library.law_numbers() * library.law_numbers();
-  std::vector<double> out(size, 0.0);
-  for (const LibraryMaterial& m : library.materials)
-    for (std::size_t k = 0; k < size; ++k) out[k] += m.correlations[k] / static_cast<double>(library.materials.size());
-  return out;
-}
-
-void require_materials(const LawLibrary& library) {
-  if (library.materials.size() < least_materials())
-    throw InputError(
-        fmt::format("law library: {} materials; it needs at least {}", library.materials.size(), least_materials()));
+                               fractions_inside(box, at)));
 }
 
 }  // namespace
@@ -143,46 +82,15 @@ std::string point_text(const LibraryPoint& at) {
 }
 
 LibraryAnswer ask_library(const LawLibrary& library, const LibraryPoint& at) {
-  require_materials(library);
-  const UnitBox box(library);
-  require_inside(library, box, at);
-  const std::vector<std::string> names = library.names();
-  if (library.checks.size() != names.size()) throw InputError("law library: it is not checked");
-  LibraryAnswer out;
+  if (library.checks.size() != library.names().size()) throw InputError("law library: it is not checked");
+  const UnitBox box = box_of(library);
+  require_inside(box, at);
+  LibraryAnswer out = answer_at(library, library.checks, box, box(coordinates(at)));
   out.at = at;
-  const std::vector<double> u = box(at);
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    const KnownNumber known = known_number(library, box, k);
-    LibraryNumber number{names[k], std::nan(""), std::nan("")};
-    if (known.values.size() >= least_materials()) {
-      const ProcessValue z = predicted_number(library.checks[k], known, u);
-      number.value = z.mean;
-      number.deviation = z.deviation;
-      if (library.checks[k].by_mean()) out.by_mean.push_back(names[k]);
-    } else if (k < library.law_numbers()) {
-      throw InputError(fmt::format("law library: too few materials have the number \"{}\"", names[k]));
-    }
-    out.numbers.push_back(number);
-  }
-  out.correlations = mean_correlations(library);
-  out.distance = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < library.materials.size(); ++i) {
-    const double d = apart(u, box(library.materials[i].at));
-    if (d >= out.distance) continue;
-    out.distance = d;
-    out.nearest = i;
-  }
   return out;
 }
 
-std::vector<LibraryCheck> check_library(const LawLibrary& library) {
-  require_materials(library);
-  const UnitBox box(library);
-  const std::vector<std::string> names = library.names();
-  std::vector<LibraryCheck> out;
-  for (std::size_t k = 0; k < names.size(); ++k) out.push_back(checked_number(names[k], known_number(library, box, k)));
-  return out;
-}
+std::vector<LibraryCheck> check_library(const LawLibrary& library) { return check_numbers(library, box_of(library)); }
 
 std::string means_text(const LibraryAnswer& answer) {
   if (answer.by_mean.empty()) return "";

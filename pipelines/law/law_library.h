@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +31,13 @@ inline constexpr std::array<LibraryVariable, 4> kLibraryVariables{{{"mu", &Libra
                                                                    {"ratio", &LibraryPoint::polydispersity, true},
                                                                    {"solid fraction", &LibraryPoint::solid_fraction}}};
 
+/// What a press on one plane tells, the shell held: the law of pairs, F/(E* Rs^2) = a (D^b - delta^b).
+struct PressNumbers {
+  double ln_force = 0.0;  ///< ln F/(E* Rs^2) at D = 0.3, with E* = E/(1 - nu^2)
+  double b = 0.0;
+  double delta = 0.0;
+};
+
 /// One measured material. `numbers` as LawLibrary::names says; NaN: not measured.
 struct LibraryMaterial {
   std::string source;  ///< table that it comes from
@@ -42,6 +50,7 @@ struct LibraryMaterial {
   double overlap_max = 0.0;
   double grain_overlap_max = 0.0;
   std::vector<double> partner_overlap_max;  ///< per row of neighbours, see PartnerRow
+  std::optional<PressNumbers> press{};      ///< empty: not known, as in files of earlier versions
 };
 
 /// Kind and size of a row of neighbours of all laws of a library.
@@ -77,6 +86,8 @@ struct LawLibrary {
   std::vector<LibraryPartner> partners;
   std::vector<LibraryMaterial> materials;
   std::vector<LibraryCheck> checks{};  ///< of all names(), from check_library(); answers go by them
+  /// The same from check_press_tests(), for answers to press tests; empty: a material has no press numbers.
+  std::vector<LibraryCheck> press_checks{};
   std::string path{};
   std::string text{};
 
@@ -112,7 +123,7 @@ struct LibraryNumber {
 };
 
 struct LibraryAnswer {
-  LibraryPoint at;
+  LibraryPoint at;  ///< NaN where a press test does not tell
   std::vector<LibraryNumber> numbers;
   std::vector<std::string> by_mean;  ///< numbers that are mean and scatter of the materials, LibraryCheck::by_mean()
   std::vector<double> correlations;  ///< of the numbers of the law, row-major: the mean of those of the refits
@@ -127,6 +138,9 @@ LibraryAnswer ask_library(const LawLibrary& library, const LibraryPoint& at);
 /// The checks of all numbers: a fit for each number and material, some seconds in all. Throws InputError for fewer than
 /// eight materials.
 std::vector<LibraryCheck> check_library(const LawLibrary& library);
+
+/// Whether the answer is to a press test, so that the grains inside are not known.
+inline bool of_press_test(const LibraryAnswer& answer) { return std::isnan(answer.at.exponent); }
 
 /// What else describes the soft particle of an answer.
 struct LibraryMatter {

@@ -9,6 +9,7 @@
 #include "common/core/error.h"
 #include "pipelines/law/fitted_law.h"
 #include "pipelines/law/law_library_predict.h"
+#include "pipelines/law/law_library_press.h"
 
 namespace softgrain {
 
@@ -104,6 +105,7 @@ LibraryCollection collect_library(const std::vector<std::string>& directories) {
     throw InputError(fmt::format("law library: {} materials; it needs at least {}\n{}", out.library.materials.size(),
                                  least_materials(), left_out_text(out.left_out)));
   out.library.checks = check_library(out.library);
+  out.library.press_checks = check_press_tests(out.library);
   return out;
 }
 

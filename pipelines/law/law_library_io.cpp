@@ -22,7 +22,8 @@ namespace {
 constexpr const char* kMeaning =
     "ln force: ln F(1 - nu^2)/(E Rs^2) of one plane at D = 0.35; b, delta: as in law tables; of each kind of neighbour "
     "ln nu at v = 0.02 by size, then m; rolling: over E/(1 - nu^2); correlations: of the numbers of the law, lower "
-    "triangle without the diagonal; leave_one_out: of every number, see leave_one_out.csv";
+    "triangle without the diagonal; press: ln F(1 - nu^2)/(E Rs^2) of one plane at D = 0.3 with the shell held, b and "
+    "delta of that curve; leave_one_out: of every number, see leave_one_out.csv";
 
 /// Numbers in brackets; those that are not known as 0.
 std::string list_text(const std::vector<double>& numbers) {
@@ -51,6 +52,7 @@ std::string material_text(const LibraryMaterial& m, const std::vector<std::strin
   fmt::format_to(out, "partner_overlap_max = {}\nunknown = {}\nnumbers = {}\nerrors = {}\ncorrelations = {}\n",
                  list_text(m.partner_overlap_max), quoted_list(unknown), list_text(m.numbers), list_text(m.errors),
                  list_text(lower));
+  if (m.press) fmt::format_to(out, "press = {}\n", list_text({m.press->ln_force, m.press->b, m.press->delta}));
   return text;
 }
 
@@ -61,13 +63,18 @@ std::vector<double> read_list(const SceneTable& t, const char* key, std::size_t 
   return out;
 }
 
-std::string checks_text(const std::vector<LibraryCheck>& checks) {
+/// Tables with the checks of all numbers.
+constexpr const char* kChecks = "leave_one_out";
+constexpr const char* kPressChecks = "leave_one_out_press_test";
+
+std::string checks_text(const char* table, const std::vector<LibraryCheck>& checks) {
+  if (checks.empty()) return "";
   const auto column = [&](const char* name, auto of) {
     std::vector<double> values;
     for (const LibraryCheck& c : checks) values.push_back(of(c));
     return fmt::format("{} = {}\n", name, list_text(values));
   };
-  return "\n[leave_one_out]\n" +
+  return fmt::format("\n[{}]\n", table) +
          column("materials", [](const LibraryCheck& c) { return static_cast<double>(c.materials); }) +
          column("error", [](const LibraryCheck& c) { return c.error; }) +
          column("error_of_mean", [](const LibraryCheck& c) { return c.error_of_mean; }) +
@@ -123,6 +130,10 @@ LibraryMaterial read_material_row(const SceneTable& t, const LawLibrary& library
     m.correlations[a * n + a] = 1.0;
     for (std::size_t b = 0; b < a; ++b) m.correlations[a * n + b] = m.correlations[b * n + a] = *next++;
   }
+  if (t.has("press")) {
+    const std::vector<double> press = read_list(t, "press", 3, Range::any());
+    m.press = PressNumbers{press[0], press[1], press[2]};
+  }
   return m;
 }
 
@@ -156,7 +167,8 @@ std::string library_text(const LawLibrary& library, const Provenance& provenance
                  real(library.beta), quoted_list(names));
   for (const LibraryPartner& p : library.partners)
     fmt::format_to(out, "\n[[library.partner]]\nkind = \"{}\"\nratio = {}\n", to_string(p.kind), real(p.ratio));
-  text += checks_text(library.checks);
+  text += checks_text(kChecks, library.checks);
+  text += checks_text(kPressChecks, library.press_checks);
   for (const LibraryMaterial& m : library.materials) text += material_text(m, names, library.law_numbers());
   return text;
 }
@@ -178,7 +190,8 @@ LawLibrary read_library(const Scene& file) {
     head.throw_error("names", "are not those of this program: collect the library again (softgrain law library)");
   for (const SceneTable& m : root.tables("material")) out.materials.push_back(read_material_row(m, out, names));
   if (out.materials.empty()) root.throw_error("material", "a library needs [[material]]s");
-  if (root.has("leave_one_out")) out.checks = read_checks(root.table("leave_one_out"), out);
+  if (root.has(kChecks)) out.checks = read_checks(root.table(kChecks), out);
+  if (root.has(kPressChecks)) out.press_checks = read_checks(root.table(kPressChecks), out);
   root.finish();
   if (out.checks.empty()) out.checks = check_library(out);
   return out;

@@ -43,7 +43,7 @@ constexpr std::array<SideNumber, 14> kSideNumbers{
      {"rolling friction soft", &SlideLaw::rolling_friction, &LawTableEntry::slide_soft},
      {"unloading soft", &SlideLaw::unloading, &LawTableEntry::slide_soft, 1.0}}};
 constexpr std::array kFormNumbers{"unloading plane", "ln error, in proportion", "ln error, sheared",
-                                  "ln error of onset", "ln trials"};
+                                  "ln error of onset", kTrialsNumber};
 
 bool is_rolling(const SideNumber& n) {
   return n.estimate == &SlideLaw::rolling || n.estimate == &SlideLaw::rolling_friction;

@@ -10,6 +10,8 @@
 
 namespace softgrain {
 
+inline constexpr const char* kTrialsNumber = "ln trials";
+
 /// Names of the numbers that stand behind those of the law.
 std::vector<std::string> side_names();
 

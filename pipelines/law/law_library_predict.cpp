@@ -1,9 +1,12 @@
 #include "pipelines/law/law_library_predict.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
+#include <limits>
 
+#include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/core/statistics.h"
 
@@ -82,7 +85,63 @@ class LeftOut {
   const std::vector<double>& measured_;
 };
 
+double apart(const std::vector<double>& u, const std::vector<double>& v) {
+  double square = 0.0;
+  for (std::size_t a = 0; a < u.size(); ++a) square += (u[a] - v[a]) * (u[a] - v[a]);
+  return std::sqrt(square);
+}
+
+KnownNumber known_number(const LawLibrary& library, const UnitBox& box, std::size_t k) {
+  KnownNumber out;
+  for (std::size_t i = 0; i < library.materials.size(); ++i) {
+    const LibraryMaterial& m = library.materials[i];
+    if (!std::isfinite(m.numbers[k]) || !std::isfinite(m.errors[k])) continue;
+    out.points.push_back(box.points()[i]);
+    out.values.push_back(m.numbers[k]);
+    out.errors.push_back(m.errors[k]);
+  }
+  return out;
+}
+
+/// Mean of the correlations of all materials: that of positive matrices is one.
+std::vector<double> mean_correlations(const LawLibrary& library) {
+  const std::size_t size = library.law_numbers() * library.law_numbers();
+  std::vector<double> out(size, 0.0);
+  for (const LibraryMaterial& m : library.materials)
+    for (std::size_t k = 0; k < size; ++k) out[k] += m.correlations[k] / static_cast<double>(library.materials.size());
+  return out;
+}
+
+/// Root mean square by which the other means differ from the first.
+double off_the_first(const std::vector<ProcessValue>& z) {
+  double sum = 0.0;
+  for (std::size_t k = 1; k < z.size(); ++k) sum += (z[k].mean - z.front().mean) * (z[k].mean - z.front().mean);
+  return z.size() > 1 ? std::sqrt(sum / static_cast<double>(z.size() - 1)) : 0.0;
+}
+
+void require_materials(const LawLibrary& library) {
+  if (library.materials.size() < least_materials())
+    throw InputError(
+        fmt::format("law library: {} materials; it needs at least {}", library.materials.size(), least_materials()));
+}
+
 }  // namespace
+
+UnitBox::UnitBox(const std::vector<std::vector<double>>& rows) {
+  for (std::size_t a = 0; !rows.empty() && a < rows.front().size(); ++a) {
+    const auto [low, high] = std::ranges::minmax(rows, {}, [a](const std::vector<double>& row) { return row[a]; });
+    low_.push_back(low[a]);
+    high_.push_back(high[a]);
+  }
+  for (const std::vector<double>& row : rows) points_.push_back((*this)(row));
+}
+
+std::vector<double> UnitBox::operator()(const std::vector<double>& row) const {
+  std::vector<double> out;
+  for (std::size_t a = 0; a < low_.size(); ++a)
+    out.push_back(high_[a] > low_[a] ? (row[a] - low_[a]) / (high_[a] - low_[a]) : 0.5);
+  return out;
+}
 
 std::size_t least_materials() { return GaussianProcess::least_values(kLibraryVariables.size()) + 1; }
 
@@ -102,10 +161,53 @@ LibraryCheck checked_number(const std::string& name, const KnownNumber& known) {
   return out;
 }
 
-ProcessValue predicted_number(const LibraryCheck& check, const KnownNumber& known, const std::vector<double>& u) {
-  ProcessValue out = check.by_mean() ? mean_and_scatter(known.values, known.errors)
-                                     : GaussianProcess(known.points, known.values, known.errors).at(u);
-  out.deviation *= check.factor;
+std::vector<ProcessValue> predicted_number(const LibraryCheck& check, const KnownNumber& known,
+                                           const std::vector<std::vector<double>>& points) {
+  std::vector<ProcessValue> out(points.size(), mean_and_scatter(known.values, known.errors));
+  if (!check.by_mean()) {
+    const GaussianProcess process(known.points, known.values, known.errors);
+    for (std::size_t k = 0; k < points.size(); ++k) out[k] = process.at(points[k]);
+  }
+  for (ProcessValue& z : out) z.deviation *= check.factor;
+  return out;
+}
+
+std::vector<LibraryCheck> check_numbers(const LawLibrary& library, const UnitBox& box) {
+  require_materials(library);
+  const std::vector<std::string> names = library.names();
+  std::vector<LibraryCheck> out;
+  for (std::size_t k = 0; k < names.size(); ++k) out.push_back(checked_number(names[k], known_number(library, box, k)));
+  return out;
+}
+
+LibraryAnswer answer_at(const LawLibrary& library, const std::vector<LibraryCheck>& checks, const UnitBox& box,
+                        const std::vector<double>& u, const std::vector<std::vector<double>>& scatter) {
+  require_materials(library);
+  const std::vector<std::string> names = library.names();
+  std::vector<std::vector<double>> points{u};
+  points.insert(points.end(), scatter.begin(), scatter.end());
+  LibraryAnswer out;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const KnownNumber known = known_number(library, box, k);
+    LibraryNumber number{names[k], std::nan(""), std::nan("")};
+    if (known.values.size() >= least_materials()) {
+      const std::vector<ProcessValue> z = predicted_number(checks[k], known, points);
+      number.value = z.front().mean;
+      number.deviation = std::hypot(z.front().deviation, off_the_first(z));
+      if (checks[k].by_mean()) out.by_mean.push_back(names[k]);
+    } else if (k < library.law_numbers()) {
+      throw InputError(fmt::format("law library: too few materials have the number \"{}\"", names[k]));
+    }
+    out.numbers.push_back(number);
+  }
+  out.correlations = mean_correlations(library);
+  out.distance = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < box.points().size(); ++i) {
+    const double d = apart(u, box.points()[i]);
+    if (d >= out.distance) continue;
+    out.distance = d;
+    out.nearest = i;
+  }
   return out;
 }
 

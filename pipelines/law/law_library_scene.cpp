@@ -6,6 +6,7 @@
 #include "common/core/error.h"
 #include "common/core/text.h"
 #include "pipelines/law/law_library.h"
+#include "pipelines/law/law_library_press.h"
 #include "pipelines/law/press_test.h"
 
 namespace softgrain {
@@ -14,9 +15,11 @@ namespace {
 
 constexpr const char* kShipped = "library";
 
+const Key kFriction{"mu", "Coulomb friction of the grains"};
+
 LibraryPoint read_library_point(const SceneTable& t) {
   return {
-      t.number({"mu", "Coulomb friction of the grains"}, Unit::none, Range::not_negative()),
+      t.number(kFriction, Unit::none, Range::not_negative()),
       t.number({"exponent", "b of the size distribution P(r) ~ r^-b"}, Unit::none),
       t.number({"ratio", "size ratio rmax/rmin of the grains"}, Unit::none, Range::above(1.0)),
       t.number({"solid_fraction", "volume of grains over that of the shell"}, Unit::none, Range{0.0, 1.0, true, true})};
@@ -35,23 +38,55 @@ SceneTable library_table(const SceneTable& root) {
   return root.table({"library", "with `law = \"library\"`: the material whose law is interpolated"});
 }
 
+const Key kPressTest{
+    "press_test",
+    "press test of one soft particle on a plane, a table or its law card, instead of the material: path "
+    "relative to the scene; mu beside it where the table does not say it"};
+
+/// mu beside a press test, which may say it itself.
+std::optional<double> read_press_friction(const SceneTable& t) {
+  t.refuse({"exponent", "ratio", "solid_fraction", "E", "nu", "density"},
+           "goes without press_test, whose table says what is known");
+  if (!t.has("mu")) return std::nullopt;
+  return t.number(kFriction, Unit::none, Range::not_negative());
+}
+
+/// Calls look_up(), which asks the library; what it has against the question stands at `key`.
+template <class LookUp>
+void ask_at(const SceneTable& t, const char* key, const LookUp& look_up) {
+  if (t.has_errors()) t.throw_error(key, "is not looked up before the errors of [library] are mended");
+  try {
+    look_up();
+  } catch (const InputError& e) {
+    t.throw_error(key, e.what());
+  }
+}
+
+/// Of a press test, or of the material in [library].
 FittedLaw library_law(const SceneTable& root, const LawLibrary& library) {
   const SceneTable t = library_table(root);
-  const LibraryPoint at = read_library_point(t);
-  const LibraryMatter matter = read_library_matter(t);
-  if (t.has_errors()) t.throw_error("solid_fraction", "is not looked up before the errors of [library] are mended");
-  try {
-    FittedLaw law;
-    const LibraryAnswer answer = ask_library(library, at);
-    LawTable table = table_of(library, answer, matter);
-    law.remark = nearest_text(library, answer);
-    if (const std::string means = means_text(answer); !means.empty()) append_part(law.remark, means);
-    law.text = law_table_text(table, {}, "");
-    law.content = std::move(table);
-    return law;
-  } catch (const InputError& e) {
-    t.throw_error("solid_fraction", e.what());
+  FittedLaw law;
+  LawTable table;
+  if (const std::string press_test = t.text(kPressTest, ""); !press_test.empty()) {
+    const std::optional<double> friction = read_press_friction(t);
+    ask_at(t, "press_test", [&] {
+      PressTestLaw answer = law_of_press_test(library, t.resolve(press_test), friction);
+      law.remark = join_text(answer.remarks, "; ");
+      table = std::move(answer.table);
+    });
+  } else {
+    const LibraryPoint at = read_library_point(t);
+    const LibraryMatter matter = read_library_matter(t);
+    ask_at(t, "solid_fraction", [&] {
+      const LibraryAnswer answer = ask_library(library, at);
+      table = table_of(library, answer, matter);
+      law.remark = nearest_text(library, answer);
+      if (const std::string means = means_text(answer); !means.empty()) append_part(law.remark, means);
+    });
   }
+  law.text = law_table_text(table, {}, "");
+  law.content = std::move(table);
+  return law;
 }
 
 }  // namespace
@@ -74,6 +109,10 @@ FittedLaw law_at(const SceneTable& root, const std::string& path) {
 
 void read_library_keys(const SceneTable& root) {
   const SceneTable t = library_table(root);
+  if (!t.text(kPressTest, "").empty()) {
+    (void)read_press_friction(t);
+    return;
+  }
   (void)read_library_point(t);
   (void)read_library_matter(t);
 }

@@ -11,6 +11,7 @@
 #include "common/data/multi_contact_replicates.h"
 #include "pipelines/law/law_library.h"
 #include "pipelines/law/law_library_numbers.h"
+#include "pipelines/law/law_library_press.h"
 
 namespace softgrain {
 
@@ -70,6 +71,13 @@ std::string unfit(const LawTableEntry& entry, const MultiContactLaw* law) {
   if (law->replicates.size() < kEnoughReplicates)
     return fmt::format("{} refits; {} are needed", law->replicates.size(), kEnoughReplicates);
   return entry.solid_fraction > 0.0 ? "" : "no solid fraction";
+}
+
+/// Empty where no law of pairs was fitted.
+std::optional<PressNumbers> press_numbers_of(const LawTableEntry& entry) {
+  const MultiContactLaw* law = entry.find(LawForm::pair);
+  if (law == nullptr || !has_numbers(law->status)) return std::nullopt;
+  return press_numbers(law->a.value, law->b.value, law->delta.value, entry.spec.poisson_ratio);
 }
 
 /// Covariance, row-major, from deviations and correlations of the first numbers.
@@ -216,30 +224,43 @@ std::optional<LibraryMaterial> library_row(const LawLibrary& library, const LawT
   m.overlap_max = entry.overlap_max;
   m.grain_overlap_max = entry.grain_overlap_max;
   for (const PartnerRow& row : law->partners) m.partner_overlap_max.push_back(row.overlap_max);
+  m.press = press_numbers_of(entry);
   if (std::isfinite(m.numbers[0])) return m;
   why = "its threshold lies beyond the depth at which laws are compared";
   return std::nullopt;
 }
 
+namespace {
+
+/// What is known of the soft particle: of a press test not what is inside.
+SoftParticleSpec spec_of_answer(const LawLibrary& library, const LibraryAnswer& answer, const LibraryMatter& matter) {
+  SoftParticleSpec s = unknown_soft_particle(matter.shell_radius, matter.youngs_modulus);
+  s.poisson_ratio = matter.poisson_ratio;
+  s.density = matter.density;
+  s.restitution = matter.restitution;
+  s.friction = answer.at.friction;
+  if (of_press_test(answer)) return s;
+  s.exponent = answer.at.exponent;
+  s.polydispersity = answer.at.polydispersity;
+  s.rmax_over_shell = library.rmax_over_shell;
+  s.beta = library.beta;
+  s.placement = Placement::voids;
+  return s;
+}
+
+}  // namespace
+
 LawTable table_of(const LawLibrary& library, const LibraryAnswer& answer, const LibraryMatter& matter, int draws) {
   const LibraryMaterial& nearest = library.materials[answer.nearest];
   LawTableEntry e;
-  e.spec.shell_radius = matter.shell_radius;
-  e.spec.youngs_modulus = matter.youngs_modulus;
-  e.spec.poisson_ratio = matter.poisson_ratio;
-  e.spec.density = matter.density;
-  e.spec.restitution = matter.restitution;
-  e.spec.friction = answer.at.friction;
-  e.spec.exponent = answer.at.exponent;
-  e.spec.polydispersity = answer.at.polydispersity;
-  e.spec.rmax_over_shell = library.rmax_over_shell;
-  e.spec.beta = library.beta;
-  e.spec.placement = Placement::voids;
+  e.spec = spec_of_answer(library, answer, matter);
+  e.from_press_test = of_press_test(answer);
   e.solid_fraction = answer.at.solid_fraction;
   e.main = true;
   e.packings = nearest.packings;
-  e.relaxation = fmt::format("interpolated between {} measured materials; {}", library.materials.size(),
-                             nearest_text(library, answer));
+  e.relaxation =
+      fmt::format("{}interpolated between {} measured materials; {}", of_press_test(answer) ? "of a press test, " : "",
+                  library.materials.size(), nearest_text(library, answer));
   if (const std::string means = means_text(answer); !means.empty()) append_part(e.relaxation, means);
   e.volume_max = nearest.volume_max;
   e.overlap_max = nearest.overlap_max;

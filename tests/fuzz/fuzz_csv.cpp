@@ -1,5 +1,6 @@
 // Any text as a sieve analysis, and as a table of an experiment; what is read of that goes on to what calibrate does
-// before it fits, and (second byte 0) to the fit.
+// before it fits, and (second byte 0) to the fit. The first byte says what is given beside the file.
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -8,6 +9,20 @@
 #include "common/data/force_curves.h"
 #include "common/packing/sieve_table.h"
 #include "tests/fuzz/input_file.h"
+
+namespace {
+
+softgrain::SieveOptions sieve_options(std::uint8_t given) {
+  softgrain::SieveOptions options;
+  constexpr std::array kColumns{"", "passing", "retained", "cumulative retained"};
+  options.column = kColumns[given / 4 % 4];
+  if (given / 16 % 2 == 1) options.unit = "mm";
+  if (given / 32 % 2 == 1) options.smallest = 1e-7;
+  if (given / 64 % 2 == 1) options.largest = 1.0;
+  return options;
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace softgrain;
@@ -21,7 +36,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.unloading = data[0] % 4 > 1 ? Unloading::drop : Unloading::refuse;
   const fuzz::InputFile file(data + 2, size - 2, "input.csv");
   try {
-    (void)read_sieve_file(file.path());
+    (void)read_sieve_file(file.path(), sieve_options(data[0]), data[0] / 128 == 1 ? 2 : 3);
   } catch (const Error&) {
   }
   try {

@@ -122,7 +122,7 @@ TEST(LawLibrary, WhatMaterialsDoNotPredictIsTheirMeanAndScatter) {
   EXPECT_EQ(check.materials, 20U);
   const MeanError mean = mean_error(noise.values);
   EXPECT_NEAR(check.error_of_mean, mean.deviation * std::sqrt(20.0 / 19.0), 1e-12) << "means of the other 19";
-  const ProcessValue z = predicted_number(check, noise, {0.9, 0.1, 0.9, 0.1});
+  const ProcessValue z = predicted_number(check, noise, {{0.9, 0.1, 0.9, 0.1}}).front();
   EXPECT_NEAR(z.mean, mean.mean, 1e-12);
   EXPECT_NEAR(z.deviation, check.factor * mean.deviation * std::sqrt(1.05) * 2.093 / 1.96, 1e-3 * z.deviation);
   const auto slope = [](const std::vector<double>& u) { return 3.0 * u[0] - u[2]; };
@@ -143,7 +143,7 @@ TEST(LawLibrary, DeviationsAreWidenedToWhatLeavingOutShows) {
   EXPECT_NEAR(squares / 20.0, 1.0, 1e-9);
   const GaussianProcess process(known.points, known.values, known.errors);
   const std::vector<double> at{0.4, 0.7, 0.2, 0.9};
-  EXPECT_NEAR(predicted_number(check, known, at).deviation, check.factor * process.at(at).deviation, 1e-12);
+  EXPECT_NEAR(predicted_number(check, known, {at}).front().deviation, check.factor * process.at(at).deviation, 1e-12);
 }
 
 TEST(LawLibrary, AnswersSayWhichNumbersAreMeans) {
@@ -310,6 +310,18 @@ TEST(LawLibrary, AFileWithoutItsChecksIsCheckedWhenItIsRead) {
   ASSERT_EQ(back.checks.size(), back.names().size());
   EXPECT_EQ(back.checks.front().materials, 12U);
   EXPECT_GT(back.checks.front().error, 0.0);
+}
+
+TEST(LawLibrary, TheShippedLibraryHoldsTheChecksOfItsMaterials) {
+  const LawLibrary shipped = load_library(std::string(SOFTGRAIN_SOURCE_DIR) + "/results/law_library/library.toml");
+  const std::vector<LibraryCheck> checks = check_library(shipped);
+  ASSERT_EQ(checks.size(), shipped.checks.size());
+  for (std::size_t k = 0; k < shipped.law_numbers(); ++k) {
+    EXPECT_NEAR(checks[k].error, shipped.checks[k].error, 0.05 * checks[k].error) << checks[k].name;
+    EXPECT_NEAR(checks[k].error_of_mean, shipped.checks[k].error_of_mean, 1e-4) << checks[k].name;
+    EXPECT_NEAR(checks[k].factor, shipped.checks[k].factor, 0.05) << checks[k].name;
+    EXPECT_FALSE(checks[k].by_mean()) << checks[k].name;
+  }
 }
 
 TEST(LawLibrary, TheTableIsReadAndDrawn) {

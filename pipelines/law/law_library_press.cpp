@@ -1,0 +1,148 @@
+#include "pipelines/law/law_library_press.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibrate/draws.h"
+#include "calibrate/gaussian_process.h"
+#include "common/core/error.h"
+#include "common/core/text.h"
+#include "pipelines/law/law_library_numbers.h"
+#include "pipelines/law/law_library_predict.h"
+#include "pipelines/law/press_test.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr double kForceAt = 0.3;        ///< D of PressNumbers::ln_force
+constexpr double kHalfFriction = 0.15;  ///< friction at which half of its effect is reached
+/// How far beyond the convex hull of the materials a press test may lie, over the ranges of its numbers. They are
+/// measured with errors, and leaving one out reaches as far.
+constexpr double kReachOfHull = 0.25;
+constexpr int kDraws = 32;
+
+std::vector<double> coordinates(const PressNumbers& n, double friction) {
+  return {n.ln_force, n.b, n.delta, friction / (friction + kHalfFriction)};
+}
+
+bool has_press_numbers(const LawLibrary& library) {
+  return std::ranges::all_of(library.materials, [](const LibraryMaterial& m) { return m.press.has_value(); });
+}
+
+UnitBox box_of(const LawLibrary& library) {
+  std::vector<std::vector<double>> rows;
+  for (const LibraryMaterial& m : library.materials) rows.push_back(coordinates(*m.press, m.at.friction));
+  return UnitBox(rows);
+}
+
+std::string press_text(const PressQuestion& q) {
+  return fmt::format("F (1 - nu^2)/(E Rs^2) = {:.3g} at Delta = {}, b = {:.3g}, delta = {:.3g}, mu = {:.3g}",
+                     std::exp(q.numbers.ln_force), kForceAt, q.numbers.b, q.numbers.delta, q.friction);
+}
+
+void require_inside(const UnitBox& box, const std::vector<double>& u, const PressQuestion& q) {
+  if (distance_from_hull(box.points(), u) <= kReachOfHull) return;
+  throw InputError(fmt::format(
+      "law library: no measured material gave such a press test: {}; measured: force from {:.3g} to {:.3g}, b from "
+      "{:.3g} to {:.3g}, delta from {:.3g} to {:.3g}, and not in every combination",
+      press_text(q), std::exp(box.low(0)), std::exp(box.high(0)), box.low(1), box.high(1), box.low(2), box.high(2)));
+}
+
+/// Draws of a, b and delta; those that have no force at kForceAt are no curve of a soft particle.
+std::vector<PressNumbers> drawn_numbers(const PairLaw& law, double poisson_ratio) {
+  constexpr std::size_t kAll = kLawParameterNames.size();
+  if (law.covariance.size() != kAll * kAll) return {};
+  std::vector<double> covariance;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) covariance.push_back(law.covariance[i * kAll + j]);
+  const std::vector<double> mean{law.normal.a.value, law.normal.b.value, law.normal.delta.value};
+  std::vector<PressNumbers> out;
+  for (const std::vector<double>& draw : normal_draws(mean, covariance, kDraws, 1))
+    if (draw[1] > 0.0)
+      if (const auto one = press_numbers(draw[0], draw[1], std::max(draw[2], 0.0), poisson_ratio)) out.push_back(*one);
+  return out;
+}
+
+}  // namespace
+
+std::optional<PressNumbers> press_numbers(double a, double b, double delta, double poisson_ratio) {
+  const double force = a * (std::pow(kForceAt, b) - std::pow(delta, b)) * (1.0 - poisson_ratio * poisson_ratio);
+  if (!(force > 0.0)) return std::nullopt;
+  return PressNumbers{std::log(force), b, delta};
+}
+
+PressQuestion press_question(const LawCard& card, double friction, const std::string& source) {
+  const auto law = std::ranges::find_if(
+      card.pairs, [](const PairLaw& p) { return p.kind == PairKind::soft_solid && has_numbers(p.status); });
+  if (law == card.pairs.end() || law->points == 0)
+    throw InputError(source + ": the library takes a press test against a plane or a solid body, # kind = soft-solid");
+  const double nu = is_known(card.spec.poisson_ratio) ? card.spec.poisson_ratio : LibraryMatter{}.poisson_ratio;
+  const ThresholdPowerLaw& n = law->normal;
+  const std::optional<PressNumbers> numbers = press_numbers(n.a.value, n.b.value, n.delta.value, nu);
+  if (!numbers)
+    throw InputError(fmt::format("{}: the library compares forces at Delta = {}, and this law begins at {:.3g}", source,
+                                 kForceAt, n.delta.value));
+  return {*numbers, drawn_numbers(*law, nu), friction};
+}
+
+LibraryAnswer ask_by_press_test(const LawLibrary& library, const PressQuestion& q) {
+  if (!has_press_numbers(library) || library.press_checks.size() != library.names().size())
+    throw InputError("law library: " + library.path +
+                     ": has no press tests of its materials: collect it again (softgrain law library)");
+  const UnitBox box = box_of(library);
+  const std::vector<double> u = box(coordinates(q.numbers, q.friction));
+  require_inside(box, u, q);
+  std::vector<std::vector<double>> scatter;
+  for (const PressNumbers& draw : q.draws) scatter.push_back(box(coordinates(draw, q.friction)));
+  LibraryAnswer out = answer_at(library, library.press_checks, box, u, scatter);
+  const double unknown = std::nan("");
+  const auto trials = std::ranges::find(out.numbers, std::string(kTrialsNumber), &LibraryNumber::name);
+  if (trials != out.numbers.end()) trials->value = unknown;
+  std::erase(out.by_mean, kTrialsNumber);
+  out.at = {q.friction, unknown, unknown, unknown};
+  std::vector<double> fractions;
+  for (const LibraryMaterial& m : library.materials) fractions.push_back(m.at.solid_fraction);
+  const std::vector<double> exact(fractions.size(), 0.0);
+  out.at.solid_fraction = std::clamp(GaussianProcess(box.points(), fractions, exact).at(u).mean,
+                                     std::ranges::min(fractions), std::ranges::max(fractions));
+  return out;
+}
+
+std::vector<LibraryCheck> check_press_tests(const LawLibrary& library) {
+  if (!has_press_numbers(library)) return {};
+  return check_numbers(library, box_of(library));
+}
+
+PressTestLaw law_of_press_test(const LawLibrary& library, const std::string& path, std::optional<double> friction,
+                               int draws) {
+  const FittedLaw law = load_or_fit_law(path);
+  if (law.card() == nullptr) throw InputError(path + ": is no press test, and no law card of one");
+  const LawCard& card = *law.card();
+  PressTestLaw out;
+  if (friction && is_known(card.spec.friction) && *friction != card.spec.friction)
+    throw InputError(fmt::format("{}: says mu = {:g}, but {:g} was given", path, card.spec.friction, *friction));
+  if (!friction && !is_known(card.spec.friction))
+    throw InputError(path +
+                     ": the library needs the friction of the grains: a comment \"# mu = 0.3\", or mu beside it");
+  out.question = press_question(card, friction.value_or(card.spec.friction), path);
+  out.answer = ask_by_press_test(library, out.question);
+  LibraryMatter matter;
+  matter.youngs_modulus = card.spec.youngs_modulus;
+  matter.shell_radius = card.spec.shell_radius;
+  matter.density = card.spec.density;
+  matter.restitution = card.spec.restitution;
+  if (is_known(card.spec.poisson_ratio))
+    matter.poisson_ratio = card.spec.poisson_ratio;
+  else
+    out.remarks.push_back(fmt::format("{} does not say nu: {:g} is assumed", path, matter.poisson_ratio));
+  out.table = table_of(library, out.answer, matter, draws);
+  out.remarks.insert(out.remarks.begin(),
+                     {"press test: " + press_text(out.question), nearest_text(library, out.answer)});
+  if (std::string means = means_text(out.answer); !means.empty()) out.remarks.push_back(std::move(means));
+  return out;
+}
+
+}  // namespace softgrain
