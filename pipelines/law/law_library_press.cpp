@@ -17,11 +17,11 @@ namespace softgrain {
 
 namespace {
 
-constexpr double kForceAt = 0.3;        ///< D of PressNumbers::ln_force
+constexpr double kPressForceAt = 0.3;   ///< D of PressNumbers::ln_force
 constexpr double kHalfFriction = 0.15;  ///< friction at which half of its effect is reached
 /// How far beyond the convex hull of the materials a press test may lie, over the ranges of its numbers. They are
 /// measured with errors, and leaving one out reaches as far.
-constexpr double kReachOfHull = 0.25;
+constexpr double kReachOfPressHull = 0.25;
 constexpr int kDraws = 32;
 
 std::vector<double> coordinates(const PressNumbers& n, double friction) {
@@ -32,7 +32,7 @@ bool has_press_numbers(const LawLibrary& library) {
   return std::ranges::all_of(library.materials, [](const LibraryMaterial& m) { return m.press.has_value(); });
 }
 
-UnitBox box_of(const LawLibrary& library) {
+UnitBox press_box(const LawLibrary& library) {
   std::vector<std::vector<double>> rows;
   for (const LibraryMaterial& m : library.materials) rows.push_back(coordinates(*m.press, m.at.friction));
   return UnitBox(rows);
@@ -40,18 +40,18 @@ UnitBox box_of(const LawLibrary& library) {
 
 std::string press_text(const PressQuestion& q) {
   return fmt::format("F (1 - nu^2)/(E Rs^2) = {:.3g} at Delta = {}, b = {:.3g}, delta = {:.3g}, mu = {:.3g}",
-                     std::exp(q.numbers.ln_force), kForceAt, q.numbers.b, q.numbers.delta, q.friction);
+                     std::exp(q.numbers.ln_force), kPressForceAt, q.numbers.b, q.numbers.delta, q.friction);
 }
 
 void require_inside(const UnitBox& box, const std::vector<double>& u, const PressQuestion& q) {
-  if (distance_from_hull(box.points(), u) <= kReachOfHull) return;
+  if (distance_from_hull(box.points(), u) <= kReachOfPressHull) return;
   throw InputError(fmt::format(
       "law library: no measured material gave such a press test: {}; measured: force from {:.3g} to {:.3g}, b from "
       "{:.3g} to {:.3g}, delta from {:.3g} to {:.3g}, and not in every combination",
       press_text(q), std::exp(box.low(0)), std::exp(box.high(0)), box.low(1), box.high(1), box.low(2), box.high(2)));
 }
 
-/// Draws of a, b and delta; those that have no force at kForceAt are no curve of a soft particle.
+/// Draws of a, b and delta; those that have no force at kPressForceAt are no curve of a soft particle.
 std::vector<PressNumbers> drawn_numbers(const PairLaw& law, double poisson_ratio) {
   constexpr std::size_t kAll = kLawParameterNames.size();
   if (law.covariance.size() != kAll * kAll) return {};
@@ -69,7 +69,7 @@ std::vector<PressNumbers> drawn_numbers(const PairLaw& law, double poisson_ratio
 }  // namespace
 
 std::optional<PressNumbers> press_numbers(double a, double b, double delta, double poisson_ratio) {
-  const double force = a * (std::pow(kForceAt, b) - std::pow(delta, b)) * (1.0 - poisson_ratio * poisson_ratio);
+  const double force = a * (std::pow(kPressForceAt, b) - std::pow(delta, b)) * (1.0 - poisson_ratio * poisson_ratio);
   if (!(force > 0.0)) return std::nullopt;
   return PressNumbers{std::log(force), b, delta};
 }
@@ -84,7 +84,7 @@ PressQuestion press_question(const LawCard& card, double friction, const std::st
   const std::optional<PressNumbers> numbers = press_numbers(n.a.value, n.b.value, n.delta.value, nu);
   if (!numbers)
     throw InputError(fmt::format("{}: the library compares forces at Delta = {}, and this law begins at {:.3g}", source,
-                                 kForceAt, n.delta.value));
+                                 kPressForceAt, n.delta.value));
   return {*numbers, drawn_numbers(*law, nu), friction};
 }
 
@@ -92,7 +92,7 @@ LibraryAnswer ask_by_press_test(const LawLibrary& library, const PressQuestion& 
   if (!has_press_numbers(library) || library.press_checks.size() != library.names().size())
     throw InputError("law library: " + library.path +
                      ": has no press tests of its materials: collect it again (softgrain law library)");
-  const UnitBox box = box_of(library);
+  const UnitBox box = press_box(library);
   const std::vector<double> u = box(coordinates(q.numbers, q.friction));
   require_inside(box, u, q);
   std::vector<std::vector<double>> scatter;
@@ -113,7 +113,7 @@ LibraryAnswer ask_by_press_test(const LawLibrary& library, const PressQuestion& 
 
 std::vector<LibraryCheck> check_press_tests(const LawLibrary& library) {
   if (!has_press_numbers(library)) return {};
-  return check_numbers(library, box_of(library));
+  return check_numbers(library, press_box(library));
 }
 
 PressTestLaw law_of_press_test(const LawLibrary& library, const std::string& path, std::optional<double> friction,

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kWorstUnseen = 0.5;  ///< error on unseen configurations above which a law is no row
 
-LibraryPoint point_of(const LawTableEntry& entry) {
+LibraryPoint library_point_of(const LawTableEntry& entry) {
   return {entry.spec.friction, entry.spec.exponent, entry.spec.polydispersity, entry.solid_fraction};
 }
 
@@ -39,7 +39,7 @@ bool is_same(double measured, double asked) {
 /// In what an own table differs from the library and the material that was asked for; empty: in nothing.
 std::string differences_of(const LawLibrary& library, const LibraryPoint& at, const LawTableEntry& own) {
   std::string out;
-  const LibraryPoint measured = point_of(own);
+  const LibraryPoint measured = library_point_of(own);
   for (const LibraryVariable& v : kLibraryVariables)
     if (v.value != &LibraryPoint::solid_fraction && !is_same(measured.*v.value, at.*v.value))
       append_part(out, fmt::format("{} = {:.6g}, asked {:.6g}", v.name, measured.*v.value, at.*v.value));
@@ -214,7 +214,7 @@ std::optional<LibraryMaterial> library_row(const LawLibrary& library, const LawT
     throw InputError(source + ": measured with other kinds or sizes of neighbours than the library");
   LibraryMaterial m;
   m.source = source;
-  m.at = point_of(entry);
+  m.at = library_point_of(entry);
   m.packings = entry.packings;
   const OwnNumbers numbers = own_numbers(library, entry);
   m.numbers = numbers.values;
