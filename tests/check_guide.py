@@ -24,6 +24,19 @@ def check_links(root):
     return problems
 
 
+FENCE = re.compile(r"^```.*?^```", re.S | re.M)
+
+
+def check_code(root):
+    """Code is shown as it is: a link in it is no link, and nobody can copy it."""
+    problems = []
+    for page in [root / "README.md", *sorted((root / GUIDE).glob("*.md")), *sorted((root / "results").rglob("*.md"))]:
+        for block in FENCE.findall(page.read_text()):
+            problems += [f"{page.relative_to(root)}: the link to {target} stands in a block of code"
+                         for target in LINK.findall(block) if re.search(r"\.md|://", target)]
+    return problems
+
+
 # Pages that name files of the tree, and from where they name them.
 DEVELOPERS = ("developing.md", "decisions.md", "style.md")
 FOLDERS = ("", "pipelines")
@@ -56,7 +69,7 @@ def check_sizes(root, kept=None):
 
 
 def check(root):
-    return check_links(root) + check_paths(root) + check_sizes(root)
+    return check_links(root) + check_code(root) + check_paths(root) + check_sizes(root)
 
 
 def self_test():
@@ -74,6 +87,8 @@ def self_test():
         page.write_text("[x](nowhere.md) [y](p.md#z) [z](https://example.org)")
         (root / "README.md").write_text("")
         assert check_links(root) == [f"{GUIDE}/p.md: nowhere.md is not there"]
+        page.write_text("```toml\nE = 1 # [keys](q.md#e)\n```\n[x](p.md)\n```cpp\nauto f = [x](int);\n```\n")
+        assert check_code(root) == [f"{GUIDE}/p.md: the link to q.md#e stands in a block of code"], check_code(root)
         (root / GUIDE / "style.md").write_text("`pipelines/guide/p.md`, `guide/p.md`, `kinds/NAME`, `common/gone.h` and `a.cpp`")
         assert check_paths(root) == [f"{GUIDE}/style.md: `common/gone.h` is not in the tree"], check_paths(root)
 

@@ -153,6 +153,9 @@ std::string shipped_scenes();
 /// file there stay.
 std::string with_full_paths(const std::string& scene, const std::string& folder);
 
+/// Throws InputError, which ends with `advice`, where a file that would be written is there already.
+void refuse_to_overwrite(const std::string& path, const std::string& advice = "choose another name");
+
 /// Writes `text` to a file that is not there yet and says `told` on standard output; to standard output where `path` is
 /// empty. Throws InputError when it is there, IoError.
 void write_new_text(const std::string& path, const std::string& text, const std::string& told);

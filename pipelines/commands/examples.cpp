@@ -153,14 +153,18 @@ std::string with_full_paths(const std::string& scene, const std::string& folder)
   return text;
 }
 
+void refuse_to_overwrite(const std::string& path, const std::string& advice) {
+  std::error_code error;
+  if (fs::symlink_status(path, error).type() != fs::file_type::not_found)
+    throw InputError("--out " + path + ": is there already and would be overwritten; " + advice);
+}
+
 void write_new_text(const std::string& path, const std::string& text, const std::string& told) {
   if (path.empty()) {
     write_standard_output(text);
     return;
   }
-  std::error_code error;
-  if (fs::symlink_status(path, error).type() != fs::file_type::not_found)
-    throw InputError("--out " + path + ": is there already and would be overwritten; choose another name");
+  refuse_to_overwrite(path);
   write_text_atomic(path, text);
   write_standard_output(told);
 }

@@ -13,9 +13,12 @@
 #include "common/core/text.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
+#include "pipelines/commands/commands.h"
 #include "pipelines/commands/law_options.h"
+#include "pipelines/law/law_library_collect.h"
 #include "pipelines/law/law_library_press.h"
 #include "pipelines/law/value_output.h"
+#include "pipelines/results/summary.h"
 
 namespace softgrain {
 
@@ -28,38 +31,6 @@ Provenance provenance_of(const LawOptions& o) {
   Provenance p = build_provenance();
   p.command = o.command_line;
   return p;
-}
-
-/// The law tables below a directory, in the order of their names.
-std::vector<std::string> law_tables_below(const std::string& directory) {
-  std::error_code error;
-  if (!fs::is_directory(directory, error)) throw InputError("law library: " + directory + " is no directory");
-  std::vector<std::string> out;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(directory))
-    if (entry.path().filename() == "law_table.toml") out.push_back(entry.path().string());
-  if (out.empty()) throw InputError("law library: no law_table.toml below " + directory);
-  std::ranges::sort(out);
-  return out;
-}
-
-/// A library of all tables; what was left out is said in `text`.
-LawLibrary collected(const std::vector<std::string>& directories, std::string& text) {
-  LawLibrary library;
-  for (const std::string& directory : directories)
-    for (const std::string& path : law_tables_below(directory)) {
-      FittedLaw law = load_law(path);
-      read_refits(law);
-      for (const LawTableEntry& entry : law.table()->entries) {
-        std::string why;
-        const std::string source = fs::path(path).parent_path().lexically_relative(directory).string();
-        const std::string name = (fs::path(directory).filename() / source).lexically_normal().string();
-        if (auto row = library_row(library, entry, name, why))
-          library.materials.push_back(std::move(*row));
-        else
-          text += fmt::format("left out: {}: {}\n", path, why);
-      }
-    }
-  return library;
 }
 
 std::string check_text(const char* title, const std::vector<LibraryCheck>& checks) {
@@ -94,6 +65,50 @@ json check_json(const std::vector<LibraryCheck>& checks) {
                      {"by", c.by_mean() ? "mean" : "process"},
                      {"factor", c.factor},
                      {"coverage", c.coverage}});
+  return out;
+}
+
+json left_out_json(const std::vector<LeftOutTable>& left_out) {
+  json out = json::array();
+  for (const LeftOutTable& t : left_out) out.push_back({{"table", t.path}, {"why", t.why}, {"damaged", t.damaged}});
+  return out;
+}
+
+/// Both of a library; that of press tests where there is one.
+std::string checks_text(const LawLibrary& library) {
+  std::string text = check_text("each left out in turn", library.checks);
+  if (!library.press_checks.empty()) text += check_text("known by a press test alone", library.press_checks);
+  return text;
+}
+
+/// What `law library --out` may write: the library, and tables of leaving one out, that of press tests last.
+std::vector<std::string> files_of(const std::string& out) {
+  if (out.empty()) return {};
+  if (fs::path(out).extension() != ".toml")
+    throw InputError("law library: --out " + out + ": a library ends with .toml");
+  const auto beside = [&](const char* name) { return fs::path(out).replace_filename(name).string(); };
+  return {out, beside("leave_one_out.csv"), beside("leave_one_out_press_test.csv")};
+}
+
+/// Writes a library to the files of files_of(), if any, and returns those that it wrote.
+std::vector<std::string> write_library(const LawLibrary& library, std::vector<std::string> files,
+                                       const Provenance& provenance) {
+  if (files.empty()) return files;
+  write_text_atomic(files[0], library_text(library, provenance));
+  write_text_atomic(files[1], check_csv(library.checks));
+  if (library.press_checks.empty())
+    files.pop_back();
+  else
+    write_text_atomic(files[2], check_csv(library.press_checks));
+  return files;
+}
+
+/// Of directories, or of the file of a library, which is checked anew.
+LibraryCollection library_of(const std::vector<std::string>& files) {
+  if (files.size() > 1 || !fs::is_regular_file(files.front())) return collect_library(files);
+  LibraryCollection out{load_library(files.front()), {}};
+  out.library.checks = check_library(out.library);
+  out.library.press_checks = check_press_tests(out.library);
   return out;
 }
 
@@ -178,34 +193,25 @@ std::string answer_text(const LibraryAnswer& answer, const std::vector<std::stri
 
 ExitStatus make_library(const LawOptions& o) {
   if (o.files.empty()) throw InputError("law library: give directories with law tables (see softgrain law library -h)");
-  std::string text;
-  const bool there = o.files.size() == 1 && fs::is_regular_file(o.files.front());
-  LawLibrary library = there ? load_library(o.files.front()) : collected(o.files, text);
-  library.checks = check_library(library);
-  library.press_checks = check_press_tests(library);
-  const std::vector<LibraryCheck>& checks = library.checks;
-  if (!o.out.empty()) {
-    write_text_atomic(o.out, library_text(library, provenance_of(o)));
-    write_text_atomic(fs::path(o.out).replace_filename("leave_one_out.csv").string(), check_csv(checks));
-    if (!library.press_checks.empty())
-      write_text_atomic(fs::path(o.out).replace_filename("leave_one_out_press_test.csv").string(),
-                        check_csv(library.press_checks));
-  }
+  const std::vector<std::string> files = files_of(o.out);
+  for (const std::string& path : files) refuse_to_overwrite(path, "choose another directory, or move it away");
+  const LibraryCollection all = library_of(o.files);
+  const std::vector<std::string> written = write_library(all.library, files, provenance_of(o));
+  const bool good = std::ranges::none_of(all.left_out, &LeftOutTable::damaged);
   if (o.json) {
     json out{{"command", "law library"},
-             {"status", "good"},
-             {"materials", library.materials.size()},
-             {"leave_one_out", check_json(checks)},
-             {"leave_one_out_press_test", check_json(library.press_checks)}};
-    if (!o.out.empty()) out["written"] = o.out;
+             {"status", to_string(good ? RunStatus::good : RunStatus::not_usable)},
+             {"materials", all.library.materials.size()},
+             {"left_out", left_out_json(all.left_out)},
+             {"leave_one_out", check_json(all.library.checks)},
+             {"leave_one_out_press_test", check_json(all.library.press_checks)}};
+    if (!written.empty()) out["written"] = written;
     write_standard_output(out.dump(2) + "\n");
-    return ExitStatus::good;
+  } else {
+    write_standard_output(left_out_text(all.left_out) + fmt::format("{} materials\n", all.library.materials.size()) +
+                          checks_text(all.library) + (written.empty() ? "" : "written: " + join_text(written) + "\n"));
   }
-  text += fmt::format("{} materials\n", library.materials.size()) + check_text("each left out in turn", checks);
-  if (!library.press_checks.empty()) text += check_text("known by a press test alone", library.press_checks);
-  if (!o.out.empty()) text += "written: " + o.out + "\n";
-  write_standard_output(text);
-  return ExitStatus::good;
+  return good ? ExitStatus::good : ExitStatus::not_usable;
 }
 
 ExitStatus get_law(const LawOptions& o) {

@@ -96,10 +96,13 @@ struct LawLibrary {
   [[nodiscard]] std::size_t law_numbers() const;
 };
 
+/// An empty library with the shell of an entry and the neighbours of its isotropic law, which it must have.
+LawLibrary library_like(const LawTableEntry& entry);
+
 /// A row of the library from an entry of a table with its refits; empty, and why, when its isotropic law does not
-/// serve. The first row decides which neighbours all have. Throws InputError for a table of other neighbours or shells.
-std::optional<LibraryMaterial> library_row(LawLibrary& library, const LawTableEntry& entry, const std::string& source,
-                                           std::string& why);
+/// serve. Throws InputError for a table of other neighbours or shells.
+std::optional<LibraryMaterial> library_row(const LawLibrary& library, const LawTableEntry& entry,
+                                           const std::string& source, std::string& why);
 
 /// Writes and reads a library. Throw InputError with file and line, IoError.
 std::string library_text(const LawLibrary& library, const Provenance& provenance);

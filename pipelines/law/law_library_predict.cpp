@@ -43,11 +43,11 @@ double root_mean_square(const std::vector<ProcessValue>& predicted, const std::v
 }
 
 /// Predictions of the materials left out, beside what was measured.
-class PredictedOthers {
+class LeftOutMaterials {
  public:
   /// `measured`: errors of the measured values; those that the deviations hold already are 0.
-  PredictedOthers(const std::vector<ProcessValue>& predicted, const std::vector<double>& values,
-                  const std::vector<double>& measured)
+  LeftOutMaterials(const std::vector<ProcessValue>& predicted, const std::vector<double>& values,
+                   const std::vector<double>& measured)
       : predicted_(predicted), values_(values), measured_(measured) {}
 
   /// The factor f >= 1 at which the mean square of z(f) is 1, or 1 where it is less than that.
@@ -155,7 +155,7 @@ LibraryCheck checked_number(const std::string& name, const KnownNumber& known) {
   out.error = root_mean_square(process, known.values);
   out.error_of_mean = root_mean_square(mean, known.values);
   const std::vector<double> none(known.values.size(), 0.0);
-  const PredictedOthers left(out.by_mean() ? mean : process, known.values, out.by_mean() ? none : known.errors);
+  const LeftOutMaterials left(out.by_mean() ? mean : process, known.values, out.by_mean() ? none : known.errors);
   out.factor = left.factor();
   out.coverage = left.share_within(out.factor);
   return out;

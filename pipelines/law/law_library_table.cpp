@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kWorstUnseen = 0.5;  ///< error on unseen configurations above which a law is no row
 
-LibraryPoint point_of(const LawTableEntry& entry) {
+LibraryPoint library_point_of(const LawTableEntry& entry) {
   return {entry.spec.friction, entry.spec.exponent, entry.spec.polydispersity, entry.solid_fraction};
 }
 
@@ -39,7 +39,7 @@ bool is_same(double measured, double asked) {
 /// In what an own table differs from the library and the material that was asked for; empty: in nothing.
 std::string differences_of(const LawLibrary& library, const LibraryPoint& at, const LawTableEntry& own) {
   std::string out;
-  const LibraryPoint measured = point_of(own);
+  const LibraryPoint measured = library_point_of(own);
   for (const LibraryVariable& v : kLibraryVariables)
     if (v.value != &LibraryPoint::solid_fraction && !is_same(measured.*v.value, at.*v.value))
       append_part(out, fmt::format("{} = {:.6g}, asked {:.6g}", v.name, measured.*v.value, at.*v.value));
@@ -196,22 +196,25 @@ void compare_with_own(const LibraryAnswer& prior, const OwnNumbers& own, const s
 
 }  // namespace
 
-std::optional<LibraryMaterial> library_row(LawLibrary& library, const LawTableEntry& entry, const std::string& source,
-                                           std::string& why) {
+LawLibrary library_like(const LawTableEntry& entry) {
+  LawLibrary out;
+  out.partners = partners_of(*entry.find(LawForm::isotropic));
+  out.rmax_over_shell = entry.spec.rmax_over_shell;
+  out.beta = entry.spec.beta;
+  return out;
+}
+
+std::optional<LibraryMaterial> library_row(const LawLibrary& library, const LawTableEntry& entry,
+                                           const std::string& source, std::string& why) {
   const MultiContactLaw* law = entry.find(LawForm::isotropic);
   why = unfit(entry, law);
   if (!why.empty()) return std::nullopt;
-  if (library.materials.empty()) {
-    library.partners = partners_of(*law);
-    library.rmax_over_shell = entry.spec.rmax_over_shell;
-    library.beta = entry.spec.beta;
-  }
   require_same_shell(library, entry, source);
   if (partners_of(*law) != library.partners)
-    throw InputError(source + ": measured with other kinds or sizes of neighbours than the first table");
+    throw InputError(source + ": measured with other kinds or sizes of neighbours than the library");
   LibraryMaterial m;
   m.source = source;
-  m.at = point_of(entry);
+  m.at = library_point_of(entry);
   m.packings = entry.packings;
   const OwnNumbers numbers = own_numbers(library, entry);
   m.numbers = numbers.values;

@@ -1,9 +1,11 @@
 // The library of law tables: a synthetic one gives its laws back within their bands, at measured materials and between
 // them, refuses what lies outside, and survives its file.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 
 #include "common/contact/make_laws.h"
@@ -13,8 +15,10 @@
 #include "common/data/multi_contact_replicates.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
+#include "pipelines/commands/law_options.h"
 #include "pipelines/law/law_draws.h"
 #include "pipelines/law/law_library.h"
+#include "pipelines/law/law_library_collect.h"
 #include "pipelines/law/law_library_numbers.h"
 #include "pipelines/law/law_library_predict.h"
 #include "pipelines/law/law_library_scene.h"
@@ -118,7 +122,7 @@ TEST(LawLibrary, WhatMaterialsDoNotPredictIsTheirMeanAndScatter) {
   EXPECT_EQ(check.materials, 20U);
   const MeanError mean = mean_error(noise.values);
   EXPECT_NEAR(check.error_of_mean, mean.deviation * std::sqrt(20.0 / 19.0), 1e-12) << "means of the other 19";
-  const ProcessValue z = predicted_number(check, noise, {0.9, 0.1, 0.9, 0.1});
+  const ProcessValue z = predicted_number(check, noise, {{0.9, 0.1, 0.9, 0.1}}).front();
   EXPECT_NEAR(z.mean, mean.mean, 1e-12);
   EXPECT_NEAR(z.deviation, check.factor * mean.deviation * std::sqrt(1.05) * 2.093 / 1.96, 1e-3 * z.deviation);
   const auto slope = [](const std::vector<double>& u) { return 3.0 * u[0] - u[2]; };
@@ -139,7 +143,7 @@ TEST(LawLibrary, DeviationsAreWidenedToWhatLeavingOutShows) {
   EXPECT_NEAR(squares / 20.0, 1.0, 1e-9);
   const GaussianProcess process(known.points, known.values, known.errors);
   const std::vector<double> at{0.4, 0.7, 0.2, 0.9};
-  EXPECT_NEAR(predicted_number(check, known, at).deviation, check.factor * process.at(at).deviation, 1e-12);
+  EXPECT_NEAR(predicted_number(check, known, {at}).front().deviation, check.factor * process.at(at).deviation, 1e-12);
 }
 
 TEST(LawLibrary, AnswersSayWhichNumbersAreMeans) {
@@ -188,9 +192,9 @@ TEST(LawLibrary, AVariableThatNeverVariedServesItsValueAlone) {
 }
 
 TEST(LawLibrary, RowsThatDoNotServeAreLeftOut) {
-  LawLibrary made;
   std::string why;
   LawTableEntry e = synthetic::library_entry(kBetween, 0.02, 1);
+  const LawLibrary made = library_like(e);
   e.laws.front().error_held_out = 0.7;
   EXPECT_FALSE(library_row(made, e, "x", why));
   expect_in(why, "70 % off on unseen configurations");
@@ -199,12 +203,83 @@ TEST(LawLibrary, RowsThatDoNotServeAreLeftOut) {
   EXPECT_FALSE(library_row(made, e, "x", why));
   expect_in(why, "3 refits");
   e = synthetic::library_entry(kBetween, 0.02, 1);
-  made.materials.push_back(*library_row(made, e, "x", why));
+  EXPECT_TRUE(library_row(made, e, "x", why)) << why;
   e.laws.front().partners.pop_back();
   for (auto& r : e.laws.front().replicates) r.resize(r.size() - 2);
   EXPECT_THROW((void)library_row(made, e, "y", why), InputError);
   e.spec.rmax_over_shell = 0.3;
   expect_in(message_of([&] { (void)library_row(made, e, "y", why); }), "rmax_over_shell = 0.3");
+}
+
+/// Tables of some materials below a directory, the first one of another shell, one damaged, one that does not serve.
+void write_tables(const std::string& directory, int serving) {
+  const auto write = [&](const std::string& name, const LawTableEntry& e) {
+    LawTable table;
+    table.entries = {e};
+    std::filesystem::create_directories(directory + "/" + name);
+    save_law_table(table, directory + "/" + name + "/law_table.toml");
+  };
+  for (int k = 0; k < serving; ++k)
+    write(fmt::format("m{:02}", k),
+          synthetic::library_entry({0.05 * k, 2.5 + 0.1 * (k % 5), 4.0 + k % 3, 0.6 + 0.01 * (k % 4)}, 0.02,
+                                   static_cast<std::uint64_t>(k)));
+  LawTableEntry e = synthetic::library_entry(kBetween, 0.02, 99);
+  e.laws.front().error_held_out = 0.7;
+  write("poor", e);
+  e = synthetic::library_entry(kBetween, 0.02, 99);
+  e.spec.rmax_over_shell = 0.3;
+  write("a_other_shell", e);
+  std::filesystem::create_directories(directory + "/torn");
+  write_text_atomic(directory + "/torn/law_table.toml", "schema = 1\n[[entry]]\n");
+}
+
+TEST(LawLibrary, OddTablesOfAFolderAreNamedAndLeftOut) {
+  const test::TemporaryDirectory directory;
+  write_tables(directory.path() + "/all", 9);
+  const LibraryCollection c = collect_library({directory.path() + "/all"});
+  EXPECT_EQ(c.library.materials.size(), 9U);
+  EXPECT_EQ(c.library.materials.front().source, "all/m00");
+  EXPECT_EQ(c.library.rmax_over_shell, 0.5) << "what most of them have";
+  EXPECT_EQ(c.library.checks.size(), c.library.names().size());
+  ASSERT_EQ(c.left_out.size(), 3U) << left_out_text(c.left_out);
+  const auto why = [&](const std::string& name) {
+    const auto at =
+        std::ranges::find_if(c.left_out, [&](const auto& t) { return t.path.find(name) != std::string::npos; });
+    return at == c.left_out.end() ? LeftOutTable{} : *at;
+  };
+  expect_in(why("torn").why, "torn/law_table.toml:2");
+  EXPECT_TRUE(why("torn").damaged);
+  expect_in(why("a_other_shell").why, "rmax_over_shell = 0.3, beta = 3; this library has 0.5, 3");
+  EXPECT_TRUE(why("a_other_shell").damaged);
+  expect_in(why("poor").why, "70 % off on unseen configurations");
+  EXPECT_FALSE(why("poor").damaged);
+  write_tables(directory.path() + "/few", 4);
+  const std::string few = message_of([&] { (void)collect_library({directory.path() + "/few"}); });
+  expect_in(few, "law library: 4 materials; it needs at least 8\nleft out: ");
+  expect_in(few, "poor");
+}
+
+TEST(LawLibrary, TheCommandOverwritesNothingAndNamesWhatItWrites) {
+  const test::TemporaryDirectory directory;
+  write_tables(directory.path() + "/all", 9);
+  LawOptions o;
+  o.files = {directory.path() + "/all"};
+  o.out = directory.path() + "/library.toml";
+  const std::string csv = directory.path() + "/leave_one_out.csv";
+  write_text_atomic(csv, "mine\n");
+  expect_in(message_of([&] { (void)make_library(o); }), csv + ": is there already and would be overwritten");
+  EXPECT_FALSE(std::filesystem::exists(o.out));
+  EXPECT_EQ(read_text(csv), "mine\n");
+  std::filesystem::remove(csv);
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(make_library(o), ExitStatus::not_usable) << "a table is damaged";
+  const std::string said = testing::internal::GetCapturedStdout();
+  expect_in(said, "written: " + o.out + ", " + csv);
+  expect_in(said, "left out: " + directory.path() + "/all/torn/law_table.toml: ");
+  EXPECT_EQ(load_library(o.out).materials.size(), 9U);
+  expect_in(read_text(csv), "\"ln force\",9,");
+  o.out = directory.path() + "/library.csv";
+  expect_in(message_of([&] { (void)make_library(o); }), "a library ends with .toml");
 }
 
 TEST(LawLibrary, SurvivesItsFile) {
@@ -235,6 +310,18 @@ TEST(LawLibrary, AFileWithoutItsChecksIsCheckedWhenItIsRead) {
   ASSERT_EQ(back.checks.size(), back.names().size());
   EXPECT_EQ(back.checks.front().materials, 12U);
   EXPECT_GT(back.checks.front().error, 0.0);
+}
+
+TEST(LawLibrary, TheShippedLibraryHoldsTheChecksOfItsMaterials) {
+  const LawLibrary shipped = load_library(std::string(SOFTGRAIN_SOURCE_DIR) + "/results/law_library/library.toml");
+  const std::vector<LibraryCheck> checks = check_library(shipped);
+  ASSERT_EQ(checks.size(), shipped.checks.size());
+  for (std::size_t k = 0; k < shipped.law_numbers(); ++k) {
+    EXPECT_NEAR(checks[k].error, shipped.checks[k].error, 0.05 * checks[k].error) << checks[k].name;
+    EXPECT_NEAR(checks[k].error_of_mean, shipped.checks[k].error_of_mean, 1e-4) << checks[k].name;
+    EXPECT_NEAR(checks[k].factor, shipped.checks[k].factor, 0.05) << checks[k].name;
+    EXPECT_FALSE(checks[k].by_mean()) << checks[k].name;
+  }
 }
 
 TEST(LawLibrary, TheTableIsReadAndDrawn) {
