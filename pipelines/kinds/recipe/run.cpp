@@ -130,6 +130,7 @@ class RecipeRun {
           "the check of {} levels lies {:.4f} outside the interval of its prediction: the interval of the whole is "
           "widened by as much at both ends",
           c.levels, c.outside));
+    check_lateral_ratio(c);
     c.weighs = tells_ways(scene_);
     if (c.weighs)
       forms.lean(scene_.checked_levels, c.measured.value, c.measured.standard_error);
@@ -138,6 +139,15 @@ class RecipeRun {
     c.share_of_rods = forms.share_of_rods();
     out().check = c;
     return c.outside;
+  }
+
+  void check_lateral_ratio(RecipeCheckSummary& c) {
+    const std::vector<double> samples = end_ratios(results_[*scene_.checked]);
+    if (samples.empty()) return;
+    c.lateral_ratio = {predicted_lateral_ratio(scene_, results_, scene_.checked_levels), mean_error(samples)};
+    if (!c.lateral_ratio->inside())
+      head().remarks.push_back(fmt::format("K0 of the check, {:.3f}, lies outside the interval of its prediction, {}",
+                                           c.lateral_ratio->measured->mean, interval_text(c.lateral_ratio->predicted)));
   }
 
   void add_levels(const LevelForms& forms, double widen) {
@@ -373,11 +383,18 @@ std::string recipe_text(const RecipeSummary& s) {
         r.check->levels, r.check->grains, r.check->span, r.check->measured.value,
         interval_text(r.check->predicted.onset), r.check->predicted.levels, r.check->predicted.rods,
         r.check->outside > 0.0 ? ": OUTSIDE" : "");
+  if (r.check && r.check->lateral_ratio) {
+    const PredictedValue& ratio = *r.check->lateral_ratio;
+    text += fmt::format("  check: K0 {} = {:.3f}, predicted {}{}\n", r.staged ? "at the highest stress" : "at the end",
+                        ratio.measured->mean, interval_text(ratio.predicted), ratio.inside() ? "" : ": OUTSIDE");
+  }
   if (!r.onset) return text;
   text +=
       fmt::format("the whole, span {:.3g}: phi_J = {} (levels {:.4f}, rods {:.4f}), solid fraction at the start {}\n",
                   r.span, interval_text(*r.onset), r.levels.front().with_finer.levels, r.levels.front().with_finer.rods,
                   interval_text(*r.solid_fraction));
+  if (!r.staged)
+    text += fmt::format("  K0 at the end, by mixtures of two levels: {}\n", interval_text(r.lateral_ratio));
   if (r.compressible_model)
     text += "  beside it the compressible packing model (de Larrard 1999), a model of others: " +
             compressible_model_text(*r.compressible_model) + "\n";
