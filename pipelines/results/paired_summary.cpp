@@ -7,6 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
+#include "pipelines/compare/stage_results.h"
 
 namespace softgrain {
 
@@ -15,12 +16,18 @@ namespace {
 constexpr std::size_t kShownDifferences = 3;
 
 std::string line_of(const PairedNumber& n) {
-  const std::string of = n.name + (n.unit.empty() ? "" : " [" + n.unit + "]");
-  std::string text = fmt::format("  {}: {:.5g} - {:.5g}: difference {:.3g}", of, n.a, n.b, n.difference);
+  const bool pascal = n.unit == "Pa";
+  const auto number = [&](double x, int digits) {
+    return pascal ? pressure_text(x, digits) : fmt::format("{:.{}g}", x, digits);
+  };
+  std::string text =
+      fmt::format("  {}: {} - {}: difference {}", n.name + (n.unit.empty() || pascal ? "" : " [" + n.unit + "]"),
+                  number(n.a, 5), number(n.b, 5), number(n.difference, 3));
   if (!std::isfinite(n.error)) return text + " (no error: too few samples)\n";
-  text += fmt::format(" +- {:.2g} (95 %: {:.3g} to {:.3g})", n.error, n.low, n.high);
+  text += fmt::format(" +- {} (95 %: {} to {})", number(n.error, 2), number(n.low, 3), number(n.high, 3));
   if (n.pairs > 0 && std::isfinite(n.unpaired_error) && n.error > 0.0)
-    text += fmt::format("; unpaired +- {:.2g}, {:.2g} times as much", n.unpaired_error, n.unpaired_error / n.error);
+    text +=
+        fmt::format("; unpaired +- {}, {:.2g} times as much", number(n.unpaired_error, 2), n.unpaired_error / n.error);
   if (std::isfinite(n.low) && (n.low > 0.0 || n.high < 0.0)) return text + "\n";
   return text + "; not told from 0\n";
 }

@@ -89,6 +89,13 @@ TEST(PairedSummaryText, SaysThreeNumbersAndHowTheyWerePaired) {
   EXPECT_EQ(table_of(s).rows.front().size(), table_of(s).header.size());
 }
 
+TEST(PairedSummaryText, GivesStressesWithTheirUnit) {
+  PairedSummary s;
+  s.numbers.push_back(unpaired_number("modulus", "Pa", {3e7, 2e6, 0.0, 0.0}, {3.05e7, 2e6, 0.0, 0.0}));
+  const std::string text = paired_text(s);
+  EXPECT_NE(text.find("modulus: 30 MPa - 30.5 MPa: difference -500 kPa +- 2.8 MPa"), std::string::npos) << text;
+}
+
 /// Grains of one size pack as they do here, by definition of beta; a wide distribution packs more densely.
 TEST(CompressibleModel, BeginsAtGrainsOfOneSize) {
   const double gap = 0.9;

@@ -11,6 +11,7 @@
 #include "common/core/error.h"
 #include "common/data/law_words.h"
 #include "common/io/text_file.h"
+#include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/material_law/scene.h"
 #include "pipelines/kinds/recipe/compressible_model.h"
@@ -275,9 +276,8 @@ class RecipeRun {
     for (const RecipeCurve& c : out().curves)
       if (!c.modulus && !c.axial.empty())
         head().remarks.push_back(
-            fmt::format("{}: constrained modulus not determined: its axial stress does not go through {:.4g} and "
-                        "{:.4g} Pa ({})",
-                        c.name, from * modulus, to * modulus,
+            fmt::format("{}: constrained modulus not determined: its axial stress does not go through {} and {} ({})",
+                        c.name, pressure_text(from * modulus), pressure_text(to * modulus),
                         staged() ? "modulus_stress of the first stage" : "test.modulus_stress"));
   }
 

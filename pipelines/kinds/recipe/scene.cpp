@@ -9,6 +9,7 @@
 #include "common/packing/grading.h"
 #include "common/packing/grading_scene.h"
 #include "macrosim/test_protocol.h"
+#include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/material/run.h"
@@ -377,8 +378,8 @@ double low_pressure_factor(const MacroSpec& spec) {
 /// The stresses of the tests, in Pa.
 std::string stress_line(const MacroSpec& spec) {
   if (spec.test == MacroTest::stages) return "axial stresses: " + stages_text(spec);
-  return fmt::format("axial stresses: from {:.3g} Pa ({:.3g} E) to a strain of {:.3g}; [[stage]] go to given stresses",
-                     least_stress(spec), spec.start_pressure, spec.strain_end);
+  return fmt::format("axial stresses: from {} ({:.3g} E) to a strain of {:.3g}; [[stage]] go to given stresses",
+                     pressure_text(least_stress(spec)), spec.start_pressure, spec.strain_end);
 }
 
 /// Preparing and pressing, by the three recipes of pipelines/: 1.4 ms of one core for each of 2,500 grains, more for
