@@ -107,22 +107,12 @@ TEST(RecipeRun, HoldsForAllItsGrainsAndRunsAgainOutOfTheCaches) {
   EXPECT_EQ(files_named(directory.file("tests"), "material-"), 2 * kept);
 }
 
-/// The starter without its test, in stages: E is 0.5 MPa, the preparation ends at 50 Pa.
-std::string staged_recipe() {
-  std::string text = starter_scene("recipe");
-  for (const char* line : {"strain = 0.05\n", "preload_steps = 1\n"}) {
-    const auto at = text.find(std::string("\n") + line);
-    EXPECT_NE(at, std::string::npos) << line;
-    text.erase(at + 1, std::string(line).size());
-  }
-  return text +
-         "[[stage]]\nkind = \"oedometric\"\nstress = \"1 kPa\"\n"
-         "[[stage]]\nkind = \"unload\"\nstress = \"200 Pa\"\n[[stage]]\nkind = \"reload\"\n";
-}
-
 TEST(RecipeRun, ReachesTheStressesOfItsStagesAndGivesModuliInPascal) {
   const TemporaryDirectory directory;
-  write_text_atomic(directory.file("scene.toml"), staged_recipe());
+  // E is 0.5 MPa, the preparation ends at 50 Pa.
+  write_text_atomic(directory.file("scene.toml"), staged_recipe("[[stage]]\nkind = \"oedometric\"\nstress = \"1 kPa\"\n"
+                                                                "[[stage]]\nkind = \"unload\"\nstress = \"200 Pa\"\n"
+                                                                "[[stage]]\nkind = \"reload\"\n"));
   const std::string out = run_tiny(directory, "out", "");
   const nlohmann::json summary = summary_of(out);
   const nlohmann::json& staged = summary["recipe"]["staged"];
