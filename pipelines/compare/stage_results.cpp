@@ -237,13 +237,17 @@ const char* stress_of(Modulus modulus) {
   return modulus == Modulus::shear ? "shear stress" : "axial stress";
 }
 
+std::string pressure_text(double stress, int digits) {
+  const double size = std::abs(stress);
+  if (size >= 1e9) return fmt::format("{:.{}g} GPa", 1e-9 * stress, digits);
+  if (size >= 1e6) return fmt::format("{:.{}g} MPa", 1e-6 * stress, digits);
+  return size >= 1e3 ? fmt::format("{:.{}g} kPa", 1e-3 * stress, digits) : fmt::format("{:.{}g} Pa", stress, digits);
+}
+
 std::string modulus_interval(const StageMeans& stage) {
   const StageRecord& record = stage.record;
-  const auto text = [](double stress) {
-    if (stress >= 1e6) return fmt::format("{:.6g} MPa", 1e-6 * stress);
-    return stress >= 1e3 ? fmt::format("{:.6g} kPa", 1e-3 * stress) : fmt::format("{:.6g} Pa", stress);
-  };
-  if (record.modulus_stress[1] > 0.0) return text(record.modulus_stress[0]) + " to " + text(record.modulus_stress[1]);
+  const auto [from, to] = record.modulus_stress;
+  if (to > 0.0) return pressure_text(from) + " to " + pressure_text(to);
   const bool falls = stage.modulus_from && stage.modulus_from->mean > stage.modulus_to->mean;
   if (falls || record.kind == StageKind::unload) return "whole stage";
   const Modulus modulus = modulus_of(record.way);

@@ -7,6 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
+#include "pipelines/compare/stage_results.h"
 
 namespace softgrain {
 
@@ -15,12 +16,18 @@ namespace {
 constexpr std::size_t kShownDifferences = 3;
 
 std::string line_of(const PairedNumber& n) {
-  const std::string of = n.name + (n.unit.empty() ? "" : " [" + n.unit + "]");
-  std::string text = fmt::format("  {}: {:.5g} - {:.5g}: difference {:.3g}", of, n.a, n.b, n.difference);
+  const bool pascal = n.unit == "Pa";
+  const auto number = [&](double x, int digits) {
+    return pascal ? pressure_text(x, digits) : fmt::format("{:.{}g}", x, digits);
+  };
+  std::string text =
+      fmt::format("  {}: {} - {}: difference {}", n.name + (n.unit.empty() || pascal ? "" : " [" + n.unit + "]"),
+                  number(n.a, 5), number(n.b, 5), number(n.difference, 3));
   if (!std::isfinite(n.error)) return text + " (no error: too few samples)\n";
-  text += fmt::format(" +- {:.2g} (95 %: {:.3g} to {:.3g})", n.error, n.low, n.high);
+  text += fmt::format(" +- {} (95 %: {} to {})", number(n.error, 2), number(n.low, 3), number(n.high, 3));
   if (n.pairs > 0 && std::isfinite(n.unpaired_error) && n.error > 0.0)
-    text += fmt::format("; unpaired +- {:.2g}, {:.2g} times as much", n.unpaired_error, n.unpaired_error / n.error);
+    text +=
+        fmt::format("; unpaired +- {}, {:.2g} times as much", number(n.unpaired_error, 2), n.unpaired_error / n.error);
   if (std::isfinite(n.low) && (n.low > 0.0 || n.high < 0.0)) return text + "\n";
   return text + "; not told from 0\n";
 }
@@ -55,18 +62,24 @@ PairedNumber paired_number(const std::string& name, const std::string& unit, con
           .pairs = static_cast<std::int64_t>(a.size())};
 }
 
+Estimate with_error_parts(double value, const std::vector<ErrorPart>& parts) {
+  double square = 0.0;
+  double scatter = 0.0;
+  double all = 0.0;
+  for (const ErrorPart& p : parts) {
+    if (!(p.degrees >= 1.0)) return student_estimate(value, kInfinity, 0.0);
+    square += p.error * p.error;
+    scatter += std::pow(p.error, 4) / p.degrees;
+    all += p.degrees;
+  }
+  return student_estimate(value, std::sqrt(square), scatter > 0.0 ? square * square / scatter : all);
+}
+
 Estimate difference_of_means(const std::vector<double>& a, const std::vector<double>& b) {
   const MeanError of_a = mean_error(a);
   const MeanError of_b = mean_error(b);
-  const double difference = of_a.mean - of_b.mean;
-  if (of_a.n < 2 || of_b.n < 2) return student_estimate(difference, kInfinity, 0.0);
-  const double square_a = of_a.error * of_a.error;
-  const double square_b = of_b.error * of_b.error;
-  const double sum = square_a + square_b;
-  const double parts =
-      square_a * square_a / static_cast<double>(of_a.n - 1) + square_b * square_b / static_cast<double>(of_b.n - 1);
-  const double degrees = parts > 0.0 ? sum * sum / parts : static_cast<double>(of_a.n + of_b.n - 2);
-  return student_estimate(difference, std::sqrt(sum), degrees);
+  const auto part = [](const MeanError& m) { return ErrorPart{m.error, static_cast<double>(m.n) - 1.0}; };
+  return with_error_parts(of_a.mean - of_b.mean, {part(of_a), part(of_b)});
 }
 
 PairedNumber unpaired_number(const std::string& name, const std::string& unit, const Estimate& a, const Estimate& b) {

@@ -19,14 +19,14 @@ struct PairedNumber {
   std::string unit;  ///< empty: a plain number
   double a = kNaN;
   double b = kNaN;
-  double difference = kNaN;      ///< estimate of A - B; where errors are paired it need not be a - b to the last digit
+  double difference = kNaN;      ///< a - b
   double error = kNaN;           ///< standard error of the difference
   double low = kNaN;             ///< 95 % interval of the difference
   double high = kNaN;            ///< 95 % interval of the difference
   double error_a = kNaN;         ///< standard error of a by itself
   double error_b = kNaN;         ///< standard error of b by itself
   double unpaired_error = kNaN;  ///< standard error of the difference if both were independent
-  std::int64_t pairs = 0;        ///< pairs that it is made from; 0: not paired
+  std::int64_t pairs = 0;        ///< samples or packings that are the same in both; 0: not paired
 
   /// Error of the difference over the mean error of one value; NaN where one is not known.
   [[nodiscard]] double over_one() const;
@@ -65,9 +65,20 @@ void fields(auto&& visit, Of<PairedSummary> auto& s) {
 PairedNumber paired_number(const std::string& name, const std::string& unit, const std::vector<double>& a,
                            const std::vector<double>& b);
 
-/// Mean of `a` less mean of `b`, independent samples, with Welch's interval: degrees of freedom
-///   (s_a + s_b)^2/(s_a^2/(n_a - 1) + s_b^2/(n_b - 1)), s the squared standard error of a mean
-/// (Welch 1947, doi:10.1093/biomet/34.1-2.28). Of fewer than two samples of either the error is infinite.
+/// One independent part of a standard error, with the degrees of freedom that it was estimated with.
+struct ErrorPart {
+  double error = 0.0;
+  double degrees = 0.0;
+};
+
+/// A value with independent parts of its error, added in squares, and Student's interval with
+///   (sum s_k)^2/(sum s_k^2/f_k)
+/// degrees of freedom, s the squared parts, f their degrees (Welch 1947, doi:10.1093/biomet/34.1-2.28). Not known, so
+/// infinite, where a part has fewer than one degree.
+Estimate with_error_parts(double value, const std::vector<ErrorPart>& parts);
+
+/// Mean of `a` less mean of `b`, independent samples, with Welch's interval. Of fewer than two samples of either the
+/// error is infinite.
 Estimate difference_of_means(const std::vector<double>& a, const std::vector<double>& b);
 
 /// a - b of two independent values; the interval is normal.

@@ -258,6 +258,22 @@ inline std::string starter_scene(const std::string& kind) {
   return "";
 }
 
+/// A text with one part in place of another, which must be there.
+inline std::string with_part(std::string text, const std::string& part, const std::string& other) {
+  const auto at = text.find(part);
+  if (at == std::string::npos)
+    ADD_FAILURE() << part << " is not in " << text;
+  else
+    text.replace(at, part.size(), other);
+  return text;
+}
+
+/// The starter of a recipe with stages in place of its test.
+inline std::string staged_recipe(const std::string& stages) {
+  return with_part(with_part(starter_scene("recipe"), "\nstrain = 0.05\n", "\n"), "\npreload_steps = 1\n", "\n") +
+         stages;
+}
+
 struct KindScene {
   std::string name;
   std::string command;

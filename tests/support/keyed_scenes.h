@@ -194,34 +194,16 @@ sizes = { form = "fuller", exponent = 0.5, radius_min = "1.5 mm", radius_max = "
 }
 
 inline std::string recipe_stages() {
-  return R"(kind = "recipe"
-[grains]
-count = 150
-ratio = 2.2
-[levels]
-ratio = 1.6
-mixtures = [0.25, 0.5, 0.75]
-[law]
-cells = 40
-shear_strain = 0.04
-[packing]
-preparation = "fast"
-[test]
-steps = 4
-increments_per_step = 2
-[check]
-grains = 0
-[macro]
-grains = 40
-samples = 1
-[[stage]]
+  const std::string scene = staged_recipe(R"([[stage]]
 kind = "oedometric"
 stress = 1000.0
 modulus_stress = [400.0, 900.0]
 [[stage]]
 kind = "unload"
 stress = 200.0
-)";
+)");
+  return with_part(with_part(scene, "title = \"A small recipe\"\nseed = 1\n", ""), "[check]\ngrains = 300\n",
+                   "[check]\ngrains = 0\n");
 }
 
 inline std::string drawn_particles() {

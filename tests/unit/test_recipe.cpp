@@ -112,6 +112,39 @@ sizes = { form = "power-law", exponent = 3.5, radius_min = "0.4 mm", radius_max 
               scene.sizes.passing(scene.levels[0].low) / (1.0 - scene.sizes.passing(scene.levels[0].low)), 1e-9);
 }
 
+/// Results in which packing v has a lateral stress of 0.4 + 0.01 v times the axial one.
+std::vector<VariantResult> results_by_ratio(const RecipeScene& scene) {
+  std::vector<VariantResult> out;
+  for (const MaterialVariant& v : scene.material.variants) {
+    MacroCurve c;
+    c.stress_axial = {1.0, 3.0, 2.0};
+    c.stress_lateral = {0.9, 0.9, (0.8 + 0.02 * static_cast<double>(out.size()))};
+    out.push_back({&v, "", {c}, nullptr});
+  }
+  return out;
+}
+
+/// The check is what the prediction of K0 is held against: it takes no part in it.
+TEST(RecipeLaw, PredictsTheLateralStressWithoutTheCheck) {
+  const RecipeScene scene = read_recipe("[levels]\nratio = 2\nmixtures = [0.2, 0.5, 0.8]\n[check]\ngrains = 4000\n",
+                                        "count = 900\nratio = 6");
+  ASSERT_TRUE(scene.checked);
+  std::vector<VariantResult> results = results_by_ratio(scene);
+  const std::size_t chosen = lateral_packing(scene, scene.levels.size());
+  EXPECT_NE(chosen, *scene.checked);
+  const Estimate before = predicted_lateral_ratio(scene, results, scene.levels.size());
+  EXPECT_NEAR(before.value, 0.4 + 0.01 * static_cast<double>(chosen), 1e-12);
+  EXPECT_GT(before.standard_error, 0.0);
+  results[*scene.checked].curves.front().stress_lateral.back() = 2.0;
+  const Estimate after = predicted_lateral_ratio(scene, results, scene.levels.size());
+  EXPECT_EQ(after.value, before.value);
+  EXPECT_EQ(after.standard_error, before.standard_error);
+  EXPECT_NEAR(end_ratios(results[*scene.checked]).front(), 1.0, 1e-12);
+  // With stages: where the axial stress is highest.
+  results[chosen].curves.front().test = MacroTest::stages;
+  EXPECT_NEAR(end_ratios(results[chosen]).front(), 0.3, 1e-12);
+}
+
 TEST(RecipeScene, SaysAllThatIsWrongWithConstituentsAtOnce) {
   const std::string text = refusal(R"(
 [[constituent]]

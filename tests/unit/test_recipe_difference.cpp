@@ -1,11 +1,14 @@
-// What a change of the mix does: shares that move, residuals that are shared, paired and independent errors.
+// What a change of the mix does: shares that move, packings that are in both, paired and independent errors.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/core/few_samples.h"
+#include "common/core/random.h"
+#include "macrosim/body_contacts.h"
 #include "pipelines/kinds/recipe/compressible_model.h"
-#include "pipelines/kinds/recipe/difference.h"
+#include "pipelines/kinds/recipe/onset_pair.h"
 #include "pipelines/kinds/recipe/scene.h"
 #include "pipelines/results/paired_summary.h"
 
@@ -20,21 +23,6 @@ TEST(MovedShare, IsTheVolumeThatHasAnotherSize) {
   EXPECT_NEAR(moved_share(Grading::list({1.0, 2.0}), Grading::list({1.0, 2.0})), 0.0, 1e-12);
   // 1 of 9 parts of the volume against 1 of 17.
   EXPECT_NEAR(moved_share(Grading::list({1.0, 2.0}), Grading::list({1.0, 2.0, 2.0})), 1.0 / 9.0 - 1.0 / 17.0, 1e-6);
-}
-
-TEST(CommonResidual, LeavesTheDifferenceOfTheRods) {
-  const PackingPair pair = with_common_residual({0.64, 0.62, 0.63, 0.615}, 0.0);
-  EXPECT_NEAR(pair.a - pair.b, 0.015, 1e-12);
-  EXPECT_NEAR(pair.a + pair.b, 1.26, 1e-12);  // the mean stays
-  const PackingPair moved = with_common_residual({0.64, 0.62, 0.63, 0.615}, 0.002);
-  EXPECT_NEAR(moved.a - moved.b, 0.017, 1e-12);
-}
-
-/// One packing in both recipes: nothing changes.
-TEST(CommonResidual, OfOnePackingIsItsOwn) {
-  const PackingPair pair = with_common_residual({0.64, 0.64, 0.63, 0.63}, 0.0);
-  EXPECT_DOUBLE_EQ(pair.a, 0.64);
-  EXPECT_DOUBLE_EQ(pair.b, 0.64);
 }
 
 TEST(PairedNumber, ErrorsOfPairsCancelWhatTheyShare) {
@@ -74,6 +62,19 @@ TEST(DifferenceOfMeans, HasTheDegreesOfWelch) {
   EXPECT_FALSE(std::isfinite(difference_of_means({1.0}, {5.0, 6.0}).high));
 }
 
+TEST(ErrorParts, AddInSquaresWithTheDegreesOfEach) {
+  const Estimate e = with_error_parts(2.0, {{3.0, 4.0}, {4.0, 8.0}});
+  EXPECT_NEAR(e.standard_error, 5.0, 1e-12);
+  const double degrees = 25.0 * 25.0 / (81.0 / 4.0 + 256.0 / 8.0);
+  EXPECT_NEAR(e.high - 2.0, 5.0 * student95(degrees), 1e-9);
+  EXPECT_EQ(with_error_parts(2.0, {{0.0, 4.0}}).high, 2.0);
+  for (const std::vector<ErrorPart>& unknown : {std::vector<ErrorPart>{{3.0, 4.0}, {4.0, 0.0}},
+                                                std::vector<ErrorPart>{}, std::vector<ErrorPart>{{kNaN, 0.0}}}) {
+    EXPECT_TRUE(std::isinf(with_error_parts(2.0, unknown).standard_error));
+    EXPECT_EQ(with_error_parts(2.0, unknown).value, 2.0);
+  }
+}
+
 TEST(PairedSummaryText, SaysThreeNumbersAndHowTheyWerePaired) {
   PairedSummary s;
   s.reason = "the runs differ in seed";
@@ -86,6 +87,13 @@ TEST(PairedSummaryText, SaysThreeNumbersAndHowTheyWerePaired) {
   EXPECT_NE(text.find("not told from 0"), std::string::npos);
   EXPECT_EQ(table_of(s).rows.size(), 5U);
   EXPECT_EQ(table_of(s).rows.front().size(), table_of(s).header.size());
+}
+
+TEST(PairedSummaryText, GivesStressesWithTheirUnit) {
+  PairedSummary s;
+  s.numbers.push_back(unpaired_number("modulus", "Pa", {3e7, 2e6, 0.0, 0.0}, {3.05e7, 2e6, 0.0, 0.0}));
+  const std::string text = paired_text(s);
+  EXPECT_NE(text.find("modulus: 30 MPa - 30.5 MPa: difference -500 kPa +- 2.8 MPa"), std::string::npos) << text;
 }
 
 /// Grains of one size pack as they do here, by definition of beta; a wide distribution packs more densely.
@@ -130,6 +138,95 @@ TEST(RecipeConstituents, MassesGiveTheSameSharesInAnyUnit) {
   EXPECT_THROW((void)read("mass = 900", "mass_share = 0.4"), InputError);
   EXPECT_THROW((void)read("mass = 900\nmass_share = 0.6", "mass = 600"), InputError);
   EXPECT_THROW((void)read("mass = 0", "mass = 600"), InputError);
+}
+
+/// A sample under oedometric load that follows the equation of state with K = 0.05 and n = 1.6 from its onset.
+MacroCurve sample_from(double onset, double modulus, std::int64_t sample) {
+  MacroCurve c;
+  c.sample = sample;
+  c.start.youngs_modulus = modulus;
+  c.stages = {{"load", StageKind::oedometric, StageKind::oedometric, {}}};
+  std::vector<double>& phi = c.more[kSolidFraction];
+  for (int k = 0; k < 6; ++k) {
+    const double p = 1e-4 * std::pow(10.0, 0.3 * k);
+    phi.push_back(state_phi(StateForm::porosity, 0.05, 1.6, onset, p));
+    c.strain.push_back(1.0 - phi.front() / phi.back());
+    c.stress_axial.push_back(p * modulus * 3.0 / 2.1);
+    for (auto* lateral : {&c.stress_lateral, &c.stress_x, &c.stress_y})
+      lateral->push_back(0.55 * c.stress_axial.back());
+    c.stage.push_back(0.0);
+  }
+  return c;
+}
+
+constexpr double kScatter = 0.003;
+
+/// A run whose packings lie on rods but for the scatter of their samples; `seed`: of the scatter.
+MixRun synthetic_run(const std::string& share, const std::string& rest, std::uint64_t seed, int samples = 3) {
+  MixRun run{read_recipe_scene(Scene::parse(mix_text("mass_share = " + share, "mass_share = " + rest) +
+                                                "[check]\ngrains = 0\n[law]\nreplicates = 200\n",
+                                            "s")),
+             {},
+             {}};
+  RandomStream random(seed, RandomPurpose::test, 12);
+  for (const MaterialVariant& v : run.scene.material.variants) {
+    VariantResult r{&v, "", {}, nullptr};
+    const double onset = RodCurve(*v.setup.spec.solid_sizes).at(1.0);
+    for (int s = 0; s < samples; ++s)
+      r.curves.push_back(sample_from(onset + kScatter * random.normal(), v.setup.spec.youngs_modulus, s));
+    run.results.push_back(std::move(r));
+  }
+  return run;
+}
+
+/// Error of the difference of the onsets of two runs, and whether its interval holds that of rods.
+struct OnsetDifference {
+  Estimate estimate;
+  double truth;
+};
+OnsetDifference onset_difference(const MixRun& a, const MixRun& b) {
+  const PairedOnsets onsets(a, b);
+  const OnsetPair whole = onsets.joined(0, a.scene.levels.size());
+  const double value = onsets.value(whole, true, onset_itself) - onsets.value(whole, false, onset_itself);
+  const auto truth = [](const MixRun& run) {
+    return RodCurve(joined(run.scene.levels, 0, run.scene.levels.size())).at(1.0);
+  };
+  return {onsets.difference(value, whole, onset_itself, onset_itself, {}), truth(a) - truth(b)};
+}
+
+/// Two mixes that share no packing, hence scatter independently: a small slope of the residuals took all error away.
+TEST(RecipeDifference, IndependentPackingsKeepTheirScatter) {
+  double least = kInfinity;
+  int held = 0;
+  constexpr int kTrials = 10;
+  for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
+    const OnsetDifference d =
+        onset_difference(synthetic_run("0.6", "0.4", 2 * trial + 1), synthetic_run("0.65", "0.35", 2 * trial + 2));
+    least = std::min(least, d.estimate.standard_error);
+    held += d.estimate.low <= d.truth && d.truth <= d.estimate.high ? 1 : 0;
+  }
+  // The onset of the whole is a mean over some packings of three samples each.
+  EXPECT_GT(least, 0.3 * kScatter);
+  EXPECT_GE(held, kTrials - 1);
+}
+
+TEST(RecipeDifference, PackingsOfBothCancel) {
+  const MixRun a = synthetic_run("0.6", "0.4", 1);
+  const OnsetDifference other = onset_difference(a, synthetic_run("0.65", "0.35", 2));
+  MixRun b = synthetic_run("0.65", "0.35", 2);
+  for (std::size_t v = 0; v < b.results.size(); ++v) b.results[v].curves = a.results[v].curves;
+  const PairedOnsets same(a, b);
+  EXPECT_EQ(same.same(), same.packings());
+  EXPECT_LT(onset_difference(a, b).estimate.standard_error, 0.5 * other.estimate.standard_error);
+  const OnsetDifference none = onset_difference(a, a);
+  EXPECT_EQ(none.estimate.value, 0.0);
+  EXPECT_EQ(none.estimate.standard_error, 0.0);
+}
+
+TEST(RecipeDifference, OfSinglePackingsHasNoError) {
+  const OnsetDifference d = onset_difference(synthetic_run("0.6", "0.4", 1, 1), synthetic_run("0.65", "0.35", 2, 1));
+  EXPECT_TRUE(std::isinf(d.estimate.standard_error));
+  EXPECT_TRUE(std::isfinite(d.estimate.value));
 }
 
 }  // namespace

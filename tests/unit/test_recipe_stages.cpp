@@ -211,6 +211,10 @@ TEST(RecipeStages, IntervalsHoldTheScatterOfPackingsAndAreMissingWithoutOneOfThe
   const RecipeStages bare = whole_under_stages(paths, {0.6, kInfinity, -kInfinity, kInfinity});
   EXPECT_NEAR(bare.stages[0].index.predicted.value, 0.05, 1e-9);
   EXPECT_TRUE(std::isinf(bare.stages[0].index.predicted.high));
+  const Estimate ratio = lateral_ratio(shape_of_stages(bare));  // as for the card: not known, and not without error
+  EXPECT_NEAR(ratio.value, 0.4, 1e-12);
+  EXPECT_TRUE(std::isinf(ratio.standard_error));
+  EXPECT_TRUE(std::isinf(ratio.low) && std::isinf(ratio.high));
   const TextTable table = stages_table(bare);
   ASSERT_EQ(table.rows.size(), 6U);
   EXPECT_EQ(table.rows[3][0], "load");

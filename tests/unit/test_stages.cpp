@@ -291,6 +291,8 @@ TEST(Stages, WhatContradictsIsNamed) {
       {load + "name = \"a\"\n" + load + "name = \"a\"\n", "a stage before it is called 'a' too"},
       {load + stage("kind = \"cycles\"\ncount = 1\nstrain = 0.01\nname = \"a\\nb\""), "one line of text"},
       {stress + stage("kind = \"unload\"\nstress = 60"), "must be below the 20 Pa of stage 'oedometric'"},
+      {stage("kind = \"oedometric\"\nstress = \"1 MPa\"\n") + stage("kind = \"unload\"\nstress = \"2 MPa\""),
+       "must be below the 1 MPa of stage 'oedometric'"},
       {stress + stage("kind = \"hold\"\n") + stage("kind = \"reload\"\nstress = 10"), "must be above the 20 Pa"},
   };
   for (const auto& [text, expected] : cases) {

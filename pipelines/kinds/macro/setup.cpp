@@ -12,6 +12,7 @@
 #include "common/io/text_file.h"
 #include "common/packing/grading_scene.h"
 #include "macrosim/preparation.h"
+#include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/macro/stages.h"
 
 namespace softgrain {
@@ -41,8 +42,8 @@ void read_start_pressure(const SceneTable& t, MacroSetup& setup) {
   if (!(setup.start_stress > 0.0)) return;
   spec.start_pressure = setup.start_stress / spec.youngs_modulus;
   if (spec.start_pressure <= kOverModulus.high) return;
-  t.add_error(key.name, fmt::format("is {:.3g} E with E = {:.6g} Pa; allowed: up to {:g} E", spec.start_pressure,
-                                    spec.youngs_modulus, kOverModulus.high));
+  t.add_error(key.name, fmt::format("is {:.3g} E with E = {}; allowed: up to {:g} E", spec.start_pressure,
+                                    pressure_text(spec.youngs_modulus), kOverModulus.high));
   spec.start_pressure = kOverModulus.high;
 }
 

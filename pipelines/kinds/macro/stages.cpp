@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "macrosim/test_protocol.h"
+#include "pipelines/compare/stage_results.h"
 
 namespace softgrain {
 
@@ -259,8 +260,8 @@ class StageReader {
     const MacroStage& from = stages_[static_cast<std::size_t>(before)];
     const std::optional<double> there = from.target_stress();
     if (!there || from.goes_to_mean() != stages_.back().goes_to_mean() || sign * (*target - *there) > 0.0) return;
-    t.add_error("stress", fmt::format("must be {} the {:.6g} Pa of stage '{}', from which it {}",
-                                      sign < 0.0 ? "below" : "above", *there, from.record.name,
+    t.add_error("stress", fmt::format("must be {} the {} of stage '{}', from which it {}",
+                                      sign < 0.0 ? "below" : "above", pressure_text(*there), from.record.name,
                                       stages_.back().record.kind == StageKind::unload ? "unloads" : "reloads"));
   }
 

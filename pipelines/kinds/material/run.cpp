@@ -267,20 +267,6 @@ std::optional<double> common_modulus(const MaterialScene& scene) {
   return first;
 }
 
-/// Packings take part once, by the first of their tests that compresses them: what they do in another is no other
-/// sample.
-std::vector<const VariantResult*> first_compressed(const std::vector<VariantResult>& results) {
-  std::vector<const VariantResult*> out;
-  bool found = false;
-  for (const VariantResult& r : results) {
-    found = found && r.variant->same_packings;
-    if (found || std::ranges::none_of(r.curves, takes_part)) continue;
-    found = true;
-    out.push_back(&r);
-  }
-  return out;
-}
-
 std::optional<EquationResult> equation(const MaterialScene& scene, const std::vector<VariantResult>& results,
                                        std::uint64_t seed) {
   std::vector<EquationInput> inputs;
@@ -378,6 +364,18 @@ MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantR
     s.head.remarks.push_back("equation of state: " + s.equation->message);
   s.head.files["points"] = run.path("material.csv");
   s.head.files["report"] = run.path("report.html");
+  return out;
+}
+
+std::vector<const VariantResult*> first_compressed(const std::vector<VariantResult>& results) {
+  std::vector<const VariantResult*> out;
+  bool found = false;
+  for (const VariantResult& r : results) {
+    found = found && r.variant->same_packings;
+    if (found || std::ranges::none_of(r.curves, takes_part)) continue;
+    found = true;
+    out.push_back(&r);
+  }
   return out;
 }
 

@@ -64,6 +64,10 @@ MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantR
 
 std::string console_summary(const MaterialSummary& summary);
 
+/// The results that the equation of state is fitted to. Packings take part once, by the first of their tests that
+/// compresses them: what they do in another is no other sample.
+std::vector<const VariantResult*> first_compressed(const std::vector<VariantResult>& results);
+
 /// The least and the largest p/E above 0 that take part in the equation of state.
 std::array<double, 2> pressure_range(const std::vector<VariantResult>& results);
 

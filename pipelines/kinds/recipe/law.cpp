@@ -91,27 +91,52 @@ OneShape shape_of_packing(const VariantResult& r, StateForm form, const StateFit
   return out;
 }
 
-/// The mixture of the two coarsest levels whose share of fines is nearest to that of the whole.
-std::size_t nearest_mixture(const RecipeScene& scene) {
-  const double share = 1.0 - scene.levels[0].share;
+Estimate ratio_estimate(double value, double deviation) {
+  if (!std::isfinite(deviation)) return {value, kInfinity, -kInfinity, kInfinity};
+  const double half = kNormal95 * deviation;
+  return {value, deviation, std::max(0.0, value - half), value + half};
+}
+
+}  // namespace
+
+std::size_t lateral_packing(const RecipeScene& scene, std::size_t count) {
+  double all = 0.0;
+  for (std::size_t k = 0; k < count; ++k) all += scene.levels[k].share;
+  const double share = 1.0 - scene.levels[0].share / all;
   std::size_t best = 0;
   for (std::size_t m = 1; m < scene.mixtures.size(); ++m)
     if (std::abs(scene.mixtures[m] - share) < std::abs(scene.mixtures[best] - share)) best = m;
   return scene.mixed[0][best];
 }
 
-}  // namespace
+std::vector<double> end_ratios(const VariantResult& packing) {
+  std::vector<double> out;
+  for (const MacroCurve& c : packing.curves) {
+    if (!c.usable || c.stress_axial.empty()) continue;
+    const auto highest = std::ranges::max_element(c.stress_axial) - c.stress_axial.begin();
+    const std::size_t k = c.test == MacroTest::stages ? static_cast<std::size_t>(highest) : c.stress_axial.size() - 1;
+    if (c.stress_axial[k] > 0.0) out.push_back(c.stress_lateral[k] / c.stress_axial[k]);
+  }
+  return out;
+}
 
-std::size_t lateral_packing(const RecipeScene& scene) {
-  return scene.checked ? *scene.checked : nearest_mixture(scene);
+Estimate predicted_lateral_ratio(const RecipeScene& scene, const std::vector<VariantResult>& results,
+                                 std::size_t count) {
+  Tally packings;
+  for (std::size_t v = 0; v < results.size(); ++v)
+    if (const auto ratios = end_ratios(results[v]);
+        !results[v].variant->same_packings && scene.checked != v && !ratios.empty())
+      packings.add(mean_error(ratios).mean);
+  return ratio_estimate(mean_error(end_ratios(results[lateral_packing(scene, count)])).mean,
+                        packings.statistics().deviation);
 }
 
 ResponseShape shape_of(const RecipeScene& scene, const std::vector<VariantResult>& results, const StateFit& states) {
   std::vector<OneShape> all;
-  const std::size_t chosen = lateral_packing(scene);
+  const std::size_t chosen = lateral_packing(scene, scene.levels.size());
   ResponseShape out;
   for (std::size_t v = 0; v < results.size(); ++v) {
-    if (results[v].variant->setup.spec.test != MacroTest::oedometric) continue;
+    if (scene.checked == v || results[v].variant->setup.spec.test != MacroTest::oedometric) continue;
     OneShape one = shape_of_packing(results[v], scene.material.equation.form, states);
     if (one.factor.empty()) continue;
     if (v == chosen) out.ratio = one.ratio;
@@ -135,9 +160,7 @@ ResponseShape shape_of(const RecipeScene& scene, const std::vector<VariantResult
 
 Estimate lateral_ratio(const ResponseShape& shape) {
   if (shape.ratio.empty()) return {};
-  const double half = kNormal95 * shape.ratio_deviation.back();
-  return {shape.ratio.back(), shape.ratio_deviation.back(), std::max(0.0, shape.ratio.back() - half),
-          shape.ratio.back() + half};
+  return ratio_estimate(shape.ratio.back(), shape.ratio_deviation.back());
 }
 
 Estimate solid_fraction_of(const WholeLaw& law) {

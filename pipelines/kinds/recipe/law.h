@@ -28,11 +28,15 @@ struct ResponseShape {
   std::vector<double> strain;
   std::vector<double> factor;            ///< mean over packings
   std::vector<double> factor_deviation;  ///< standard deviation over them
-  std::vector<double> ratio;             ///< lateral over axial stress of the check, or of the mixture of nearest share
+  std::vector<double> ratio;             ///< lateral over axial stress of lateral_packing()
   std::vector<double> ratio_deviation;   ///< standard deviation over all packings
 };
-/// The variant whose lateral stress is that of the whole: the check, or the mixture of nearest share of fines.
-std::size_t lateral_packing(const RecipeScene& scene);
+
+/// The variant whose K0 is taken for that of the first `count` levels: the mixture of the two coarsest levels with the
+/// nearest share of fines. Never the check, which the prediction is held against.
+std::size_t lateral_packing(const RecipeScene& scene, std::size_t count);
+
+/// Of all packings but the check.
 ResponseShape shape_of(const RecipeScene& scene, const std::vector<VariantResult>& results, const StateFit& states);
 
 /// What the whole is: for the card and the curve.
@@ -64,8 +68,17 @@ std::array<double, 2> set_moduli(std::vector<RecipeCurve>& curves, std::array<do
 /// Pressures this little above those of the fit are not yet called extrapolated.
 inline constexpr double kHardlyBeyond = 1.05;
 
-/// Lateral over axial stress where the shape ends.
+/// Lateral over axial stress where the shape ends, the interval by the deviation among packings. Where that is not
+/// finite, the error is not known.
 Estimate lateral_ratio(const ResponseShape& shape);
+
+/// Lateral over axial stress (K0) of the usable samples of a packing: at the end of the test, with stages where the
+/// axial stress is highest.
+std::vector<double> end_ratios(const VariantResult& packing);
+
+/// K0 of the first `count` levels there: of lateral_packing(), with the deviation among all packings but the check.
+Estimate predicted_lateral_ratio(const RecipeScene& scene, const std::vector<VariantResult>& results,
+                                 std::size_t count);
 
 /// Writes the card as TOML, for people and programs. Atomic. Throws IoError.
 void write_material_card(const RecipeScene& scene, const WholeLaw& law, const std::string& path,

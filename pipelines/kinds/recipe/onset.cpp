@@ -207,5 +207,10 @@ double LevelForms::share_of_rods() const { return parts_->share_of_rods; }
 double LevelForms::own_onset(std::size_t level) const { return parts_->estimate[parts_->scene.slice[level]]; }
 double LevelForms::gap() const { return parts_->gap; }
 double LevelForms::rods_deviation() const { return parts_->deviation; }
+std::vector<double> LevelForms::rod_residuals() const {
+  std::vector<double> out(parts_->estimate.size(), kNaN);
+  for (const auto& [v, curve] : parts_->rods) out[v] = parts_->estimate[v] - curve.at(parts_->gap);
+  return out;
+}
 
 }  // namespace softgrain

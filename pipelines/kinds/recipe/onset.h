@@ -64,6 +64,8 @@ class LevelForms {
   [[nodiscard]] double own_onset(std::size_t level) const;
   [[nodiscard]] double gap() const;
   [[nodiscard]] double rods_deviation() const;
+  /// Onsets less those of the rods, by variant; NaN for the check and for what is no packing of its own.
+  [[nodiscard]] std::vector<double> rod_residuals() const;
 
  private:
   struct Parts;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "common/data/law_words.h"
 #include "pipelines/kinds/law_table/scene.h"
@@ -192,7 +193,8 @@ std::string void_ratio_figure(const RecipeStages& staged) {
 std::string whole_text(const RecipeOutcome& r) {
   std::string text = fmt::format(
       "The whole begins to carry pressure at a solid fraction of {} ({}): {} by levels, {} by rods (gap {}; packings "
-      "lie {} about them). At the start pressure it is {} ({}). Lateral over axial stress where the {}: {} ({}).",
+      "lie {} about them). At the start pressure it is {} ({}). Lateral over axial stress where the {}, by mixtures of "
+      "two levels: {} ({}).",
       format_number(r.onset->value, 4), range_of(r.onset->low, r.onset->high, 4),
       format_number(r.levels.front().with_finer.levels, 4), format_number(r.levels.front().with_finer.rods, 4),
       format_number(r.gap, 3), format_number(r.rods_deviation, 2), format_number(r.solid_fraction->value, 4),
@@ -207,6 +209,13 @@ std::string whole_text(const RecipeOutcome& r) {
       format_number(r.grains_per_cubic_metre, 2), format_number(r.resolved_grains, 2),
       format_number(r.resolved_evaluations, 2));
   return text;
+}
+
+std::string ratio_text(const std::optional<PredictedValue>& ratio) {
+  if (!ratio || !ratio->measured) return "";
+  return fmt::format(" Its lateral over axial stress is {} (predicted {} ({}): {}).", with_error(*ratio->measured),
+                     format_number(ratio->predicted.value, 3), range_of(ratio->predicted.low, ratio->predicted.high),
+                     ratio->inside() ? "inside" : "outside");
 }
 
 std::string check_text(const RecipeCheckSummary& c) {
@@ -232,7 +241,7 @@ std::string recipe_section(const RunData& run) {
   if (r.levels.empty() || !r.onset) return "";
   const StressUnit unit = stress_unit(summary);
   std::string body = paragraph(whole_text(r));
-  if (r.check) body += paragraph(check_text(*r.check));
+  if (r.check) body += paragraph(check_text(*r.check) + ratio_text(r.check->lateral_ratio));
   if (r.staged) body += stage_table(*r.staged);
   std::vector<std::string> figures{onset_figure(r), load_figure(r, unit)};
   if (r.staged) figures.push_back(void_ratio_figure(*r.staged));
@@ -284,6 +293,9 @@ std::vector<RunValue> values_of(const report::RunData& run) {
   for (const RecipeCurve& c : r.curves)
     if (c.modulus) out.push_back({"constrained modulus over E, " + c.name, "", c.modulus->value});
   if (r.onset) out.push_back({"K0 at the end", "", r.lateral_ratio.value, r.lateral_ratio.standard_error});
+  if (r.check && r.check->lateral_ratio && r.check->lateral_ratio->measured)
+    out.push_back({"K0 at the end, all grains of the check", "", r.check->lateral_ratio->measured->mean,
+                   r.check->lateral_ratio->measured->error});
   add_packing();
   return out;
 }

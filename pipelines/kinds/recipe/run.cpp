@@ -11,6 +11,7 @@
 #include "common/core/error.h"
 #include "common/data/law_words.h"
 #include "common/io/text_file.h"
+#include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/material_law/scene.h"
 #include "pipelines/kinds/recipe/compressible_model.h"
@@ -130,6 +131,7 @@ class RecipeRun {
           "the check of {} levels lies {:.4f} outside the interval of its prediction: the interval of the whole is "
           "widened by as much at both ends",
           c.levels, c.outside));
+    check_lateral_ratio(c);
     c.weighs = tells_ways(scene_);
     if (c.weighs)
       forms.lean(scene_.checked_levels, c.measured.value, c.measured.standard_error);
@@ -138,6 +140,15 @@ class RecipeRun {
     c.share_of_rods = forms.share_of_rods();
     out().check = c;
     return c.outside;
+  }
+
+  void check_lateral_ratio(RecipeCheckSummary& c) {
+    const std::vector<double> samples = end_ratios(results_[*scene_.checked]);
+    if (samples.empty()) return;
+    c.lateral_ratio = {predicted_lateral_ratio(scene_, results_, scene_.checked_levels), mean_error(samples)};
+    if (!c.lateral_ratio->inside())
+      head().remarks.push_back(fmt::format("K0 of the check, {:.3f}, lies outside the interval of its prediction, {}",
+                                           c.lateral_ratio->measured->mean, interval_text(c.lateral_ratio->predicted)));
   }
 
   void add_levels(const LevelForms& forms, double widen) {
@@ -265,9 +276,8 @@ class RecipeRun {
     for (const RecipeCurve& c : out().curves)
       if (!c.modulus && !c.axial.empty())
         head().remarks.push_back(
-            fmt::format("{}: constrained modulus not determined: its axial stress does not go through {:.4g} and "
-                        "{:.4g} Pa ({})",
-                        c.name, from * modulus, to * modulus,
+            fmt::format("{}: constrained modulus not determined: its axial stress does not go through {} and {} ({})",
+                        c.name, pressure_text(from * modulus), pressure_text(to * modulus),
                         staged() ? "modulus_stress of the first stage" : "test.modulus_stress"));
   }
 
@@ -325,98 +335,13 @@ class RecipeRun {
   RecipeSummary summary_;
 };
 
-/// "544 (480 to 610)", times `unit`; measured values behind it.
-std::string value_text(const PredictedValue& v, double unit) {
-  const Estimate& e = v.predicted;
-  std::string text = interval_text(e.value * unit, e.low * unit, e.high * unit);
-  if (v.measured) text += fmt::format(" [all grains {:.4g}]", v.measured->mean * unit);
-  return text;
-}
-
-std::string stages_summary(const RecipeStages& staged) {
-  constexpr double kMega = 1e-6;
-  std::string text;
-  for (const RecipeStageSummary& s : staged.stages) {
-    text += fmt::format("  {} to {:.4g} MPa: K0 {}, void ratio {}\n", s.name, kMega * s.stress_end,
-                        value_text(s.lateral_ratio, 1.0), value_text(s.void_ratio, 1.0));
-    text +=
-        fmt::format("    constrained modulus {} MPa, {} {} from {:.4g} to {:.4g} MPa\n", value_text(s.secant, kMega),
-                    s.index_name(), value_text(s.index, 1.0), kMega * s.stress_from, kMega * s.stress_to);
-    text += fmt::format("    tangent at the first point {} MPa, at the last {} MPa\n",
-                        value_text(s.tangent_begin, kMega), value_text(s.tangent_end, kMega));
-  }
-  return text;
-}
-
-/// Stress of a curve, over E; with stages in MPa.
-std::string stress_text(const RecipeCurve& c, std::size_t k, double modulus, bool staged) {
-  return staged ? fmt::format("{:.4g} MPa", 1e-6 * modulus * c.axial[k]) : fmt::format("{:.3g} E", c.axial[k]);
-}
-
-std::string recipe_text(const RecipeSummary& s) {
-  const RecipeOutcome& r = s.recipe;
-  std::string text;
-  for (const RecipeLevelSummary& level : r.levels) {
-    text +=
-        fmt::format("  level {}: {:.3g} to {:.3g} mm, {:.3g} % of the volume, phi_J alone {:.4f}, with all finer {}",
-                    level.level, 1e3 * level.diameter_low, 1e3 * level.diameter_high, 100.0 * level.share, level.onset,
-                    interval_text(level.with_finer.onset));
-    if (level.filling)
-      text += fmt::format("; finer grains take up {:.2g} times its voids{}", *level.filling,
-                          *level.filling > 1.0 ? ": it floats" : ": it bears");
-    text += "\n";
-  }
-  if (r.check)
-    text += fmt::format(
-        "  check: {} levels with all grains ({}, span {:.3g}): phi_J = {:.4f}, predicted {} (levels {:.4f}, rods "
-        "{:.4f}){}\n",
-        r.check->levels, r.check->grains, r.check->span, r.check->measured.value,
-        interval_text(r.check->predicted.onset), r.check->predicted.levels, r.check->predicted.rods,
-        r.check->outside > 0.0 ? ": OUTSIDE" : "");
-  if (!r.onset) return text;
-  text +=
-      fmt::format("the whole, span {:.3g}: phi_J = {} (levels {:.4f}, rods {:.4f}), solid fraction at the start {}\n",
-                  r.span, interval_text(*r.onset), r.levels.front().with_finer.levels, r.levels.front().with_finer.rods,
-                  interval_text(*r.solid_fraction));
-  if (r.compressible_model)
-    text += "  beside it the compressible packing model (de Larrard 1999), a model of others: " +
-            compressible_model_text(*r.compressible_model) + "\n";
-  const bool staged = r.staged.has_value();
-  const double modulus = s.material.youngs_modulus.value_or(0.0);
-  if (staged) text += stages_summary(*r.staged);
-  for (const RecipeCurve& c : r.curves) {
-    if (c.axial.empty()) continue;
-    const auto k =
-        staged ? static_cast<std::size_t>(std::ranges::max_element(c.axial) - c.axial.begin()) : c.axial.size() - 1;
-    text += fmt::format("  {}: axial stress {}{} at a strain of {:.3g}", c.name, stress_text(c, k, modulus, staged),
-                        c.low.empty() || staged       ? ""
-                        : std::isfinite(c.low.back()) ? fmt::format(" ({:.3g} to {:.3g})", c.low.back(), c.high.back())
-                                                      : " (extrapolated: no interval)",
-                        c.strain[k]);
-    if (c.modulus && !staged)
-      text +=
-          fmt::format("; constrained modulus {} E from {:.3g} to {:.3g} E",
-                      interval_text(c.modulus->value, c.modulus->low, c.modulus->high), c.modulus->from, c.modulus->to);
-    text += "\n";
-  }
-  for (const ShellLevelSummary& level : r.shells)
-    text += fmt::format(
-        "  shell hierarchy, level {}: {:.3g} to {:.3g} mm, one plane {:.3g} E Rs^2 at h/Rs = 0.2, {:.3g} "
-        "grains\n",
-        level.level, 1e3 * level.diameter_low, 1e3 * level.diameter_high, level.force, level.grains);
-  text += fmt::format(
-      "a cubic metre holds {:.2g} grains; a sample with all of them: {:.2g}, about {:.2g} contact evaluations\n",
-      r.grains_per_cubic_metre, r.resolved_grains, r.resolved_evaluations);
-  return text;
-}
-
 RunInputs inputs_of(const RecipeScene& recipe) {
   return {.seed = recipe.material.seed, .text = sizes_text(recipe.material)};
 }
 
 Outcome run_recipe(const RecipeScene& recipe, const Run& run) {
   const RecipeSummary summary = RecipeRun(recipe, run).finish();
-  return {json_of(summary), recipe_text(summary)};
+  return {json_of(summary), console_summary(summary)};
 }
 
 /// As SceneKind::starter.

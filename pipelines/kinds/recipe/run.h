@@ -30,6 +30,9 @@ void check_recipe(const RecipeScene& recipe, Findings& out);
 
 KindResults recipe_results();
 
+/// What a run says in the terminal.
+std::string console_summary(const RecipeSummary& summary);
+
 namespace report {
 std::string recipe_section(const RunData& run);
 }

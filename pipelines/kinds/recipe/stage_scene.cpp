@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "macrosim/test_protocol.h"
+#include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/recipe/stages.h"
 
@@ -15,12 +16,6 @@ namespace {
 constexpr double kHighestStress = 0.01;
 /// Points of the first stage that the equation of state needs.
 constexpr std::int64_t kFirstSteps = 3;
-
-std::string pressure_text(double stress) {
-  if (stress >= 1e9) return fmt::format("{:.4g} GPa", 1e-9 * stress);
-  if (stress >= 1e6) return fmt::format("{:.4g} MPa", 1e-6 * stress);
-  return stress >= 1e3 ? fmt::format("{:.4g} kPa", 1e-3 * stress) : fmt::format("{:.4g} Pa", stress);
-}
 
 /// The table of every stage: "cycles" make two of each cycle.
 std::vector<SceneTable> table_of_each(const std::vector<SceneTable>& tables) {

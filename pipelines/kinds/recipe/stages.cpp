@@ -76,11 +76,11 @@ std::vector<double> mean_over(const std::vector<const MacroCurve*>& curves,
 StatePaths paths_of(const RecipeScene& scene, const std::vector<VariantResult>& results, const StateFit& states) {
   StatePaths out;
   out.form = scene.material.equation.form;
-  const std::size_t chosen = lateral_packing(scene);
+  const std::size_t chosen = lateral_packing(scene, scene.levels.size());
   for (std::size_t v = 0; v < results.size(); ++v) {
     const MaterialVariant& variant = *results[v].variant;
     const StateGroup* group = states.find(variant.name);
-    if (variant.same_packings || group == nullptr) continue;
+    if (variant.same_packings || scene.checked == v || group == nullptr) continue;
     const auto points = static_cast<std::size_t>(recorded_points(variant.setup.spec));
     std::vector<const MacroCurve*> curves;
     for (const MacroCurve& c : results[v].curves)
@@ -274,8 +274,7 @@ std::size_t highest_point(const RecipeStages& stages) {
 ResponseShape shape_of_stages(const RecipeStages& stages) {
   if (stages.points.empty()) return {};
   const RecipePoint& p = stages.points[highest_point(stages)];
-  const double deviation = std::isfinite(p.lateral_ratio.standard_error) ? p.lateral_ratio.standard_error : 0.0;
-  return {{p.strain.value}, {1.0}, {0.0}, {p.lateral_ratio.value}, {deviation}};
+  return {{p.strain.value}, {1.0}, {0.0}, {p.lateral_ratio.value}, {p.lateral_ratio.standard_error}};
 }
 
 RecipeCurve curve_of_stages(const RecipeStages& stages, double modulus) {

@@ -44,7 +44,7 @@ struct StatePaths {
   std::optional<std::size_t> lateral_of;
 };
 
-/// Paths of all packings with samples that came to the end of all stages.
+/// Paths of all packings but the check with samples that came to the end of all stages.
 StatePaths paths_of(const RecipeScene& scene, const std::vector<VariantResult>& results, const StateFit& states);
 
 /// The whole with this onset, if it answered as one packing: phi follows from x, strain from phi, stresses are those of
@@ -57,7 +57,8 @@ MacroCurve carried_over(const StatePaths& paths, const StatePath& packing, doubl
 RecipeStages whole_under_stages(const StatePaths& paths, const Estimate& onset,
                                 const std::vector<MacroCurve>& resolved = {});
 
-/// Lateral over axial stress where the stress is highest, in the form that the card and lateral_ratio() take.
+/// Lateral over axial stress where the stress is highest, in the form that the card and lateral_ratio() take; a
+/// deviation that is not known is infinite.
 ResponseShape shape_of_stages(const RecipeStages& stages);
 
 /// Strain and stresses over E, for the curves that laws of the coarsest level are set beside.

@@ -72,6 +72,8 @@ struct RecipeCheckSummary {
   bool weighs = true;          ///< whether it tells which form does better; else the value is in the middle
   double share_of_rods = 0.5;  ///< share of rods in the value of the whole, see LevelForms::lean
   double outside = 0.0;        ///< how far the measured one lies outside the interval, which intervals are widened by
+  /// K0 as predicted by mixtures of two levels, and of the samples; nothing in results of earlier versions.
+  std::optional<PredictedValue> lateral_ratio;
 };
 
 void fields(auto&& visit, Of<RecipeCheckSummary> auto& s) {
@@ -84,6 +86,7 @@ void fields(auto&& visit, Of<RecipeCheckSummary> auto& s) {
   visit("weighs_forms", s.weighs);
   visit("share_of_rods", s.share_of_rods);
   visit("outside", s.outside);
+  visit("K0", s.lateral_ratio, kLeftOut);
 }
 
 /// Constrained modulus between two axial stresses, over logarithmic strain; all over E. NaN: an end of the band does
@@ -222,7 +225,7 @@ struct RecipeOutcome {
   double rods_deviation = 0.0;  ///< root mean square of the onsets about them
   std::optional<Estimate> onset;
   std::optional<Estimate> solid_fraction;  ///< solid fraction at the start pressure
-  Estimate lateral_ratio;                  ///< K0 at the end of the test
+  Estimate lateral_ratio;                  ///< K0 at the end of the test, predicted: never that of the check
   double grains_per_cubic_metre = 0.0;
   double resolved_grains = 0.0;       ///< grains of a sample with a hundred grains above a third of the largest radius
   double resolved_evaluations = 0.0;  ///< contact evaluations of that sample, from those of preparation and test here
