@@ -104,7 +104,8 @@ LawLibrary library_like(const LawTableEntry& entry);
 std::optional<LibraryMaterial> library_row(const LawLibrary& library, const LawTableEntry& entry,
                                            const std::string& source, std::string& why);
 
-/// Writes and reads a library. Throw InputError with file and line, IoError.
+/// Writes and reads a library. load_library() checks one whose file has no checks, which takes some seconds. Throw
+/// InputError with file and line, IoError.
 std::string library_text(const LawLibrary& library, const Provenance& provenance);
 LawLibrary read_library(const Scene& file);
 LawLibrary load_library(const std::string& path);

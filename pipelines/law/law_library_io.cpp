@@ -193,14 +193,15 @@ LawLibrary read_library(const Scene& file) {
   if (root.has(kChecks)) out.checks = read_checks(root.table(kChecks), out);
   if (root.has(kPressChecks)) out.press_checks = read_checks(root.table(kPressChecks), out);
   root.finish();
-  if (out.checks.empty()) out.checks = check_library(out);
   return out;
 }
 
 LawLibrary load_library(const std::string& path) {
   const Scene file = Scene::load(path);
   if (!is_library(file)) throw InputError(path + ": is no library of law tables (it has no [library])");
-  return read_library(file);
+  LawLibrary out = read_library(file);
+  if (out.checks.empty()) out.checks = check_library(out);
+  return out;
 }
 
 bool is_library(const Scene& file) { return file.root().has("library"); }

@@ -298,7 +298,8 @@ TEST(LawLibrary, SurvivesItsFile) {
   }
 }
 
-TEST(LawLibrary, AFileWithoutItsChecksIsCheckedWhenItIsRead) {
+TEST(LawLibrary, AFileWithoutItsChecksIsCheckedWhenItIsLoaded) {
+  const test::TemporaryDirectory directory;
   LawLibrary small = library();
   small.materials.erase(small.materials.begin(), small.materials.begin() + 20);
   std::string text = library_text(small, build_provenance());
@@ -306,7 +307,9 @@ TEST(LawLibrary, AFileWithoutItsChecksIsCheckedWhenItIsRead) {
             "are not those of [[material]]: without [leave_one_out] it is computed again");
   const std::size_t begin = text.find("[leave_one_out]");
   text.erase(begin, text.find("[[material]]") - begin);
-  const LawLibrary back = read_library(Scene::parse(text, "library.toml"));
+  EXPECT_TRUE(read_library(Scene::parse(text, "library.toml")).checks.empty());
+  write_text_atomic(directory.path() + "/library.toml", text);
+  const LawLibrary back = load_library(directory.path() + "/library.toml");
   ASSERT_EQ(back.checks.size(), back.names().size());
   EXPECT_EQ(back.checks.front().materials, 12U);
   EXPECT_GT(back.checks.front().error, 0.0);
