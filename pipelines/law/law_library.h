@@ -31,11 +31,11 @@ inline constexpr std::array<LibraryVariable, 4> kLibraryVariables{{{"mu", &Libra
                                                                    {"ratio", &LibraryPoint::polydispersity, true},
                                                                    {"solid fraction", &LibraryPoint::solid_fraction}}};
 
-/// What a press on one plane tells, the shell held: the law of pairs, F/(E* Rs^2) = a (D^b - delta^b).
+/// What a press on one plane tells, the shell held: F/(E* Rs^2) with E* = E/(1 - nu^2). Forces, as a, b and delta of a
+/// fitted curve are nearly degenerate.
 struct PressNumbers {
-  double ln_force = 0.0;  ///< ln F/(E* Rs^2) at D = 0.3, with E* = E/(1 - nu^2)
-  double b = 0.0;
-  double delta = 0.0;
+  double ln_deep = 0.0;     ///< ln F/(E* Rs^2) at D = 0.3
+  double ln_shallow = 0.0;  ///< at D = 0.2
 };
 
 /// One measured material. `numbers` as LawLibrary::names says; NaN: not measured.

@@ -22,8 +22,8 @@ namespace {
 constexpr const char* kMeaning =
     "ln force: ln F(1 - nu^2)/(E Rs^2) of one plane at D = 0.35; b, delta: as in law tables; of each kind of neighbour "
     "ln nu at v = 0.02 by size, then m; rolling: over E/(1 - nu^2); correlations: of the numbers of the law, lower "
-    "triangle without the diagonal; press: ln F(1 - nu^2)/(E Rs^2) of one plane at D = 0.3 with the shell held, b and "
-    "delta of that curve; leave_one_out: of every number, see leave_one_out.csv";
+    "triangle without the diagonal; press: ln F(1 - nu^2)/(E Rs^2) of one plane at D = 0.3 and 0.2 with the shell "
+    "held; leave_one_out: of every number, see leave_one_out.csv";
 
 /// Numbers in brackets; those that are not known as 0.
 std::string list_text(const std::vector<double>& numbers) {
@@ -52,7 +52,7 @@ std::string material_text(const LibraryMaterial& m, const std::vector<std::strin
   fmt::format_to(out, "partner_overlap_max = {}\nunknown = {}\nnumbers = {}\nerrors = {}\ncorrelations = {}\n",
                  list_text(m.partner_overlap_max), quoted_list(unknown), list_text(m.numbers), list_text(m.errors),
                  list_text(lower));
-  if (m.press) fmt::format_to(out, "press = {}\n", list_text({m.press->ln_force, m.press->b, m.press->delta}));
+  if (m.press) fmt::format_to(out, "press = {}\n", list_text({m.press->ln_deep, m.press->ln_shallow}));
   return text;
 }
 
@@ -131,8 +131,8 @@ LibraryMaterial read_material_row(const SceneTable& t, const LawLibrary& library
     for (std::size_t b = 0; b < a; ++b) m.correlations[a * n + b] = m.correlations[b * n + a] = *next++;
   }
   if (t.has("press")) {
-    const std::vector<double> press = read_list(t, "press", 3, Range::any());
-    m.press = PressNumbers{press[0], press[1], press[2]};
+    const std::vector<double> press = read_list(t, "press", 2, Range::any());
+    m.press = PressNumbers{press[0], press[1]};
   }
   return m;
 }

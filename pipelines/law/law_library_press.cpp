@@ -17,7 +17,8 @@ namespace softgrain {
 
 namespace {
 
-constexpr double kPressForceAt = 0.3;   ///< D of PressNumbers::ln_force
+constexpr double kDeep = 0.3;  ///< D of PressNumbers
+constexpr double kShallow = 0.2;
 constexpr double kHalfFriction = 0.15;  ///< friction at which half of its effect is reached
 /// How far beyond the convex hull of the materials a press test may lie, over the ranges of its numbers. They are
 /// measured with errors, and leaving one out reaches as far.
@@ -25,7 +26,7 @@ constexpr double kReachOfPressHull = 0.25;
 constexpr int kDraws = 32;
 
 std::vector<double> coordinates(const PressNumbers& n, double friction) {
-  return {n.ln_force, n.b, n.delta, friction / (friction + kHalfFriction)};
+  return {n.ln_deep, n.ln_shallow - n.ln_deep, friction / (friction + kHalfFriction)};
 }
 
 bool has_press_numbers(const LawLibrary& library) {
@@ -39,19 +40,20 @@ UnitBox press_box(const LawLibrary& library) {
 }
 
 std::string press_text(const PressQuestion& q) {
-  return fmt::format("F (1 - nu^2)/(E Rs^2) = {:.3g} at Delta = {}, b = {:.3g}, delta = {:.3g}, mu = {:.3g}",
-                     std::exp(q.numbers.ln_force), kPressForceAt, q.numbers.b, q.numbers.delta, q.friction);
+  return fmt::format("F (1 - nu^2)/(E Rs^2) = {:.3g} at Delta = {} and {:.3g} at {}, mu = {:.3g}",
+                     std::exp(q.numbers.ln_deep), kDeep, std::exp(q.numbers.ln_shallow), kShallow, q.friction);
 }
 
 void require_inside(const UnitBox& box, const std::vector<double>& u, const PressQuestion& q) {
   if (distance_from_hull(box.points(), u) <= kReachOfPressHull) return;
-  throw InputError(fmt::format(
-      "law library: no measured material gave such a press test: {}; measured: force from {:.3g} to {:.3g}, b from "
-      "{:.3g} to {:.3g}, delta from {:.3g} to {:.3g}, and not in every combination",
-      press_text(q), std::exp(box.low(0)), std::exp(box.high(0)), box.low(1), box.high(1), box.low(2), box.high(2)));
+  throw InputError(
+      fmt::format("law library: no measured material gave such a press test: {}; measured: {:.3g} to {:.3g} at Delta = "
+                  "{}, {:.2g} to {:.2g} of that at {}, and not in every combination with mu",
+                  press_text(q), std::exp(box.low(0)), std::exp(box.high(0)), kDeep, std::exp(box.low(1)),
+                  std::exp(box.high(1)), kShallow));
 }
 
-/// Draws of a, b and delta; those that have no force at kPressForceAt are no curve of a soft particle.
+/// Draws of a, b and delta; those that have no force at D = 0.2 are no curve of a soft particle.
 std::vector<PressNumbers> drawn_numbers(const PairLaw& law, double poisson_ratio) {
   constexpr std::size_t kAll = kLawParameterNames.size();
   if (law.covariance.size() != kAll * kAll) return {};
@@ -69,9 +71,11 @@ std::vector<PressNumbers> drawn_numbers(const PairLaw& law, double poisson_ratio
 }  // namespace
 
 std::optional<PressNumbers> press_numbers(double a, double b, double delta, double poisson_ratio) {
-  const double force = a * (std::pow(kPressForceAt, b) - std::pow(delta, b)) * (1.0 - poisson_ratio * poisson_ratio);
-  if (!(force > 0.0)) return std::nullopt;
-  return PressNumbers{std::log(force), b, delta};
+  const auto force = [&](double at) {
+    return a * (std::pow(at, b) - std::pow(delta, b)) * (1.0 - poisson_ratio * poisson_ratio);
+  };
+  if (!(delta < kShallow && force(kShallow) > 0.0 && force(kDeep) > 0.0)) return std::nullopt;
+  return PressNumbers{std::log(force(kDeep)), std::log(force(kShallow))};
 }
 
 PressQuestion press_question(const LawCard& card, double friction, const std::string& source) {
@@ -84,7 +88,7 @@ PressQuestion press_question(const LawCard& card, double friction, const std::st
   const std::optional<PressNumbers> numbers = press_numbers(n.a.value, n.b.value, n.delta.value, nu);
   if (!numbers)
     throw InputError(fmt::format("{}: the library compares forces at Delta = {}, and this law begins at {:.3g}", source,
-                                 kPressForceAt, n.delta.value));
+                                 D = 0.2, n.delta.value));
   return {*numbers, drawn_numbers(*law, nu), friction};
 }
 

@@ -19,17 +19,17 @@ struct PressQuestion {
 };
 
 /// The law of one plane with these a, b and delta, F/(E Rs^2) = a (D^b - delta^b), as a press test counts it; empty
-/// where it has no force at D = 0.3.
+/// where it has no force at D = 0.2.
 std::optional<PressNumbers> press_numbers(double a, double b, double delta, double poisson_ratio);
 
 /// Of the law of a soft particle against a plane in a card; nu is 0.3 where the card does not say it. Throws InputError
 /// where the card has no such law that was fitted; `source` names the file.
 PressQuestion press_question(const LawCard& card, double friction, const std::string& source);
 
-/// Gaussian processes, one for each number, over ln F at D = 0.3, b, delta and mu/(mu + 0.15) of the measured
-/// materials, or mean and scatter, as LawLibrary::press_checks decide. Friction matters most where there is little of
-/// it, hence the last one. Throws InputError for a library without press numbers, and for a test beyond what its
-/// materials gave.
+/// Gaussian processes, one for each number, over ln F at D = 0.3, its difference from that at 0.2, and mu/(mu + 0.15)
+/// of the measured materials, or mean and scatter, as LawLibrary::press_checks decide. Friction matters most where
+/// there is little of it, hence the last one. Throws InputError for a library without press numbers, and for a test
+/// beyond what its materials gave.
 LibraryAnswer ask_by_press_test(const LawLibrary& library, const PressQuestion& question);
 
 /// Every material left out in turn, and predicted by its own press numbers; empty when a material has none.
