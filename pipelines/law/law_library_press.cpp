@@ -88,7 +88,7 @@ PressQuestion press_question(const LawCard& card, double friction, const std::st
   const std::optional<PressNumbers> numbers = press_numbers(n.a.value, n.b.value, n.delta.value, nu);
   if (!numbers)
     throw InputError(fmt::format("{}: the library compares forces at Delta = {}, and this law begins at {:.3g}", source,
-                                 D = 0.2, n.delta.value));
+                                 kShallow, n.delta.value));
   return {*numbers, drawn_numbers(*law, nu), friction};
 }
 
