@@ -14,6 +14,7 @@
 #include "pipelines/law/law_library.h"
 #include "pipelines/law/law_library_numbers.h"
 #include "pipelines/law/law_library_predict.h"
+#include "pipelines/law/law_library_press.h"
 
 namespace softgrain {
 
@@ -201,6 +202,7 @@ LawLibrary load_library(const std::string& path) {
   if (!is_library(file)) throw InputError(path + ": is no library of law tables (it has no [library])");
   LawLibrary out = read_library(file);
   if (out.checks.empty()) out.checks = check_library(out);
+  if (out.press_checks.empty()) out.press_checks = check_press_tests(out);
   return out;
 }
 
