@@ -67,7 +67,9 @@ ResponseSurface surface_of(const std::vector<BoxPoint>& points, const std::vecto
     at.push_back(points[p]);
     z.push_back({values[p]});
   }
-  return {at, z, std::vector<double>(some.size(), 1.0)};
+  // Rounds come as near to each other as 1e-3 of the range: the ridge of surfaces over the box would flatten that.
+  constexpr double kRidge = 1e-11;
+  return {at, z, std::vector<double>(some.size(), 1.0), kRidge};
 }
 
 std::vector<std::size_t> nearest_points(const std::vector<BoxPoint>& points, const BoxPoint& to, std::size_t count) {

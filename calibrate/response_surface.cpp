@@ -12,9 +12,6 @@ namespace softgrain {
 
 namespace {
 
-/// Share of the weight of all points that keeps the normal equations solvable.
-constexpr double kRidge = 1e-6;
-
 /// 1, u_a, u_a u_b (a <= b); centred, so that the ridge pulls towards flat about the middle of the box.
 std::vector<double> basis(const std::vector<double>& u) {
   std::vector<double> out{1.0};
@@ -37,7 +34,8 @@ void solve(std::vector<double>& matrix, std::vector<double>& right, std::size_t 
 }  // namespace
 
 ResponseSurface::ResponseSurface(const std::vector<std::vector<double>>& points,
-                                 const std::vector<std::vector<double>>& values, const std::vector<double>& weights)
+                                 const std::vector<std::vector<double>>& values, const std::vector<double>& weights,
+                                 double ridge)
     : dimensions_(points.empty() ? 0 : points.front().size()), quantities_(values.empty() ? 0 : values.front().size()) {
   if (points.size() != values.size() || points.size() != weights.size() || dimensions_ == 0)
     throw InputError("response surface: points, values and weights do not go together");
@@ -54,7 +52,7 @@ ResponseSurface::ResponseSurface(const std::vector<std::vector<double>>& points,
     }
   }
   if (!(normal[0] > 0.0)) throw InputError("response surface: no point to fit it to");
-  for (std::size_t a = 1; a < n; ++a) normal[a * n + a] += kRidge * normal[0];
+  for (std::size_t a = 1; a < n; ++a) normal[a * n + a] += ridge * normal[0];
   solve(normal, coefficient_, n, quantities_);
 }
 

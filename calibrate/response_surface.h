@@ -10,11 +10,15 @@ namespace softgrain {
 /// z_j(u) = c_j0 + sum_a c_ja u_a + sum_{a<=b} c_jab u_a u_b, by weighted least squares.
 class ResponseSurface {
  public:
+  /// Share of the weight of all points that keeps the normal equations solvable, of points all over the box.
+  static constexpr double kRidge = 1e-6;
+
   /// `points` in [0, 1]^d, `values` one row of quantities per point, `weights` one per point (0: left out). With fewer
   /// points of weight than coefficients, or points that lie badly, a small ridge keeps the surface flat where nothing
-  /// is known. Throws InputError when sizes do not agree or no point has weight.
+  /// is known. Points within a distance w of each other tell of curvature by w^4: `ridge` must be small beside that.
+  /// Throws InputError when sizes do not agree or no point has weight.
   ResponseSurface(const std::vector<std::vector<double>>& points, const std::vector<std::vector<double>>& values,
-                  const std::vector<double>& weights);
+                  const std::vector<double>& weights, double ridge = kRidge);
 
   [[nodiscard]] std::size_t dimensions() const { return dimensions_; }
   [[nodiscard]] std::size_t quantities() const { return quantities_; }

@@ -79,7 +79,7 @@ UnloadingLaw read_unloading(const SceneTable& table, const ThresholdPowerLaw& lo
   u.residual = read_estimate(table.table("residual"), Range::closed(0.0, kLargestResidual), true);
   u.exponent = read_estimate(table.table("exponent"), Range{1.0, kLargestExponent, false, false}, true);
   if (table.has("deepest"))
-    u.deepest = table.number("deepest", Unit::none, Range{loading.delta.value, kLargestDelta, true, false});
+    u.deepest = table.number("deepest", Unit::none, Range::above(loading.delta.value));
   const double least = least_unloading_exponent(u.residual.value, loading.b.value);
   if (u.exponent.value < least * (1.0 - kRounding))
     table.table("exponent")

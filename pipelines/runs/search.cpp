@@ -37,7 +37,10 @@ double position(const SweptRange& range, double value) {
                            : (value - range.low) / (range.high - range.low);
 }
 
+/// Exact at both ends, which is_at_end() tells by.
 double value_of(const SweptRange& range, double u) {
+  if (u <= 0.0) return range.low;
+  if (u >= 1.0) return range.high;
   return range.logarithmic ? range.low * std::pow(range.high / range.low, u) : range.low + u * (range.high - range.low);
 }
 

@@ -179,6 +179,7 @@ TEST_F(CellsMacro, RefuseAStressWhereNobodySaysTheModulus) {
   expect(run("strain"), 0, {});
   const nlohmann::json summary = nlohmann::json::parse(read_text(file("strain") + "/summary.json"));
   EXPECT_NE(summary["remarks"].dump().find("E = 500000 Pa"), std::string::npos) << summary["remarks"];
+  expect(run("start", "--set macro.start_pressure='50 Pa'"), 2, {"start_pressure", "needs E of the grains"});
   write_text_atomic(file("scene.toml"), text +
                                             "[[stage]]\nkind = \"triaxial\"\nstrain = 0.02\nsteps = 2\n"
                                             "lateral_stress = \"50 Pa\"\n");

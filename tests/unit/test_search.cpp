@@ -73,6 +73,18 @@ TEST(Search, FindsTheTopOfOneKeyBetweenItsPoints) {
   EXPECT_NE(search_text(set).find("largest density at the start at constituent.1.mass = 1"), std::string::npos);
 }
 
+/// More points come closer together, where a ridge that suits the whole range would flatten the top.
+TEST(Search, MorePointsComeNearerToASmoothTop) {
+  CommonOptions options = search_options({"a=0..1"});
+  const auto top = [](double a, double) { return std::exp(-std::pow((a - 0.3) / 0.2, 2)); };
+  for (const std::int64_t points : {12, 20, 30}) {
+    options.points = points;
+    const SetSummary set = searched(options, false, top);
+    ASSERT_TRUE(set.search && set.search->usable);
+    EXPECT_NEAR(set.search->keys[0].value, 0.3, 1e-3) << points;
+  }
+}
+
 TEST(Search, OfTwoKeysIsExactForAQuadraticResult) {
   CommonOptions options = search_options({"a=0..2", "b=1e-3..10:log"}, "");
   options.minimise = "density";
@@ -95,10 +107,13 @@ TEST(Search, OfWholeNumbersRunsNoneTwice) {
 }
 
 TEST(Search, AnOptimumAtAnEndIsSaid) {
-  const SetSummary set = searched(search_options({"a=0..2"}), false, [](double a, double) { return a; });
-  EXPECT_DOUBLE_EQ(set.search->keys[0].value, 2.0);
-  ASSERT_FALSE(set.head.warnings.empty());
-  EXPECT_NE(set.head.warnings.front().find("widen the range"), std::string::npos);
+  for (const auto& [range, end] :
+       {std::pair{"a=0..2", 2.0}, std::pair{"a=0.2..0.9", 0.9}}) {  // 0.2 + (0.9 - 0.2) < 0.9
+    const SetSummary set = searched(search_options({range}), false, [](double a, double) { return a; });
+    EXPECT_EQ(set.search->keys[0].value, end);
+    ASSERT_FALSE(set.head.warnings.empty());
+    EXPECT_NE(set.head.warnings.front().find("widen the range"), std::string::npos) << range;
+  }
 }
 
 TEST(Search, RefusesWhatDoesNotGoTogether) {

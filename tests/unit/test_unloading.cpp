@@ -160,6 +160,17 @@ TEST(UnloadingCard, IsReadBackAndUsed) {
   EXPECT_THROW((void)law::card_values(again, PairKind::soft_soft, {0.2}, std::nullopt, 0.3), InputError);
 }
 
+/// Unloadings may begin beyond the range of the law, which `delta_high` cuts off, and by symmetry at twice that.
+TEST(UnloadingCard, TheDeepestOverlapMayLieBeyondTheRangeOfTheLaw) {
+  const TemporaryDirectory directory;
+  LawCard card = card_with_branch();
+  for (const double deepest : {0.0, 2.2}) {  // 0: not said, as in cards of earlier versions
+    card.pairs[0].unloading->deepest = deepest;
+    save_card(card, directory.file("law.toml"));
+    EXPECT_EQ(load_card(directory.file("law.toml")).pairs.at(0).unloading->deepest, deepest);
+  }
+}
+
 /// One limit for what is fitted, read and drawn.
 TEST(UnloadingCard, TheResidualHasOneLimit) {
   const TemporaryDirectory directory;

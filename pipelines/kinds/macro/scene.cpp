@@ -48,13 +48,17 @@ void read_cell_material(const SceneTable& root, SoftParticleSpec& spec) {
 
 /// A stress in Pa says nothing where nobody says the E that stresses of the law are over.
 void require_known_modulus(const SceneTable& root, const std::string& law_file) {
+  const auto refuse = [&](const SceneTable& table, const char* key) {
+    table.add_error(key, "a stress in Pa needs E of the grains, which " + law_file +
+                             " does not say (its pressures are over E): give it, [material] E = \"50 GPa\" say");
+  };
+  const SceneTable macro = root.table("macro");
+  if (macro.is_text("start_pressure")) refuse(macro, "start_pressure");  // a number is over E
   std::vector<SceneTable> tables = root.tables("stage");
-  tables.push_back(root.table("macro"));
+  tables.push_back(macro);
   for (const SceneTable& table : tables)
     for (const char* key : {"stress", "lateral_stress", "stress_x", "stress_y", "stress_z", "modulus_stress"})
-      if (table.has(key))
-        table.add_error(key, "a stress in Pa needs E of the grains, which " + law_file +
-                                 " does not say (its pressures are over E): give it, [material] E = \"50 GPa\" say");
+      if (table.has(key)) refuse(table, key);
 }
 
 /// What a scene says of fines; the card of their law is not read here.

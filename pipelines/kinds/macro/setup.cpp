@@ -23,7 +23,6 @@ void refuse_protocol_keys(const SceneTable& t) {
            "LAMMPS has a protocol of its own: goes without preparation = \"lammps\"");
 }
 
-/// A name stands for all that defines a preparation; keys beside it replace single parts, whichever table gave them.
 namespace {
 
 /// Over E as a number, as a pressure with its unit: that stays what it is where a later table changes E.
@@ -49,6 +48,7 @@ void read_start_pressure(const SceneTable& t, MacroSetup& setup) {
 
 }  // namespace
 
+/// A name stands for all that defines a preparation; keys beside it replace single parts, whichever table gave them.
 void read_preparation(const SceneTable& t, MacroSetup& setup) {
   MacroSpec& spec = setup.spec;
   spec.preparation = t.choice<Preparation>(
