@@ -1,6 +1,7 @@
 #include "calibrate/optimum_search.h"
 
 #include <fmt/format.h>
+#include <gsl/gsl_cdf.h>
 
 #include <algorithm>
 #include <cmath>
@@ -106,15 +107,43 @@ std::vector<double> drawn_values(const SearchedPoints& data, const OptimumEstima
   return out;
 }
 
+double squared_residuals(const ResponseSurface& surface, const std::vector<BoxPoint>& points,
+                         const std::vector<double>& means, const std::vector<std::size_t>& some) {
+  double sum = 0.0;
+  for (const std::size_t p : some) sum += std::pow(means[p] - surface.value(points[p])[0], 2);
+  return sum;
+}
+
+/// The most of the points nearest to a place, `least` or more, whose surface is that of the nearest `least` as far as
+/// their scatter tells (predictive test of Chow 1960, doi:10.2307/1910133, at 5 %): a surface of few points close to
+/// each other says less about the place of a flat top than one of many.
+std::vector<std::size_t> widest_window(const std::vector<BoxPoint>& points, const std::vector<double>& means,
+                                       const BoxPoint& place, std::size_t least, std::size_t coefficients) {
+  constexpr double kLevel = 0.05;
+  const auto residuals = [&](const std::vector<std::size_t>& some) {
+    return squared_residuals(surface_of(points, means, some), points, means, some);
+  };
+  const std::vector<std::size_t> narrow = nearest_points(points, place, least);
+  const double near = residuals(narrow);
+  const auto free = static_cast<double>(least - coefficients);
+  for (std::size_t count = points.size(); count > least; --count) {
+    const std::vector<std::size_t> wide = nearest_points(points, place, count);
+    const auto more = static_cast<double>(count - least);
+    const double ratio = (residuals(wide) - near) / more / (near / free);
+    if (near > 0.0 && gsl_cdf_fdist_Q(std::max(ratio, 0.0), more, free) > kLevel) return wide;
+  }
+  return narrow;
+}
+
 /// Fits `out` to the points near the optimum, which the window follows.
 SurfaceOptimum fit_window(const std::vector<BoxPoint>& points, const std::vector<double>& means,
                           std::size_t coefficients, bool maximise, OptimumEstimate& out) {
-  const std::size_t count = std::max(coefficients + 2, (points.size() + 1) / 2);
+  const std::size_t least = std::max(coefficients + 2, (points.size() + 1) / 2);
   out.fitted = nearest_points(points, points.front(), points.size());
   SurfaceOptimum best = optimum_of(surface_of(points, means, out.fitted), maximise);
   constexpr int kTurns = 3;
-  for (int turn = 0; turn < kTurns && count < points.size(); ++turn) {
-    out.fitted = nearest_points(points, best.u, count);
+  for (int turn = 0; turn < kTurns && least < points.size(); ++turn) {
+    out.fitted = widest_window(points, means, best.u, least, coefficients);
     best = optimum_of(surface_of(points, means, out.fitted), maximise);
   }
   out.surfaces.push_back(surface_of(points, means, out.fitted));

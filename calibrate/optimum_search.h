@@ -45,7 +45,8 @@ struct OptimumEstimate {
 inline constexpr std::size_t kLeastSearchSeeds = 3;
 
 /// Fits the surface to the half of the points that are nearest to its optimum, but to two more than it has coefficients
-/// at least (of fewer points to all). The interval is that of 400 bootstrap replicates: with kLeastSearchSeeds or more
+/// at least (of fewer points to all), and to as many more as lie on the same surface by their scatter (predictive test
+/// of Chow 1960, doi:10.2307/1910133). The interval is that of 400 bootstrap replicates: with kLeastSearchSeeds or more
 /// seeds these are drawn with replacement, the same at all points, so that what packings of one seed have in common
 /// cancels; with fewer, residuals about the surface are drawn, scaled by sqrt(n/(n - coefficients)). Both are widened
 /// by Student's t. Not usable, with the reason: fewer points than coefficients. Deterministic in `seed`.

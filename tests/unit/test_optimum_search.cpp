@@ -86,6 +86,35 @@ TEST(FindOptimum, IntervalsOfScatterHoldTheTruth) {
   EXPECT_GE(held, kTrials * 85 / 100);
 }
 
+/// Root mean square error of the place of the top of a noisy parabola after a search of so many points.
+double error_of_search(std::size_t points, double noise) {
+  constexpr int kTrials = 40;
+  double sum = 0.0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    RandomStream random(11, RandomPurpose::test, static_cast<std::uint64_t>(trial));
+    SearchedPoints data;
+    const auto add = [&](const Points& more) {
+      for (const auto& u : more) {
+        if (data.points.size() >= points) return;
+        data.points.push_back(u);
+        data.values.push_back({-std::pow(u[0] - 0.63, 2) + noise * random.normal()});
+      }
+    };
+    add(first_search_points(1));
+    for (int round = 1; round <= 8 && data.points.size() < points; ++round)
+      add(next_search_points({find_optimum(data, true, 1).u[0].value}, data.points, round));
+    sum += std::pow(find_optimum(data, true, 1).u[0].value - 0.63, 2) / kTrials;
+  }
+  return std::sqrt(sum);
+}
+
+/// Later rounds lie close together, where noise hides the top: they must not outweigh the first ones.
+TEST(FindOptimum, MorePointsDoNotMislead) {
+  EXPECT_LT(error_of_search(9, 0.004), 0.05);
+  EXPECT_LT(error_of_search(20, 0.004), 0.12);
+  EXPECT_LT(error_of_search(20, 0.012), 0.2);
+}
+
 TEST(FindOptimum, SaysWhatItCannotTell) {
   SearchedPoints few{{{0.0}, {1.0}}, {{1.0}, {2.0}}};
   EXPECT_FALSE(find_optimum(few, true, 1).usable);
