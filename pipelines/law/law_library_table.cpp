@@ -306,10 +306,9 @@ LibraryAnswer corrected(const LawLibrary& library, const LibraryAnswer& prior, c
     out.numbers[k].deviation = std::sqrt(std::max(after.covariance[k * count + k], 0.0));
   }
   out.correlations = correlations_of(after.covariance, count);
-  for (const std::size_t k : of_sides) {
-    correct_side(out.numbers[k], numbers.values[k], numbers.errors[k]);
-    std::erase(out.by_mean, out.numbers[k].name);
-  }
+  for (const std::size_t k : of_sides) correct_side(out.numbers[k], numbers.values[k], numbers.errors[k]);
+  for (const auto& told : {of_law, of_sides})
+    for (const std::size_t k : told) std::erase(out.by_mean, out.numbers[k].name);
   return out;
 }
 

@@ -352,7 +352,8 @@ TEST(LawLibrary, TheTableIsReadAndDrawn) {
 }
 
 TEST(LawLibrary, OwnPackingsCorrectAndContradict) {
-  const LibraryAnswer prior = ask_library(library(), kBetween);
+  LibraryAnswer prior = ask_library(library(), kBetween);
+  prior.by_mean = {"b", "ln trials"};
   std::vector<std::string> remarks;
   LibraryPoint other = kBetween;
   other.solid_fraction += 0.002;
@@ -361,6 +362,7 @@ TEST(LawLibrary, OwnPackingsCorrectAndContradict) {
   expect_in(remarks.front(), "corrected by 24 own packings of solid fraction 0.6620");
   remarks.clear();
   EXPECT_LT(near.numbers[0].deviation, prior.numbers[0].deviation);
+  EXPECT_TRUE(near.by_mean.empty()) << "what was measured is no mean of others";
   other.solid_fraction = 0.75;
   const LawTableEntry own = synthetic::library_entry(other, 0.005, 78);
   const LibraryAnswer far = corrected(library(), prior, own, remarks);
