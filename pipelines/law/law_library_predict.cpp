@@ -14,6 +14,8 @@ namespace softgrain {
 
 namespace {
 
+constexpr double kReachOfRange = 0.02;  ///< how far beyond the range of a variable a library serves, over it
+
 ProcessValue mean_and_scatter(const std::vector<double>& values, const std::vector<double>& errors) {
   const MeanError all = mean_error(values);
   const auto n = static_cast<double>(values.size());
@@ -141,6 +143,15 @@ std::vector<double> UnitBox::operator()(const std::vector<double>& row) const {
   for (std::size_t a = 0; a < low_.size(); ++a)
     out.push_back(high_[a] > low_[a] ? (row[a] - low_[a]) / (high_[a] - low_[a]) : 0.5);
   return out;
+}
+
+std::string outside_text(const LibraryVariable& v, double low, double high, double value, double u) {
+  if (high > low) {
+    if (u >= -kReachOfRange && u <= 1.0 + kReachOfRange) return "";
+    return fmt::format("{} = {:g}: measured from {:.3g} to {:.3g}", v.name, value, low, high);
+  }
+  if (std::abs(value - low) <= kReachOfNumbers * std::max(1.0, std::abs(low))) return "";
+  return fmt::format("{} = {:g}: all materials of this library have {:.4g}", v.name, value, low);
 }
 
 std::size_t least_materials() { return GaussianProcess::least_values(kLibraryVariables.size()) + 1; }

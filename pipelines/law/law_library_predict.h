@@ -31,6 +31,10 @@ class UnitBox {
   std::vector<std::vector<double>> points_;
 };
 
+/// What is wrong with the value of a variable, at u of its measured range; empty: nothing. One that never varied serves
+/// its own value, but for rounding.
+std::string outside_text(const LibraryVariable& v, double low, double high, double value, double u);
+
 /// Materials that a number must have: one more than its process needs, so that each can be left out.
 std::size_t least_materials();
 

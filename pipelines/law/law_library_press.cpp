@@ -44,7 +44,19 @@ std::string press_text(const PressQuestion& q) {
                      std::exp(q.numbers.ln_deep), kDeep, std::exp(q.numbers.ln_shallow), kShallow, q.friction);
 }
 
-void require_inside(const UnitBox& box, const std::vector<double>& u, const PressQuestion& q) {
+std::vector<double> of_materials(const LawLibrary& library, double LibraryPoint::*value) {
+  std::vector<double> out;
+  for (const LibraryMaterial& m : library.materials) out.push_back(m.at.*value);
+  return out;
+}
+
+/// The friction is given and has no error, so it must lie in its range as that of a material; forces are measured.
+void require_inside(const LawLibrary& library, const UnitBox& box, const std::vector<double>& u,
+                    const PressQuestion& q) {
+  const auto [low, high] = std::ranges::minmax(of_materials(library, &LibraryPoint::friction));
+  const std::string wrong =
+      outside_text(kLibraryVariables.front(), low, high, q.friction, (q.friction - low) / (high - low));
+  if (!wrong.empty()) throw InputError("law library: " + wrong);
   if (distance_from_hull(box.points(), u) <= kReachOfPressHull) return;
   throw InputError(
       fmt::format("law library: no measured material gave such a press test: {}; measured: {:.3g} to {:.3g} at Delta = "
@@ -98,7 +110,7 @@ LibraryAnswer ask_by_press_test(const LawLibrary& library, const PressQuestion& 
                      ": has no press tests of its materials: collect it again (softgrain law library)");
   const UnitBox box = press_box(library);
   const std::vector<double> u = box(coordinates(q.numbers, q.friction));
-  require_inside(box, u, q);
+  require_inside(library, box, u, q);
   std::vector<std::vector<double>> scatter;
   for (const PressNumbers& draw : q.draws) scatter.push_back(box(coordinates(draw, q.friction)));
   LibraryAnswer out = answer_at(library, library.press_checks, box, u, scatter);

@@ -81,6 +81,17 @@ TEST(PressLibrary, RefusesWhatNoMaterialGave) {
                 (void)ask_by_press_test(pressed_library(), {hard, {}, 0.35});
               }),
               "no measured material gave such a press test");
+  expect_says(complaint([&] {
+                (void)ask_by_press_test(pressed_library(), {press_of(kInside), {}, 5.0});
+              }),
+              "mu = 5: measured from 0 to 0.8");
+  LawLibrary alike = pressed_library();
+  for (LibraryMaterial& m : alike.materials) m.at.friction = 0.35;
+  EXPECT_NO_THROW((void)ask_by_press_test(alike, {press_of(kInside), {}, 0.35}));
+  expect_says(complaint([&] {
+                (void)ask_by_press_test(alike, {press_of(kInside), {}, 0.6});
+              }),
+              "mu = 0.6: all materials of this library have 0.35");
   LawLibrary old = pressed_library();
   old.materials[3].press.reset();
   expect_says(complaint([&] { (void)ask_by_press_test(old, {press_of(kInside), {}, 0.35}); }), "collect it again");
