@@ -183,6 +183,12 @@ std::vector<ProcessValue> predicted_number(const LibraryCheck& check, const Know
   return out;
 }
 
+ProcessValue predicted_value(const LibraryCheck& check, const KnownNumber& known,
+                             const std::vector<std::vector<double>>& points) {
+  const std::vector<ProcessValue> z = predicted_number(check, known, points);
+  return {z.front().mean, std::hypot(z.front().deviation, off_the_first(z))};
+}
+
 std::vector<LibraryCheck> check_numbers(const LawLibrary& library, const UnitBox& box) {
   require_materials(library);
   const std::vector<std::string> names = library.names();
@@ -202,9 +208,9 @@ LibraryAnswer answer_at(const LawLibrary& library, const std::vector<LibraryChec
     const KnownNumber known = known_number(library, box, k);
     LibraryNumber number{names[k], std::nan(""), std::nan("")};
     if (known.values.size() >= least_materials()) {
-      const std::vector<ProcessValue> z = predicted_number(checks[k], known, points);
-      number.value = z.front().mean;
-      number.deviation = std::hypot(z.front().deviation, off_the_first(z));
+      const ProcessValue z = predicted_value(checks[k], known, points);
+      number.value = z.mean;
+      number.deviation = z.deviation;
       if (checks[k].by_mean()) out.by_mean.push_back(names[k]);
     } else if (k < library.law_numbers()) {
       throw InputError(fmt::format("law library: too few materials have the number \"{}\"", names[k]));

@@ -47,6 +47,10 @@ LibraryCheck checked_number(const std::string& name, const KnownNumber& known);
 std::vector<ProcessValue> predicted_number(const LibraryCheck& check, const KnownNumber& known,
                                            const std::vector<std::vector<double>>& points);
 
+/// The same at the first point; the others are draws of it, and what they change is part of the deviation.
+ProcessValue predicted_value(const LibraryCheck& check, const KnownNumber& known,
+                             const std::vector<std::vector<double>>& points);
+
 /// The check of every number of a library over the points of its materials. Throws InputError for too few materials.
 std::vector<LibraryCheck> check_numbers(const LawLibrary& library, const UnitBox& box);
 

@@ -256,6 +256,7 @@ LawTable table_of(const LawLibrary& library, const LibraryAnswer& answer, const 
   e.spec = spec_of_answer(library, answer, matter);
   e.from_press_test = of_press_test(answer);
   e.solid_fraction = answer.at.solid_fraction;
+  e.solid_fraction_error = answer.solid_fraction_error;
   e.main = true;
   e.packings = nearest.packings;
   e.relaxation =
