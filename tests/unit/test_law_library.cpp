@@ -329,10 +329,12 @@ TEST(LawLibrary, TheShippedLibraryHoldsTheChecksOfItsMaterials) {
 
 TEST(LawLibrary, TheTableIsReadAndDrawn) {
   const test::TemporaryDirectory directory;
-  const LibraryAnswer a = ask_library(library(), kBetween);
+  LawLibrary of_few = library();
+  for (LibraryMaterial& m : of_few.materials) m.packings = 3;  // draws of such refits are widened by 2.7
+  const LibraryAnswer a = ask_library(of_few, kBetween);
   LibraryMatter matter;
   matter.poisson_ratio = 0.2;
-  save_law_table(table_of(library(), a, matter), directory.path() + "/my.toml");
+  save_law_table(table_of(of_few, a, matter), directory.path() + "/my.toml");
   LawSources sources;
   sources.laws = {load_law(directory.path() + "/my.toml")};
   sources.forms = {WantedForm{}};
