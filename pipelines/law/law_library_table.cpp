@@ -65,6 +65,7 @@ std::vector<LibraryPartner> partners_of(const MultiContactLaw& law) {
 
 /// Why a law is no row; empty: it is one.
 std::string unfit(const LawTableEntry& entry, const MultiContactLaw* law) {
+  if (entry.from_press_test) return "concluded from a press test, not measured";
   if (law == nullptr) return "no isotropic law";
   if (law->status != LawStatus::good && law->status != LawStatus::inaccurate) return to_string(law->status);
   if (law->error_held_out > kWorstUnseen)

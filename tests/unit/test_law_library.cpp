@@ -203,6 +203,10 @@ TEST(LawLibrary, RowsThatDoNotServeAreLeftOut) {
   EXPECT_FALSE(library_row(made, e, "x", why));
   expect_in(why, "3 refits");
   e = synthetic::library_entry(kBetween, 0.02, 1);
+  e.from_press_test = true;
+  EXPECT_FALSE(library_row(made, e, "x", why));
+  expect_in(why, "concluded from a press test");
+  e = synthetic::library_entry(kBetween, 0.02, 1);
   EXPECT_TRUE(library_row(made, e, "x", why)) << why;
   e.laws.front().partners.pop_back();
   for (auto& r : e.laws.front().replicates) r.resize(r.size() - 2);
