@@ -441,7 +441,10 @@ TEST(LawLibrary, ScenesNameTheMaterial) {
   ASSERT_NE(got.table(), nullptr);
   EXPECT_EQ(got.table()->entries.front().spec.friction, 0.45);
   EXPECT_EQ(got.table()->entries.front().spec.poisson_ratio, 0.2);
-  expect_in(got.remark, "nearest measured material: mu = ");
+  LawSources sources;
+  sources.laws = {got};
+  ASSERT_EQ(sources.remarks().size(), 1U) << "runs say it";
+  expect_in(sources.remarks().front(), "law library: nearest measured material: mu = ");
   expect_in(
       message_of([&] { (void)law("[library]\nmu = 0.45\nexponent = 3.2\nratio = 70.0\nsolid_fraction = 0.66\n"); }),
       "ratio = 70: measured from 4 to 14");
