@@ -237,29 +237,6 @@ std::vector<std::vector<double>> branch_draws(const PairLaw& p, const std::vecto
   return out;
 }
 
-/// Normal in the logarithm of what is positive: its variance there is that of the number over its square.
-std::vector<std::vector<double>> pair_draws(const PairLaw& p, std::int64_t count, std::uint64_t stream) {
-  std::vector<double> mean = pair_numbers(p);
-  std::vector<double> covariance = p.covariance;
-  if (covariance.size() != kPairNumbers * kPairNumbers ||
-      std::ranges::all_of(covariance, [](double c) { return c == 0.0; }))
-    throw InputError("bands: the law card has no covariance of its " + to_string(p.kind) +
-                     " law: calibrate it from measurements of several packings (\"softgrain calibrate\")");
-  if (p.band_origin != kFromResiduals && p.packings > 1) {
-    const double students = student_over_normal(p.packings - 1);  // of few packings, as in intervals
-    for (double& c : covariance) c *= students * students;
-  }
-  for (std::size_t j = 0; j < kPairNumbers; ++j) {
-    if (!kPairLogarithm[j] || !(mean[j] > 0.0)) continue;
-    for (std::size_t i = 0; i < kPairNumbers; ++i) {
-      covariance[i * kPairNumbers + j] /= mean[j];
-      covariance[j * kPairNumbers + i] /= mean[j];
-    }
-    mean[j] = std::log(mean[j]);
-  }
-  return normal_draws(mean, covariance, count, stream);
-}
-
 std::vector<double> with_pair_logarithms(std::vector<double> numbers) {
   for (std::size_t j = 0; j < kPairNumbers; ++j)
     if (kPairLogarithm[j] && numbers[j] > 0.0) numbers[j] = std::log(numbers[j]);
@@ -369,6 +346,34 @@ LawDraws card_draws(const LawCard& of, const LawSources& sources, const NamedLaw
 }
 
 }  // namespace
+
+bool has_draws(const PairLaw& law) {
+  return law.covariance.size() == kPairNumbers * kPairNumbers &&
+         std::ranges::all_of(law.covariance, [](double c) { return std::isfinite(c); }) &&
+         std::ranges::any_of(law.covariance, [](double c) { return c != 0.0; });
+}
+
+// The variance of a logarithm is that of the number over its square.
+std::vector<std::vector<double>> pair_draws(const PairLaw& p, std::int64_t count, std::uint64_t stream) {
+  std::vector<double> mean = pair_numbers(p);
+  std::vector<double> covariance = p.covariance;
+  if (!has_draws(p))
+    throw InputError("bands: the law card has no covariance of its " + to_string(p.kind) +
+                     " law: calibrate it from measurements of several packings (\"softgrain calibrate\")");
+  if (p.band_origin != kFromResiduals && p.packings > 1) {
+    const double students = student_over_normal(p.packings - 1);  // of few packings, as in intervals
+    for (double& c : covariance) c *= students * students;
+  }
+  for (std::size_t j = 0; j < kPairNumbers; ++j) {
+    if (!kPairLogarithm[j] || !(mean[j] > 0.0)) continue;
+    for (std::size_t i = 0; i < kPairNumbers; ++i) {
+      covariance[i * kPairNumbers + j] /= mean[j];
+      covariance[j * kPairNumbers + i] /= mean[j];
+    }
+    mean[j] = std::log(mean[j]);
+  }
+  return normal_draws(mean, covariance, count, stream);
+}
 
 double form_discrepancy(const MultiContactLaw& law) {
   std::array<std::vector<double>, 2> squares;  // out of proportion, in proportion

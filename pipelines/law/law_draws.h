@@ -45,6 +45,13 @@ struct LawDraws {
 LawDraws law_draws(const LawSources& sources, const NamedLaws& law, const MacroSpec& spec, double contents_fraction,
                    std::int64_t count);
 
+/// Whether a law of pairs has a covariance, so that it can be drawn.
+bool has_draws(const PairLaw& law);
+
+/// Normal draws of the numbers of a law of pairs in the order of kLawParameterNames, all `a` above 0 as logarithms, by
+/// its covariance; that of few packings is widened by Student's t. Throws InputError where it has none.
+std::vector<std::vector<double>> pair_draws(const PairLaw& law, std::int64_t count, std::uint64_t stream);
+
 /// See LawDraws::discrepancy.
 double form_discrepancy(const MultiContactLaw& law);
 

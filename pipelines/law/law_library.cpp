@@ -18,7 +18,6 @@ namespace {
 /// How far beyond the convex hull of the measured materials a library serves, over the ranges of the variables. The
 /// errors of leaving one out hold there: materials at corners are predicted from farther away.
 constexpr double kReachOfHull = 0.1;
-constexpr double kReachOfRange = 0.02;
 
 double on_axis(const LibraryVariable& v, double x) { return v.logarithm ? std::log(x) : x; }
 
@@ -47,16 +46,6 @@ std::string fractions_inside(const UnitBox& box, LibraryPoint at) {
   }
   return high > 0.0 ? fmt::format("with the other three, solid fractions from {:.3f} to {:.3f} are", low, high)
                     : "the combination of the other three is not";
-}
-
-/// What is wrong with one variable; empty: nothing. One that never varied serves its own value, but for rounding.
-std::string outside_text(const LibraryVariable& v, double low, double high, double value, double u) {
-  if (high > low) {
-    if (u >= -kReachOfRange && u <= 1.0 + kReachOfRange) return "";
-    return fmt::format("{} = {:g}: measured from {:.3g} to {:.3g}", v.name, value, low, high);
-  }
-  if (std::abs(value - low) <= kReachOfNumbers * std::max(1.0, std::abs(low))) return "";
-  return fmt::format("{} = {:g}: all materials of this library have {:.4g}", v.name, value, low);
 }
 
 void require_inside(const UnitBox& box, const LibraryPoint& at) {

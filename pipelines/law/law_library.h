@@ -126,10 +126,11 @@ struct LibraryNumber {
 struct LibraryAnswer {
   LibraryPoint at;  ///< NaN where a press test does not tell
   std::vector<LibraryNumber> numbers;
-  std::vector<std::string> by_mean;  ///< numbers that are mean and scatter of the materials, LibraryCheck::by_mean()
-  std::vector<double> correlations;  ///< of the numbers of the law, row-major: the mean of those of the refits
-  std::size_t nearest = 0;           ///< measured material that is nearest
-  double distance = 0.0;             ///< to it: root of the sum of squares over the variables, each over its range
+  std::vector<std::string> by_mean;   ///< numbers that are mean and scatter of the materials, LibraryCheck::by_mean()
+  std::vector<double> correlations;   ///< of the numbers of the law, row-major: the mean of those of the refits
+  std::size_t nearest = 0;            ///< measured material that is nearest
+  double distance = 0.0;              ///< to it: root of the sum of squares over the variables, each over its range
+  double solid_fraction_error = 0.0;  ///< standard error of at.solid_fraction, which a press test leaves open
 };
 
 /// By Gaussian processes, one for each number, or mean and scatter, as LawLibrary::checks decide. Throws InputError

@@ -14,6 +14,8 @@ namespace softgrain {
 
 namespace {
 
+constexpr double kReachOfRange = 0.02;  ///< how far beyond the range of a variable a library serves, over it
+
 ProcessValue mean_and_scatter(const std::vector<double>& values, const std::vector<double>& errors) {
   const MeanError all = mean_error(values);
   const auto n = static_cast<double>(values.size());
@@ -143,6 +145,15 @@ std::vector<double> UnitBox::operator()(const std::vector<double>& row) const {
   return out;
 }
 
+std::string outside_text(const LibraryVariable& v, double low, double high, double value, double u) {
+  if (high > low) {
+    if (u >= -kReachOfRange && u <= 1.0 + kReachOfRange) return "";
+    return fmt::format("{} = {:g}: measured from {:.3g} to {:.3g}", v.name, value, low, high);
+  }
+  if (std::abs(value - low) <= kReachOfNumbers * std::max(1.0, std::abs(low))) return "";
+  return fmt::format("{} = {:g}: all materials of this library have {:.4g}", v.name, value, low);
+}
+
 std::size_t least_materials() { return GaussianProcess::least_values(kLibraryVariables.size()) + 1; }
 
 LibraryCheck checked_number(const std::string& name, const KnownNumber& known) {
@@ -172,6 +183,12 @@ std::vector<ProcessValue> predicted_number(const LibraryCheck& check, const Know
   return out;
 }
 
+ProcessValue predicted_value(const LibraryCheck& check, const KnownNumber& known,
+                             const std::vector<std::vector<double>>& points) {
+  const std::vector<ProcessValue> z = predicted_number(check, known, points);
+  return {z.front().mean, std::hypot(z.front().deviation, off_the_first(z))};
+}
+
 std::vector<LibraryCheck> check_numbers(const LawLibrary& library, const UnitBox& box) {
   require_materials(library);
   const std::vector<std::string> names = library.names();
@@ -191,9 +208,9 @@ LibraryAnswer answer_at(const LawLibrary& library, const std::vector<LibraryChec
     const KnownNumber known = known_number(library, box, k);
     LibraryNumber number{names[k], std::nan(""), std::nan("")};
     if (known.values.size() >= least_materials()) {
-      const std::vector<ProcessValue> z = predicted_number(checks[k], known, points);
-      number.value = z.front().mean;
-      number.deviation = std::hypot(z.front().deviation, off_the_first(z));
+      const ProcessValue z = predicted_value(checks[k], known, points);
+      number.value = z.mean;
+      number.deviation = z.deviation;
       if (checks[k].by_mean()) out.by_mean.push_back(names[k]);
     } else if (k < library.law_numbers()) {
       throw InputError(fmt::format("law library: too few materials have the number \"{}\"", names[k]));

@@ -31,6 +31,10 @@ class UnitBox {
   std::vector<std::vector<double>> points_;
 };
 
+/// What is wrong with the value of a variable, at u of its measured range; empty: nothing. One that never varied serves
+/// its own value, but for rounding.
+std::string outside_text(const LibraryVariable& v, double low, double high, double value, double u);
+
 /// Materials that a number must have: one more than its process needs, so that each can be left out.
 std::size_t least_materials();
 
@@ -42,6 +46,10 @@ LibraryCheck checked_number(const std::string& name, const KnownNumber& known);
 /// widened by Student's t.
 std::vector<ProcessValue> predicted_number(const LibraryCheck& check, const KnownNumber& known,
                                            const std::vector<std::vector<double>>& points);
+
+/// The same at the first point; the others are draws of it, and what they change is part of the deviation.
+ProcessValue predicted_value(const LibraryCheck& check, const KnownNumber& known,
+                             const std::vector<std::vector<double>>& points);
 
 /// The check of every number of a library over the points of its materials. Throws InputError for too few materials.
 std::vector<LibraryCheck> check_numbers(const LawLibrary& library, const UnitBox& box);

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/draws.h"
 #include "calibrate/gaussian_process.h"
 #include "common/core/error.h"
 #include "common/core/text.h"
+#include "pipelines/law/law_draws.h"
 #include "pipelines/law/law_library_numbers.h"
 #include "pipelines/law/law_library_predict.h"
 #include "pipelines/law/press_test.h"
@@ -23,7 +23,7 @@ constexpr double kHalfFriction = 0.15;  ///< friction at which half of its effec
 /// How far beyond the convex hull of the materials a press test may lie, over the ranges of its numbers. They are
 /// measured with errors, and leaving one out reaches as far.
 constexpr double kReachOfPressHull = 0.25;
-constexpr int kDraws = 32;
+constexpr std::size_t kDraws = 32;
 
 std::vector<double> coordinates(const PressNumbers& n, double friction) {
   return {n.ln_deep, n.ln_shallow - n.ln_deep, friction / (friction + kHalfFriction)};
@@ -44,7 +44,19 @@ std::string press_text(const PressQuestion& q) {
                      std::exp(q.numbers.ln_deep), kDeep, std::exp(q.numbers.ln_shallow), kShallow, q.friction);
 }
 
-void require_inside(const UnitBox& box, const std::vector<double>& u, const PressQuestion& q) {
+std::vector<double> of_materials(const LawLibrary& library, double LibraryPoint::*value) {
+  std::vector<double> out;
+  for (const LibraryMaterial& m : library.materials) out.push_back(m.at.*value);
+  return out;
+}
+
+/// The friction is given and has no error, so it must lie in its range as that of a material; forces are measured.
+void require_inside(const LawLibrary& library, const UnitBox& box, const std::vector<double>& u,
+                    const PressQuestion& q) {
+  const auto [low, high] = std::ranges::minmax(of_materials(library, &LibraryPoint::friction));
+  const std::string wrong =
+      outside_text(kLibraryVariables.front(), low, high, q.friction, (q.friction - low) / (high - low));
+  if (!wrong.empty()) throw InputError("law library: " + wrong);
   if (distance_from_hull(box.points(), u) <= kReachOfPressHull) return;
   throw InputError(
       fmt::format("law library: no measured material gave such a press test: {}; measured: {:.3g} to {:.3g} at Delta = "
@@ -55,17 +67,53 @@ void require_inside(const UnitBox& box, const std::vector<double>& u, const Pres
 
 /// Draws of a, b and delta; those that have no force at D = 0.2 are no curve of a soft particle.
 std::vector<PressNumbers> drawn_numbers(const PairLaw& law, double poisson_ratio) {
-  constexpr std::size_t kAll = kLawParameterNames.size();
-  if (law.covariance.size() != kAll * kAll) return {};
-  std::vector<double> covariance;
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) covariance.push_back(law.covariance[i * kAll + j]);
-  const std::vector<double> mean{law.normal.a.value, law.normal.b.value, law.normal.delta.value};
   std::vector<PressNumbers> out;
-  for (const std::vector<double>& draw : normal_draws(mean, covariance, kDraws, 1))
+  if (!has_draws(law)) return out;
+  for (const std::vector<double>& draw : pair_draws(law, kDraws, 1))
     if (draw[1] > 0.0)
-      if (const auto one = press_numbers(draw[0], draw[1], std::max(draw[2], 0.0), poisson_ratio)) out.push_back(*one);
+      if (const auto one = press_numbers(std::exp(draw[0]), draw[1], std::max(draw[2], 0.0), poisson_ratio))
+        out.push_back(*one);
   return out;
+}
+
+const PairLaw& pressed_law(const LawCard& card, const std::string& source) {
+  const auto law = std::ranges::find_if(
+      card.pairs, [](const PairLaw& p) { return p.kind == PairKind::soft_solid && has_numbers(p.status); });
+  if (law == card.pairs.end() || law->points == 0)
+    throw InputError(source + ": the library takes a press test on a plane, # kind = soft-solid");
+  return *law;
+}
+
+/// What the test itself leaves open beyond the errors of the answer.
+std::vector<std::string> doubts_of(const PairLaw& law, const PressQuestion& q) {
+  std::vector<std::string> out;
+  constexpr double kNearly = 0.99;
+  if (law.status != LawStatus::good)
+    out.push_back(fmt::format("law of the press test: {} ({})", to_string(law.status), law.reason));
+  if (law.delta_max < kNearly * kDeep)
+    out.push_back(
+        fmt::format("the press test ends at Delta = {:.3g}: its force at {} is extrapolated", law.delta_max, kDeep));
+  if (q.draws.empty())
+    out.emplace_back("the press test has no errors: those of the answer are of the library alone");
+  else if (q.draws.size() < kDraws)
+    out.push_back(
+        fmt::format("{} of {} draws of the press test have no force at Delta = {}: the answer is less sure "
+                    "than its errors say",
+                    kDraws - q.draws.size(), kDraws, kShallow));
+  return out;
+}
+
+/// Throws InputError where a material has no press numbers.
+void require_press_numbers(const LawLibrary& library) {
+  if (has_press_numbers(library) && library.press_checks.size() == library.names().size()) return;
+  const auto lacks = [](const LibraryMaterial& m) { return !m.press; };
+  const auto first = std::ranges::find_if(library.materials, lacks);
+  const std::string of =
+      first == library.materials.end() ? "" : fmt::format(" of all its materials (none of {})", first->source);
+  throw InputError(
+      fmt::format("law library: {}: has no press tests{}: collect it again (softgrain law library) from "
+                  "tables whose law of pairs bears at Delta = {}",
+                  library.path, of, kShallow));
 }
 
 }  // namespace
@@ -79,26 +127,21 @@ std::optional<PressNumbers> press_numbers(double a, double b, double delta, doub
 }
 
 PressQuestion press_question(const LawCard& card, double friction, const std::string& source) {
-  const auto law = std::ranges::find_if(
-      card.pairs, [](const PairLaw& p) { return p.kind == PairKind::soft_solid && has_numbers(p.status); });
-  if (law == card.pairs.end() || law->points == 0)
-    throw InputError(source + ": the library takes a press test against a plane or a solid body, # kind = soft-solid");
+  const PairLaw& law = pressed_law(card, source);
   const double nu = is_known(card.spec.poisson_ratio) ? card.spec.poisson_ratio : LibraryMatter{}.poisson_ratio;
-  const ThresholdPowerLaw& n = law->normal;
+  const ThresholdPowerLaw& n = law.normal;
   const std::optional<PressNumbers> numbers = press_numbers(n.a.value, n.b.value, n.delta.value, nu);
   if (!numbers)
     throw InputError(fmt::format("{}: the library compares forces at Delta = {}, and this law begins at {:.3g}", source,
                                  kShallow, n.delta.value));
-  return {*numbers, drawn_numbers(*law, nu), friction};
+  return {*numbers, drawn_numbers(law, nu), friction};
 }
 
 LibraryAnswer ask_by_press_test(const LawLibrary& library, const PressQuestion& q) {
-  if (!has_press_numbers(library) || library.press_checks.size() != library.names().size())
-    throw InputError("law library: " + library.path +
-                     ": has no press tests of its materials: collect it again (softgrain law library)");
+  require_press_numbers(library);
   const UnitBox box = press_box(library);
   const std::vector<double> u = box(coordinates(q.numbers, q.friction));
-  require_inside(box, u, q);
+  require_inside(library, box, u, q);
   std::vector<std::vector<double>> scatter;
   for (const PressNumbers& draw : q.draws) scatter.push_back(box(coordinates(draw, q.friction)));
   LibraryAnswer out = answer_at(library, library.press_checks, box, u, scatter);
@@ -107,11 +150,13 @@ LibraryAnswer ask_by_press_test(const LawLibrary& library, const PressQuestion& 
   if (trials != out.numbers.end()) trials->value = unknown;
   std::erase(out.by_mean, kTrialsNumber);
   out.at = {q.friction, unknown, unknown, unknown};
-  std::vector<double> fractions;
-  for (const LibraryMaterial& m : library.materials) fractions.push_back(m.at.solid_fraction);
-  const std::vector<double> exact(fractions.size(), 0.0);
-  out.at.solid_fraction = std::clamp(GaussianProcess(box.points(), fractions, exact).at(u).mean,
-                                     std::ranges::min(fractions), std::ranges::max(fractions));
+  const std::vector<double> fractions = of_materials(library, &LibraryPoint::solid_fraction);
+  const KnownNumber known{box.points(), fractions, std::vector<double>(fractions.size(), 0.0)};
+  std::vector<std::vector<double>> points{u};
+  points.insert(points.end(), scatter.begin(), scatter.end());
+  const ProcessValue fraction = predicted_value(checked_number("solid fraction", known), known, points);
+  out.at.solid_fraction = std::clamp(fraction.mean, std::ranges::min(fractions), std::ranges::max(fractions));
+  out.solid_fraction_error = fraction.deviation;
   return out;
 }
 
@@ -143,8 +188,11 @@ PressTestLaw law_of_press_test(const LawLibrary& library, const std::string& pat
   else
     out.remarks.push_back(fmt::format("{} does not say nu: {:g} is assumed", path, matter.poisson_ratio));
   out.table = table_of(library, out.answer, matter, draws);
-  out.remarks.insert(out.remarks.begin(),
-                     {"press test: " + press_text(out.question), nearest_text(library, out.answer)});
+  out.remarks.insert(out.remarks.begin(), {"press test: " + press_text(out.question),
+                                           fmt::format("solid fraction {:.3f} +- {:.2g}", out.answer.at.solid_fraction,
+                                                       out.answer.solid_fraction_error),
+                                           nearest_text(library, out.answer)});
+  for (std::string& doubt : doubts_of(pressed_law(card, path), out.question)) out.remarks.push_back(std::move(doubt));
   if (std::string means = means_text(out.answer); !means.empty()) out.remarks.push_back(std::move(means));
   return out;
 }

@@ -28,8 +28,8 @@ PressQuestion press_question(const LawCard& card, double friction, const std::st
 
 /// Gaussian processes, one for each number, over ln F at D = 0.3, its difference from that at 0.2, and mu/(mu + 0.15)
 /// of the measured materials, or mean and scatter, as LawLibrary::press_checks decide. Friction matters most where
-/// there is little of it, hence the last one. Throws InputError for a library without press numbers, and for a test
-/// beyond what its materials gave.
+/// there is little of it, hence the last one. Throws InputError for a library without press numbers, for a test beyond
+/// what its materials gave, and for friction beyond theirs.
 LibraryAnswer ask_by_press_test(const LawLibrary& library, const PressQuestion& question);
 
 /// Every material left out in turn, and predicted by its own press numbers; empty when a material has none.

@@ -6,6 +6,7 @@
 
 #include "calibrate/draws.h"
 #include "common/core/error.h"
+#include "common/core/few_samples.h"
 #include "common/core/statistics.h"
 #include "common/core/text.h"
 #include "common/data/multi_contact_replicates.h"
@@ -64,6 +65,7 @@ std::vector<LibraryPartner> partners_of(const MultiContactLaw& law) {
 
 /// Why a law is no row; empty: it is one.
 std::string unfit(const LawTableEntry& entry, const MultiContactLaw* law) {
+  if (entry.from_press_test) return "concluded from a press test, not measured";
   if (law == nullptr) return "no isotropic law";
   if (law->status != LawStatus::good && law->status != LawStatus::inaccurate) return to_string(law->status);
   if (law->error_held_out > kWorstUnseen)
@@ -118,14 +120,21 @@ MultiContactLaw law_of_answer(const LawLibrary& library, const LibraryAnswer& an
                             library.materials[answer.nearest].partner_overlap_max[k],
                             0.0});
   const std::vector<double> numbers = law_numbers_of(library.partners, mean, poisson_ratio);
-  for (const std::vector<double>& draw : normal_draws(mean, c, draws, 1))
+  // Whoever takes refits of a table widens them by this, see few_samples_factor(): errors of the library hold it
+  // already.
+  const double widening = factor_of_several(library.materials[answer.nearest].packings);
+  std::vector<std::vector<double>> drawn;
+  for (std::vector<double>& draw : normal_draws(mean, c, draws, 1)) {
+    drawn.push_back(law_numbers_of(library.partners, draw, poisson_ratio));
+    for (std::size_t k = 0; k < count; ++k) draw[k] = mean[k] + (draw[k] - mean[k]) / widening;
     law.replicates.push_back(law_numbers_of(library.partners, draw, poisson_ratio));
+  }
   const std::size_t planes = kMultiContactParameters.size();
   for (std::size_t k = 0; k < planes; ++k)
-    law.*kMultiContactParameters[k].estimate = drawn_estimate(numbers[k], law.replicates, k);
+    law.*kMultiContactParameters[k].estimate = drawn_estimate(numbers[k], drawn, k);
   for (std::size_t r = 0; r < law.partners.size(); ++r) {
-    law.partners[r].weight = drawn_estimate(numbers[planes + 2 * r], law.replicates, planes + 2 * r);
-    law.partners[r].exponent = drawn_estimate(numbers[planes + 2 * r + 1], law.replicates, planes + 2 * r + 1);
+    law.partners[r].weight = drawn_estimate(numbers[planes + 2 * r], drawn, planes + 2 * r);
+    law.partners[r].exponent = drawn_estimate(numbers[planes + 2 * r + 1], drawn, planes + 2 * r + 1);
   }
   law.parameters = 3;
   return law;
@@ -256,6 +265,7 @@ LawTable table_of(const LawLibrary& library, const LibraryAnswer& answer, const 
   e.spec = spec_of_answer(library, answer, matter);
   e.from_press_test = of_press_test(answer);
   e.solid_fraction = answer.at.solid_fraction;
+  e.solid_fraction_error = answer.solid_fraction_error;
   e.main = true;
   e.packings = nearest.packings;
   e.relaxation =
@@ -306,10 +316,9 @@ LibraryAnswer corrected(const LawLibrary& library, const LibraryAnswer& prior, c
     out.numbers[k].deviation = std::sqrt(std::max(after.covariance[k * count + k], 0.0));
   }
   out.correlations = correlations_of(after.covariance, count);
-  for (const std::size_t k : of_sides) {
-    correct_side(out.numbers[k], numbers.values[k], numbers.errors[k]);
-    std::erase(out.by_mean, out.numbers[k].name);
-  }
+  for (const std::size_t k : of_sides) correct_side(out.numbers[k], numbers.values[k], numbers.errors[k]);
+  for (const auto& told : {of_law, of_sides})
+    for (const std::size_t k : told) std::erase(out.by_mean, out.numbers[k].name);
   return out;
 }
 

@@ -307,6 +307,13 @@ std::vector<std::string> LawSources::files() const {
   return out;
 }
 
+std::vector<std::string> LawSources::remarks() const {
+  std::vector<std::string> out;
+  for (const FittedLaw& law : laws)
+    if (!law.remark.empty()) out.push_back("law library: " + law.remark);
+  return out;
+}
+
 std::string LawSources::text() const {
   std::string out;
   for (const FittedLaw& law : laws) out += law.text;

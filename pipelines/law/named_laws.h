@@ -58,6 +58,8 @@ struct LawSources {
   [[nodiscard]] const FittedLaw& serving(WantedForm form) const;
   [[nodiscard]] std::vector<std::string> files() const;  ///< files that the laws come from
   [[nodiscard]] std::string text() const;                ///< content of these files
+  /// What a library says of the laws that it gave: nearest material, press test, numbers that are means.
+  [[nodiscard]] std::vector<std::string> remarks() const;
 };
 
 /// Solid fraction at which a table is taken: what the scene says, else the mean of the contents of its soft particles,

@@ -8,10 +8,12 @@
 
 #include "common/contact/make_laws.h"
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
 #include "pipelines/law/law_library_press.h"
 #include "pipelines/law/law_library_scene.h"
+#include "pipelines/law/press_test.h"
 #include "tests/support/synthetic_library.h"
 #include "tests/support/temporary_directory.h"
 
@@ -81,6 +83,17 @@ TEST(PressLibrary, RefusesWhatNoMaterialGave) {
                 (void)ask_by_press_test(pressed_library(), {hard, {}, 0.35});
               }),
               "no measured material gave such a press test");
+  expect_says(complaint([&] {
+                (void)ask_by_press_test(pressed_library(), {press_of(kInside), {}, 5.0});
+              }),
+              "mu = 5: measured from 0 to 0.8");
+  LawLibrary alike = pressed_library();
+  for (LibraryMaterial& m : alike.materials) m.at.friction = 0.35;
+  EXPECT_NO_THROW((void)ask_by_press_test(alike, {press_of(kInside), {}, 0.35}));
+  expect_says(complaint([&] {
+                (void)ask_by_press_test(alike, {press_of(kInside), {}, 0.6});
+              }),
+              "mu = 0.6: all materials of this library have 0.35");
   LawLibrary old = pressed_library();
   old.materials[3].press.reset();
   expect_says(complaint([&] { (void)ask_by_press_test(old, {press_of(kInside), {}, 0.35}); }), "collect it again");
@@ -114,12 +127,12 @@ TEST(PressLibrary, NumbersOfACurve) {
 }
 
 /// A press test with exactly this curve; E = 0.5 MPa, Rs = 16 mm, nu = 0.3.
-std::string press_test(const std::string& path, const PressNumbers& n, const std::string& comments) {
+std::string press_test(const std::string& path, const PressNumbers& n, const std::string& comments, int points = 15) {
   const double b = std::log(std::exp(n.ln_deep - n.ln_shallow)) / std::log(1.5);
   std::string text =
       "# kind = soft-solid\n# Rs = 16 mm\n# E = 0.5 MPa\n# nu = 0.3\n" + comments + "sample,Delta,Fn [N]\n";
   for (const char* sample : {"A", "B"})
-    for (int k = 1; k <= 15; ++k) {
+    for (int k = 1; k <= points; ++k) {
       const double delta = 0.02 * k;
       const double force = 5e5 * 2.56e-4 / 0.91 * std::exp(n.ln_deep) * std::pow(delta / 0.3, b);
       text += fmt::format("{},{:.3f},{:.9g}\n", sample, delta, force * (*sample == 'A' ? 1.01 : 0.99));
@@ -143,6 +156,7 @@ TEST(PressLibrary, ATableOfAPressTestBecomesALaw) {
   EXPECT_TRUE(entry.from_press_test);
   EXPECT_EQ(entry.spec.density, 2400.0);
   EXPECT_EQ(entry.spec.friction, 0.35);
+  EXPECT_GT(entry.solid_fraction_error, 0.0);
   EXPECT_FALSE(packing_known(entry.spec));
   save_law_table(law.table, directory.path() + "/law_table.toml");
   const LawTable back = load_law_table(directory.path() + "/law_table.toml");
@@ -152,6 +166,37 @@ TEST(PressLibrary, ATableOfAPressTestBecomesALaw) {
   EXPECT_EQ(law_of_press_test(pressed_library(), said, std::nullopt).answer.numbers[0].value,
             law_of_press_test(pressed_library(), said, 0.35).answer.numbers[0].value);
   expect_says(complaint([&] { (void)law_of_press_test(pressed_library(), said, 0.5); }), "says mu = 0.35, but 0.5");
+}
+
+TEST(PressLibrary, SaysWhatTheTestItselfLeavesOpen) {
+  const test::TemporaryDirectory directory;
+  const PressNumbers n = press_of(kInside);
+  const auto remarks = [&](const std::string& path) {
+    return join_text(law_of_press_test(pressed_library(), path, 0.35).remarks, "|");
+  };
+  const std::string deep = remarks(press_test(directory.path() + "/deep.csv", n, ""));
+  EXPECT_EQ(deep.find("is extrapolated"), std::string::npos) << deep;
+  expect_says(deep, "law of the press test: underdetermined (");
+  const std::string shallow = remarks(press_test(directory.path() + "/shallow.csv", n, "", 9));
+  expect_says(shallow, "ends at Delta = 0.18: its force at 0.3 is extrapolated");
+  LawCard card = card_of_press_test(directory.path() + "/deep.csv");
+  const auto scatter = [&] {
+    double sum = 0.0;
+    const PressQuestion q = press_question(card, 0.35, "card");
+    for (const PressNumbers& draw : q.draws) sum += std::abs(draw.ln_deep - q.numbers.ln_deep);
+    return sum / static_cast<double>(q.draws.size());
+  };
+  const auto with_samples = [&](int samples) {
+    for (PairLaw& law : card.pairs) {
+      law.band_origin = kFromSamples;
+      law.packings = samples;
+    }
+    return scatter();
+  };
+  const double of_two = with_samples(2);
+  EXPECT_GT(of_two, 3.0 * with_samples(1000)) << "Student's t of two samples";
+  for (PairLaw& law : card.pairs) law.covariance.assign(49, 0.0);
+  EXPECT_TRUE(press_question(card, 0.35, "card").draws.empty());
 }
 
 TEST(PressLibrary, ScenesNameThePressTest) {

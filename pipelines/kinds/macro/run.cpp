@@ -89,6 +89,7 @@ MacroRunSummary summarise(const MacroScene& scene, const LawIdentity& law, const
   if (resolved) summary.runs.resolved = summary_of(curves, "shelled");
   if (has_twin(scene.setup, Twin::free)) summary.runs.free = summary_of(curves, "free");
   if (const std::string assumed = assumed_text(scene.setup); !assumed.empty()) summary.head.remarks.push_back(assumed);
+  for (std::string& one : scene.law.remarks()) summary.head.remarks.push_back(std::move(one));
   if (resolved && usable) compare_with_twin(curves, summary);
   return summary;
 }

@@ -164,11 +164,15 @@ MacroComparisonSummary summarise(const MacroComparisonSetup& setup, const std::v
                                  const std::vector<SceneResult>& results, const Run& run) {
   MacroComparisonSummary s;
   s.head.title = setup.title;
-  for (const ComparisonScene& scene : setup.scenes)
-    if (!scene.by_own_law())
-      for (const std::string& one : law_remarks(setup.spec, setup.laws_of(scene), inside_fraction(scene, contents)))
-        if (std::find(s.head.remarks.begin(), s.head.remarks.end(), one) == s.head.remarks.end())
-          s.head.remarks.push_back(one);
+  const auto say_once = [&](const std::vector<std::string>& remarks) {
+    for (const std::string& one : remarks)
+      if (std::ranges::find(s.head.remarks, one) == s.head.remarks.end()) s.head.remarks.push_back(one);
+  };
+  for (const ComparisonScene& scene : setup.scenes) {
+    const LawSources& laws = setup.laws_of(scene);
+    say_once(laws.remarks());
+    if (!scene.by_own_law()) say_once(law_remarks(setup.spec, laws, inside_fraction(scene, contents)));
+  }
   for (const SceneResult& r : results) {
     if (!r.usable) s.head.status = RunStatus::not_usable;
     s.compared.scenes.push_back(summary_of(r));

@@ -119,8 +119,10 @@ Estimate PairedOnsets::difference(double difference, const OnsetPair& pair, cons
       parts.push_back({std::abs(at(fits_.b, of_b, pair.b.value[w] + pair.model[w]) - b), pair.model_degrees});
     const double centre = w + 1 == kJoinedWays ? difference : at(fits_.a, of_a, pair.a.value[w]) - b;
     const Estimate way = with_error_parts(centre, parts);
-    if (!std::isfinite(way.standard_error)) return {difference, kInfinity, -kInfinity, kInfinity};
     const double widen = pair.widen > 0.0 ? std::abs(at(fits_.b, of_b, pair.b.value[w] + pair.widen) - b) : 0.0;
+    // NaN: where the curve of that onset does not go through the stresses of a modulus.
+    if (!std::isfinite(way.standard_error) || !std::isfinite(widen))
+      return {difference, kInfinity, -kInfinity, kInfinity};
     out.low = std::min(out.low, way.low - widen);
     out.high = std::max(out.high, way.high + widen);
   }
