@@ -112,6 +112,19 @@ struct SlideLaw {
   bool has_unloading = false;  ///< true: s was measured; false: that of planes is used, LawTableEntry::unloading
 };
 
+/// Where the numbers of a table come from.
+enum class TableSource {
+  measured,   ///< packings
+  library,    ///< a library of law tables, for a material that was not measured
+  press_test  ///< a library, by a press test: what is inside the soft particle is not known, LawTableEntry::spec lacks
+              ///< it
+};
+
+template <>
+inline constexpr auto enum_names<TableSource> = enum_name_list<TableSource>({{TableSource::measured, "measured"},
+                                                                             {TableSource::library, "library"},
+                                                                             {TableSource::press_test, "press test"}});
+
 /// All laws of one kind of packing.
 struct LawTableEntry {
   SoftParticleSpec spec;
@@ -121,7 +134,7 @@ struct LawTableEntry {
   bool main = false;    ///< whether the table was made for this packing; true for at most one entry
   int packings = 0;
   std::string relaxation;
-  bool from_press_test = false;    ///< what is inside the soft particle is not known: spec may lack it
+  TableSource source = TableSource::measured;
   double volume_max = 0.0;         ///< validity: largest equivalent volume S among the fitted states
   double overlap_max = 0.0;        ///< validity: largest overlap with a plane, h/Rs
   double grain_overlap_max = 0.0;  ///< largest overlap of grains over the smaller radius in that range

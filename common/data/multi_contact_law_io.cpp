@@ -92,7 +92,7 @@ void write_entry(Out out, const LawTableEntry& e) {
   if (e.main) fmt::format_to(out, "main = true  # the packing that the table was made for\n");
   fmt::format_to(out, "relaxation = {}\nbest = {}  # taken where no form is named\n", quoted(e.relaxation),
                  quoted(to_string(e.best)));
-  if (e.from_press_test) fmt::format_to(out, "from_press_test = true  # what is inside is not known\n");
+  if (e.source != TableSource::measured) fmt::format_to(out, "source = \"{}\"\n", to_string(e.source));
   fmt::format_to(out, "volume_max = {}  # validity: equivalent volume S\n", real(e.volume_max));
   fmt::format_to(out,
                  "beyond = \"{}\"  # above volume_max: \"error\", \"clamp\" or \"extrapolate\"; counted either way\n",
@@ -215,8 +215,8 @@ LawTableEntry read_entry(const SceneTable& t) {
   }
   e.unloading = read_estimate_text(t.table("unloading"), Range::closed(1.0, kLargestShare));
   e.unloading_measured = t.flag("unloading_measured", std::isfinite(e.unloading.standard_error));
-  e.from_press_test = t.flag("from_press_test", false);
-  e.spec = read_spec_text(t.table("measurement"), e.from_press_test);
+  e.source = t.choice<TableSource>("source", TableSource::measured);
+  e.spec = read_spec_text(t.table("measurement"), e.source == TableSource::press_test);
   for (const SceneTable& law : t.tables("law")) e.laws.push_back(read_law(law));
   if (e.find(e.best) == nullptr) t.throw_error("best", "is no form that the entry has");
   return e;

@@ -97,9 +97,11 @@ LawDraws table_draws(const LawSources& sources, const NamedLaws& named, const Ma
                     own.path, to_string(form)));
   if (static_cast<std::size_t>(count) > kept)
     throw InputError(
-        fmt::format("bands = {}: {} keeps {} refits of its {} law; allowed: at most {}, or more refits by "
-                    "\"softgrain calibrate multi_contact.h5 --set replicates=...\"",
-                    count, own.path, kept, to_string(form), kept));
+        fmt::format("bands = {}: {} keeps {} refits of its {} law; allowed: at most {}{}", count, own.path, kept,
+                    to_string(form), kept,
+                    table.entries.front().source == TableSource::measured
+                        ? ", or more refits by \"softgrain calibrate multi_contact.h5 --set replicates=...\""
+                        : ""));
   std::string ignored;
   const LawTableEntry entry = law_entry(sources, fraction, ignored);
   const MultiContactLaw best = drawn_law_of(entry, form);
@@ -116,7 +118,9 @@ LawDraws table_draws(const LawSources& sources, const NamedLaws& named, const Ma
     for (std::size_t k = 0; k < out.numbers.size(); ++k)
       out.draws.back()[k] = out.numbers[k] + factor * (out.draws.back()[k] - out.numbers[k]);
   }
-  out.origin = fmt::format("{} refits to packings drawn with replacement", count);
+  const bool measured = entry.source == TableSource::measured;
+  out.origin =
+      fmt::format("{} {}", count, measured ? "refits to packings drawn with replacement" : "draws of a library");
   out.discrepancy = form_discrepancy(best);
   out.discrepancy_origin = "configurations that the fit did not see";
   const LogForces log_forces(multi_contact_probes(best));

@@ -68,7 +68,8 @@ std::vector<FoundEntry> found_entries(const std::vector<std::string>& directorie
 LawLibrary most_common(const std::vector<FoundEntry>& found) {
   std::vector<std::pair<LawLibrary, int>> kinds;
   for (const FoundEntry& f : found) {
-    if (f.entry.find(LawForm::isotropic) == nullptr || f.entry.spec.sizes || f.entry.from_press_test) continue;
+    if (f.entry.find(LawForm::isotropic) == nullptr || f.entry.spec.sizes || f.entry.source != TableSource::measured)
+      continue;
     const LawLibrary its = library_like(f.entry);
     const auto same = [&](const auto& kind) {
       return kind.first.partners == its.partners && kind.first.rmax_over_shell == its.rmax_over_shell &&

@@ -65,7 +65,7 @@ std::vector<LibraryPartner> partners_of(const MultiContactLaw& law) {
 
 /// Why a law is no row; empty: it is one.
 std::string unfit(const LawTableEntry& entry, const MultiContactLaw* law) {
-  if (entry.from_press_test) return "concluded from a press test, not measured";
+  if (entry.source != TableSource::measured) return "concluded from a " + to_string(entry.source) + ", not measured";
   if (law == nullptr) return "no isotropic law";
   if (law->status != LawStatus::good && law->status != LawStatus::inaccurate) return to_string(law->status);
   if (law->error_held_out > kWorstUnseen)
@@ -263,7 +263,7 @@ LawTable table_of(const LawLibrary& library, const LibraryAnswer& answer, const 
   const LibraryMaterial& nearest = library.materials[answer.nearest];
   LawTableEntry e;
   e.spec = spec_of_answer(library, answer, matter);
-  e.from_press_test = of_press_test(answer);
+  e.source = of_press_test(answer) ? TableSource::press_test : TableSource::library;
   e.solid_fraction = answer.at.solid_fraction;
   e.solid_fraction_error = answer.solid_fraction_error;
   e.main = true;

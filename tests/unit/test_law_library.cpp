@@ -203,7 +203,7 @@ TEST(LawLibrary, RowsThatDoNotServeAreLeftOut) {
   EXPECT_FALSE(library_row(made, e, "x", why));
   expect_in(why, "3 refits");
   e = synthetic::library_entry(kBetween, 0.02, 1);
-  e.from_press_test = true;
+  e.source = TableSource::press_test;
   EXPECT_FALSE(library_row(made, e, "x", why));
   expect_in(why, "concluded from a press test");
   e = synthetic::library_entry(kBetween, 0.02, 1);

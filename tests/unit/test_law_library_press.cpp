@@ -153,14 +153,14 @@ TEST(PressLibrary, ATableOfAPressTestBecomesALaw) {
   EXPECT_FALSE(law.question.draws.empty());
   EXPECT_NEAR(law.answer.numbers[0].value, synthetic::library_force(kInside), 0.08);
   const LawTableEntry& entry = law.table.entries.front();
-  EXPECT_TRUE(entry.from_press_test);
+  EXPECT_EQ(entry.source, TableSource::press_test);
   EXPECT_EQ(entry.spec.density, 2400.0);
   EXPECT_EQ(entry.spec.friction, 0.35);
   EXPECT_GT(entry.solid_fraction_error, 0.0);
   EXPECT_FALSE(packing_known(entry.spec));
   save_law_table(law.table, directory.path() + "/law_table.toml");
   const LawTable back = load_law_table(directory.path() + "/law_table.toml");
-  EXPECT_TRUE(back.entries.front().from_press_test);
+  EXPECT_EQ(back.entries.front().source, TableSource::press_test);
   EXPECT_FALSE(packing_known(back.entries.front().spec));
   const std::string said = press_test(directory.path() + "/said.csv", n, "# mu = 0.35\n");
   EXPECT_EQ(law_of_press_test(pressed_library(), said, std::nullopt).answer.numbers[0].value,
@@ -210,7 +210,7 @@ TEST(PressLibrary, ScenesNameThePressTest) {
   };
   const FittedLaw law = law_of("press_test = \"press.csv\"\n");
   ASSERT_NE(law.table(), nullptr);
-  EXPECT_TRUE(law.table()->entries.front().from_press_test);
+  EXPECT_EQ(law.table()->entries.front().source, TableSource::press_test);
   expect_says(law.remark, "press test: F (1 - nu^2)/(E Rs^2) = ");
   expect_says(complaint([&] { (void)law_of("press_test = \"press.csv\"\nratio = 6.0\n"); }),
               "goes without press_test, whose table says what is known");

@@ -372,10 +372,11 @@ MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& def
 void require_known_contents(const SceneTable& macro, const MacroSetup& setup, const SoftParticleSpec& spec,
                             const std::string& law_file) {
   if (setup.twins.empty() || packing_known(spec)) return;
-  macro.add_error("resolved",
-                  "a resolved twin is filled with grains, and " + law_file +
-                      " does not say what is inside the soft particle that was measured: give resolved = false, or add "
-                      "exponent, polydispersity, rmax_over_shell, beta and trials to [measurement] of the card");
+  macro.add_error(
+      "resolved",
+      "a resolved twin is filled with grains, and " + law_file +
+          " does not say what is inside the soft particle that was measured: give resolved = false, or, in a "
+          "law card, add exponent, polydispersity, rmax_over_shell, beta and trials to [measurement]");
 }
 
 std::string assumed_text(const MacroSetup& setup) {
