@@ -156,7 +156,7 @@ void read_bodies(const SceneTable& t, MacroSetup& setup) {
                Range::closed(0.0, 1.0), spec.soft_share);
   spec.exponent =
       t.number({"exponent", "b of the power laws P(r) ~ r^-b of the radii of solid grains and soft particles",
-                "that of the grains in the soft particles; 3.5 if these have `sizes`"},
+                "that of the grains in the soft particles; 3.5 if these have `sizes` or are not known"},
                Unit::none, Range::above(1.0), spec.exponent);
   read_power_laws(t, spec);
   if (t.has("solid_sizes"))
