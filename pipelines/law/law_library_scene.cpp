@@ -15,14 +15,15 @@ namespace {
 
 constexpr const char* kShipped = "library";
 
-const Key kFriction{"mu", "Coulomb friction of the grains"};
+const char* const kOrPressTest = "-, unless press_test is given";
+const Key kFriction{"mu", "Coulomb friction of the grains", kOrPressTest};
 
 LibraryPoint read_library_point(const SceneTable& t) {
-  return {
-      t.number(kFriction, Unit::none, Range::not_negative()),
-      t.number({"exponent", "b of the size distribution P(r) ~ r^-b"}, Unit::none),
-      t.number({"ratio", "size ratio rmax/rmin of the grains"}, Unit::none, Range::above(1.0)),
-      t.number({"solid_fraction", "volume of grains over that of the shell"}, Unit::none, Range{0.0, 1.0, true, true})};
+  return {t.number(kFriction, Unit::none, Range::not_negative()),
+          t.number({"exponent", "b of the size distribution P(r) ~ r^-b", kOrPressTest}, Unit::none),
+          t.number({"ratio", "size ratio rmax/rmin of the grains", kOrPressTest}, Unit::none, Range::above(1.0)),
+          t.number({"solid_fraction", "volume of grains over that of the shell", kOrPressTest}, Unit::none,
+                   Range{0.0, 1.0, true, true})};
 }
 
 LibraryMatter read_library_matter(const SceneTable& t) {
