@@ -17,7 +17,9 @@ constexpr double kForceAt = 0.35;  ///< D at which the force of a plane stands f
 constexpr double kLensAt = 0.02;   ///< v at which nu stands for w
 constexpr double kLeastB = 1.01;
 constexpr double kMostDelta = 0.3;
-constexpr double kLeastShare = 1e-4;  ///< errors of the form below this count as that
+/// Errors of the form below these are not told from the scatter of packings: of forces, and of onsets [D].
+constexpr double kLeastShare = 0.03;
+constexpr double kLeastOnset = 1e-3;
 const double kNotKnown = std::nan("");
 
 /// One measured number of an entry: value, error, whether it was measured.
@@ -80,7 +82,7 @@ double onset_error(const MultiContactLaw& law) {
       sum += e.offset->onset * e.offset->onset;
       ++n;
     }
-  return n > 0 ? std::log(std::max(std::sqrt(sum / n), kLeastShare)) : kNotKnown;
+  return n > 0 ? std::log(std::max(std::sqrt(sum / n), kLeastOnset)) : kNotKnown;
 }
 
 Estimate estimate_of(const LibraryNumber& n, double least, double share) {
