@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <atomic>
 #include <ctime>
 
 namespace softgrain {
@@ -40,6 +41,9 @@ Meter& meter_of(int threads) {
   if (meter.choice.all() != threads) meter = Meter(threads);
   return meter;
 }
+
+std::atomic<double> all_seconds{0.0};
+std::atomic<double> seconds_alone{0.0};
 
 /// Whether the thread is within a use of its threads.
 thread_local bool in_use = false;
@@ -101,8 +105,12 @@ void PassThreads::begin() {
 }
 
 void PassThreads::measure() {
-  ThreadChoice::Block& block = meter_of(before_).block;
-  block.seconds += clock_.seconds();
+  Meter& meter = meter_of(before_);
+  const double seconds = clock_.seconds();
+  all_seconds.fetch_add(seconds);
+  if (meter.choice.threads() == 1) seconds_alone.fetch_add(seconds);
+  ThreadChoice::Block& block = meter.block;
+  block.seconds += seconds;
   block.cpu_seconds += cpu_seconds() - cpu_begin_;
 }
 
@@ -116,6 +124,8 @@ void PassThreads::passed(std::int64_t passes, std::int64_t pairs) {
   meter.block = {};
   begin();
 }
+
+ThreadUse thread_use() { return {all_seconds.load(), seconds_alone.load()}; }
 
 void ThreadPace::share_out(std::size_t threads) {
   const double equal = 1.0 / static_cast<double>(threads);

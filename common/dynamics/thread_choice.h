@@ -64,6 +64,13 @@ class PassThreads {
   double cpu_begin_ = 0.0;
 };
 
+/// What passes took so far in this program, where there were several threads to choose from.
+struct ThreadUse {
+  double seconds = 0.0;  ///< wall-clock time [s]
+  double alone = 0.0;    ///< of it on one thread, which was faster
+};
+ThreadUse thread_use();
+
 // Which share of the work each thread gets: cores differ, and other programs use them.
 
 /// What threads have been measured by. Times decide who does what, never in which order anything is summed.

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
+#include "common/dynamics/thread_choice.h"
 #include "common/state/checkpoint.h"
 #include "pipelines/report/report.h"
 #include "pipelines/results/summary.h"
@@ -67,11 +69,26 @@ Run::Run(RunContext held, const Scene& scene, std::uint64_t scene_seed, const st
       provenance(context.provenance(scene, seed)),
       store(context, scene, seed, text) {}
 
+namespace {
+
+/// Where several threads did not pay; empty elsewhere. A matter of the machine, so on the terminal and in the log
+/// alone.
+std::string alone_text() {
+  constexpr double kLong = 5.0;  // [s]
+  constexpr double kMost = 0.5;
+  const ThreadUse use = thread_use();
+  if (use.alone < std::max(kLong, kMost * use.seconds)) return "";
+  return fmt::format("one thread had {:.0f} % of the motion: several were no faster (small scene, or busy cores)\n",
+                     100.0 * use.alone / use.seconds);
+}
+
+}  // namespace
+
 ExitStatus Run::finish(nlohmann::json summary, const std::string& console) const {
   if (!summary.contains("seconds")) summary["seconds"] = seconds();
   const bool good = is_good(summary.value("status", ""));
   context.finish(std::move(summary), provenance,
-                 console + fmt::format("{:.0f} s; report: {}", seconds(), path("report.html")));
+                 console + alone_text() + fmt::format("{:.0f} s; report: {}", seconds(), path("report.html")));
   write_report(context.directory());
   store.clear();
   return good ? ExitStatus::good : ExitStatus::not_usable;

@@ -66,6 +66,7 @@ TEST(ThreadChoice, NothingToChooseWithOneThread) {
 
 TEST(PassThreads, GiveTheThreadsBack) {
   const int before = omp_get_max_threads();
+  const ThreadUse use = thread_use();
   omp_set_num_threads(3);
   for (int k = 0; k < 3; ++k) {
     PassThreads threads(10000);
@@ -73,6 +74,10 @@ TEST(PassThreads, GiveTheThreadsBack) {
     while (omp_get_wtime() < begin + 0.1) threads.passed(1, 10);  // one of three threads works: others are tried
   }
   EXPECT_EQ(omp_get_max_threads(), 3);
+  const ThreadUse after = thread_use();
+  EXPECT_NEAR(after.seconds - use.seconds, 0.3, 0.1);
+  EXPECT_GT(after.alone - use.alone, 0.0) << "trials on one thread";
+  EXPECT_LT(after.alone - use.alone, after.seconds - use.seconds);
   omp_set_num_threads(before);
 }
 
