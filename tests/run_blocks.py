@@ -127,7 +127,7 @@ RULES = [
     (r"\./softgrain microsim pipelines/powder_\w+\.toml", Check()),
     (r"\./softgrain law (show|eval|export|get) .*|\./softgrain schema .*", Run()),
     (r"\./softgrain calibrate pipelines/press_test\.csv --set mirror=true", Run()),
-    (r"\./softgrain run pipelines/press_test_macro\.toml", Run(("macro.bodies=30", "macro.bands=8"), slow=True)),
+    (r"\./softgrain run pipelines/press_test_(macro|library)\.toml", Run(("macro.bodies=30", "macro.bands=8"), slow=True)),
     (r"\./softgrain run pipelines/inverse\.toml", Check(slow=True)),
     (r"\./softgrain microsim pipelines/grainlearning_example/soft_particle\.toml .*", Run(statuses=(0, 3))),
     (r"python3 pipelines/grainlearning_example/calibrate\.py", Elsewhere("default suite: the tests OwnData")),
