@@ -115,11 +115,12 @@ double squared_residuals(const ResponseSurface& surface, const std::vector<BoxPo
 }
 
 /// The most of the points nearest to a place, `least` or more, whose surface is that of the nearest `least` as far as
-/// their scatter tells (predictive test of Chow 1960, doi:10.2307/1910133, at 5 %): a surface of few points close to
+/// their scatter tells (predictive test of Chow 1960, doi:10.2307/1910133; a
+/// rejection by chance costs more than some bias, so the level is low): a surface of few points close to
 /// each other says less about the place of a flat top than one of many.
 std::vector<std::size_t> widest_window(const std::vector<BoxPoint>& points, const std::vector<double>& means,
                                        const BoxPoint& place, std::size_t least, std::size_t coefficients) {
-  constexpr double kLevel = 0.05;
+  constexpr double kLevel = 0.002;
   const auto residuals = [&](const std::vector<std::size_t>& some) {
     return squared_residuals(surface_of(points, means, some), points, means, some);
   };

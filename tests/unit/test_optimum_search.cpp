@@ -110,9 +110,9 @@ double error_of_search(std::size_t points, double noise) {
 
 /// Later rounds lie close together, where noise hides the top: they must not outweigh the first ones.
 TEST(FindOptimum, MorePointsDoNotMislead) {
-  EXPECT_LT(error_of_search(9, 0.004), 0.05);
-  EXPECT_LT(error_of_search(20, 0.004), 0.12);
-  EXPECT_LT(error_of_search(20, 0.012), 0.2);
+  EXPECT_LT(error_of_search(9, 0.004), 0.02);
+  EXPECT_LT(error_of_search(20, 0.004), 0.02);
+  EXPECT_LT(error_of_search(20, 0.012), 0.05);
 }
 
 TEST(FindOptimum, SaysWhatItCannotTell) {
