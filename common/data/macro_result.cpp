@@ -272,7 +272,7 @@ constexpr Count kCounts[] = {{"sample", &MacroCurve::sample},
 std::string identity_text(const LawIdentity& law) {
   if (!law.form && law.hash.empty()) return "not recorded";
   const auto told = [](const std::optional<double>& x) { return x ? fmt::format("{:g}", *x) : "(not known)"; };
-  return fmt::format("{} law{}, measured with nu = {}, mu = {}, used with E = {:g} Pa; hash {}",
+  return fmt::format("{} law{}, for grains of nu = {}, mu = {}, used with E = {:g} Pa; hash {}",
                      law.form ? to_string(*law.form) : kCellForm,
                      law.solid_fraction > 0.0 ? fmt::format(" at solid fraction {:.4f}", law.solid_fraction) : "",
                      told(law.poisson_ratio), told(law.friction), law.youngs_modulus, law.hash);

@@ -28,7 +28,7 @@ struct LawIdentity {
   friend bool operator==(const LawIdentity&, const LawIdentity&) = default;
 };
 
-/// "directional law at solid fraction 0.7048, measured with nu = 0.3, mu = 0.3, used with E = 5e+05 Pa; hash
+/// "directional law at solid fraction 0.7048, for grains of nu = 0.3, mu = 0.3, used with E = 5e+05 Pa; hash
 /// 0123456789abcdef".
 std::string identity_text(const LawIdentity& law);
 

@@ -42,8 +42,9 @@ toml::node& descend(toml::node& parent, const std::string& part, const std::stri
     const bool digits = !part.empty() && part.size() < 10 && part.find_first_not_of("0123456789") == std::string::npos;
     toml::node* element = digits ? array->get(std::stoul(part)) : nullptr;
     if (element == nullptr)
-      throw InputError("--set " + setting + ": '" + part + "' must be a number from 0 to " +
-                       std::to_string(array->size()) + " - 1");
+      throw InputError("--set " + setting + ": '" + part + "' " +
+                       (array->empty() ? "names an entry, and there is none"
+                                       : "must be a number from 0 to " + std::to_string(array->size() - 1)));
     return *element;
   }
   toml::table* table = parent.as_table();

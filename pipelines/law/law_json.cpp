@@ -35,7 +35,10 @@ PairLawSummary summary_of(const PairLaw& law, const SoftParticleSpec& spec) {
       law.status, law.reason,       {},         {}, {law.delta_min, law.delta_max}, law.max_overlap, law.packings,
       law.points, law.chi2_per_dof, law.quality};
   if (!has_numbers(law.status)) return out;
-  if (const auto& u = law.unloading) out.unloading = {u->residual, u->exponent, u->samples, u->points};
+  if (const auto& u = law.unloading) {
+    out.unloading = {u->residual, u->exponent, u->samples, u->points};
+    if (u->deepest > 0.0) out.unloading->deepest = u->deepest;
+  }
   if (law.normal.b.value > 0.0) {
     out.parts.normal = numbers_of(law.normal, spec.youngs_modulus * spec.shell_radius * spec.shell_radius, "N");
     out.dimensionless.normal = numbers_of(law.normal, 1.0, "E Rs^2");

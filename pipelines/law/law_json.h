@@ -84,6 +84,7 @@ struct PairLawSummary {
     Estimate exponent;
     int samples = 0;
     int points = 0;
+    std::optional<double> deepest{};  ///< mean Delta_max; empty: not said
   };
   std::optional<Unloading> unloading{};  ///< empty: not measured
 };
@@ -93,6 +94,7 @@ void fields(auto&& visit, Of<PairLawSummary::Unloading> auto& s) {
   estimate_fields(visit, "exponent", s.exponent);
   visit("samples", s.samples);
   visit("points", s.points);
+  visit("deepest", s.deepest, kLeftOut);
 }
 
 void fields(auto&& visit, Of<PairLawSummary> auto& s) {

@@ -300,5 +300,24 @@ class LoadTest(InEmptyFolder):
             softgrain.Law.load("empty")
 
 
+class LibraryTest(InEmptyFolder):
+    def test_a_law_by_the_material_and_by_a_press_test(self):
+        known = softgrain.Law.from_library("known.toml", mu=0.3, exponent=3.5, ratio=10, solid_fraction=0.7)
+        pressed = softgrain.Law.from_library("pressed.toml", press_test=ROOT / "pipelines/press_test.csv", mu=0.3)
+        delta = [0.2, 0.3]
+        self.assertEqual(pressed.about()["form"], "isotropic")
+        # The example is a press test of that material.
+        np.testing.assert_allclose(pressed.force(delta, arrangement="cube"), known.force(delta, arrangement="cube"), rtol=0.2)
+        told = program_json("law", "get", "--press-test", ROOT / "pipelines/press_test.csv", "--mu", "0.3")
+        self.assertAlmostEqual(told["material"]["mu"], 0.3)
+        self.assertNotIn("exponent", told["material"])
+
+    def test_what_is_missing_is_said(self):
+        with self.assertRaisesRegex(softgrain.InputError, "--exponent is needed"):
+            softgrain.Law.from_library("x.toml", mu=0.3)
+        with self.assertRaisesRegex(softgrain.InputError, "needs the friction of the grains"):
+            softgrain.Law.from_library("x.toml", press_test=ROOT / "pipelines/press_test.csv")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -193,7 +193,7 @@ TEST_F(LawTableUse, TheMainEntryIsTakenAndTheLawIsNamedEverywhere) {
   const std::string report = read_text(file("named") + "/report.html");
   EXPECT_NE(report.find("directional law at solid fraction 0.6500"), std::string::npos);
   EXPECT_NE(report.find(kept.hash), std::string::npos);
-  expect(macro("card", "", "--law '" + file("law.toml") + "'"), 0, {"law: pair law, measured with nu = 0.3"});
+  expect(macro("card", "", "--law '" + file("law.toml") + "'"), 0, {"law: pair law, for grains of nu = 0.3"});
   EXPECT_TRUE(summary("card")["law"]["solid_fraction"].is_null());
 }
 

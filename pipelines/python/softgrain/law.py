@@ -90,15 +90,18 @@ class Law(Drawn):
         return str(self.path)
 
     @staticmethod
-    def from_library(out, *, mu, exponent, ratio, solid_fraction, nu=0.3, library=None, own=None):
-        """The law table of a material, interpolated between measured ones, written to `out` (.toml) and loaded.
+    def from_library(out, *, mu=None, exponent=None, ratio=None, solid_fraction=None, nu=None, press_test=None, library=None,
+                     own=None):
+        """The law table of a material that was not measured, concluded from measured ones, written to `out` (.toml) and loaded.
 
         mu: friction of the grains; exponent, ratio: b and rmax/rmin of their sizes, P(r) ~ r^-b; solid_fraction: of the grains in
-        their shell; nu: Poisson's ratio. library: another than that of the program; own: a law table of own packings that corrects
-        it. InputError, with the measured ranges, for a material outside them; IoError for files."""
+        their shell; nu: Poisson's ratio, 0.3 unless given. press_test: instead of exponent, ratio, solid_fraction and nu, the table (or
+        law card) of a press test of one soft particle on a plane; mu where it does not say it. library: another than that of the
+        program; own: a law table of own packings that corrects it. InputError, with the measured ranges, for a material outside
+        them; IoError for files."""
         from softgrain.running import execute, raise_for
         options = {"--mu": mu, "--exponent": exponent, "--ratio": ratio, "--solid-fraction": solid_fraction, "--nu": nu,
-                   "--library": library, "--own": own, "--out": os.fspath(out)}
+                   "--press-test": press_test, "--library": library, "--own": own, "--out": os.fspath(out)}
         ended = execute(["law", "get", *(str(x) for name, value in options.items() if value is not None for x in (name, value))])
         if ended.status != 0:
             raise_for(ended)
