@@ -10,6 +10,7 @@
 
 #include "common/core/error.h"
 #include "common/io/hdf5_file.h"
+#include "common/io/text_file.h"
 #include "common/packing/grading_scene.h"
 #include "pipelines/kinds/cohesive_powder/variants.h"
 #include "pipelines/report/number_format.h"
