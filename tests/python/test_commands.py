@@ -98,7 +98,7 @@ class CommandsTest(InEmptyFolder):
         self.assertEqual((refused.exception.nearest, refused.exception.status), ("quickstart", 2))
 
     def test_what_pandas_is_given(self):
-        """By a stand-in, as most machines of the tests have none: the columns by name and the units."""
+        """By a substitute, as most machines of the tests have none: the columns by name and the units."""
         pandas = types.SimpleNamespace(DataFrame=lambda columns: types.SimpleNamespace(columns=columns, attrs={}))
         with unittest.mock.patch.dict("sys.modules", pandas=pandas):
             frame = softgrain.Table("t", {"x": [1.0, 2.0], "word": ["a", "b"]}, {"x": "m"}).dataframe()
