@@ -137,9 +137,10 @@ inline constexpr Later kLater{};
 struct AsRows {};
 inline constexpr AsRows kAsRows{};
 /// Option of an enum, stored as its number: the last value, and what is said of any other.
-template <class Enum>
 struct UpTo {
-  Enum last;
+  template <class Enum>
+  UpTo(Enum highest, const char* said) : last(static_cast<double>(highest)), unknown(said) {}
+  double last;
   const char* unknown;
 };
 
@@ -154,9 +155,8 @@ struct ColumnForm {
   void take(const Limits& allowed) { limits = allowed; }
   void take(Later) { later = true; }
   void take(AsRows) { width = 3; }
-  template <class Enum>
-  void take(const UpTo<Enum>& known) {
-    limits = {0.0, static_cast<double>(known.last)};
+  void take(const UpTo& known) {
+    limits = {0.0, known.last};
     unknown = known.unknown;
   }
 };
