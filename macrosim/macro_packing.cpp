@@ -7,6 +7,8 @@
 
 #include "common/core/error.h"
 #include "common/core/particles.h"
+#include "common/data/attributes.h"
+#include "common/data/fields.h"
 #include "common/neighbours/spatial_order.h"
 #include "macrosim/box.h"
 #include "macrosim/preparation.h"
@@ -187,9 +189,7 @@ void write_macro_packing(const h5::Group& group, const MacroPacking& packing) {
   group.write("bodies", rows, {packing.bodies.size(), 4});
   group.write("soft", soft);
   write_springs(group, packing.springs);
-  group.attribute("loop_passes", packing.cost.loop_passes);
-  group.attribute("contact_evaluations", packing.cost.contact_evaluations);
-  group.attribute("seconds", packing.cost.seconds);
+  write_attributes(group, packing.cost);
 }
 
 MacroPacking read_macro_packing(const h5::Group& group) {
@@ -201,8 +201,7 @@ MacroPacking read_macro_packing(const h5::Group& group) {
   for (std::size_t k = 0; k < soft.size(); ++k)
     packing.bodies.push_back({{{rows[4 * k], rows[4 * k + 1], rows[4 * k + 2]}}, rows[4 * k + 3], soft[k] != 0});
   read_springs(group, packing);
-  if (group.has_attribute("loop_passes"))
-    packing.cost = {group.integer("loop_passes"), group.integer("contact_evaluations"), group.number("seconds")};
+  if (group.has_attribute("loop_passes")) read_attributes(group, packing.cost);
   return packing;
 }
 

@@ -63,22 +63,29 @@ double read_attribute(const h5::Group& group, const std::string& name, const Lim
 }
 
 void StoredColumn::write(const h5::Group& group) const {
+  const std::size_t numbers = whole ? wholes.size() : reals.size();
+  const h5::Shape shape = form.width == 1 ? h5::Shape{} : h5::Shape{numbers / form.width, form.width};
   if (whole)
-    group.write(name, std::span<const std::int64_t>(wholes));
+    group.write(name, std::span<const std::int64_t>(wholes), shape);
   else
-    group.write(name, std::span<const double>(reals));
+    group.write(name, std::span<const double>(reals), shape);
   group.attribute_of(name, "unit", unit);
 }
 
 void StoredColumn::read(const h5::Group& group, std::size_t length) {
   if (!whole) {
-    reals = read_numbers(group, name, unit, {length}, limits);
+    reals = read_numbers(group, name, unit, form.width == 1 ? h5::Shape{length} : h5::Shape{length, form.width},
+                         form.limits);
     return;
   }
   require_shape(group, name, {length});
   require_unit(group, name, unit);
   wholes = group.integers(name);
-  for (std::size_t k = 0; k < length; ++k) require_within(static_cast<double>(wholes[k]), limits, name, k);
+  for (std::size_t k = 0; k < length; ++k) {
+    const auto value = static_cast<double>(wholes[k]);
+    if (form.unknown != nullptr && (value < form.limits.low || value > form.limits.high)) throw IoError(form.unknown);
+    require_within(value, form.limits, name, k);
+  }
 }
 
 std::size_t column_length(const h5::Group& group, const std::string& name) {

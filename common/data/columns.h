@@ -5,7 +5,9 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "common/core/enum_names.h"
@@ -128,82 +130,134 @@ void read_vectors(const h5::Group& group, const std::string& name, const std::st
     set(records[k], Vec3{{flat[3 * k], flat[3 * k + 1], flat[3 * k + 2]}});
 }
 
+/// Option of a field: files of earlier versions do not have it; the member keeps what it has.
+struct Later {};
+inline constexpr Later kLater{};
+/// Option of a vector: a data set with three numbers a row, not one data set for each component.
+struct AsRows {};
+inline constexpr AsRows kAsRows{};
+/// Option of an enum, stored as its number: the last value, and what is said of any other.
+struct UpTo {
+  template <class Enum>
+  UpTo(Enum highest, const char* said) : last(static_cast<double>(highest)), unknown(said) {}
+  double last;
+  const char* unknown;
+};
+
+/// How a field is stored.
+struct ColumnForm {
+  std::string_view unit;
+  Limits limits{};
+  bool later = false;
+  std::size_t width = 1;          ///< numbers in a row
+  const char* unknown = nullptr;  ///< said of a number that is outside the limits; null: the number and the limits
+
+  void take(const Limits& allowed) { limits = allowed; }
+  void take(Later) { later = true; }
+  void take(AsRows) { width = 3; }
+  void take(const UpTo& known) {
+    limits = {0.0, known.last};
+    unknown = known.unknown;
+  }
+};
+
 /// One column of a list of records: numbers with a fraction, or whole ones.
 struct StoredColumn {
   std::string name;
-  const char* unit;
-  Limits limits;
+  std::string unit;
+  ColumnForm form;  ///< without its unit
   bool whole;
   std::vector<double> reals{};
   std::vector<std::int64_t> wholes{};
 
   void write(const h5::Group& group) const;
-  /// Throws IoError where the numbers are not `length` ones of this unit within the limits.
+  /// Throws IoError where the numbers are not those of `length` records, of this unit and within the limits.
   void read(const h5::Group& group, std::size_t length);
+  [[nodiscard]] bool is_there() const { return whole ? !wholes.empty() : !reals.empty(); }
 };
 
-/// Calls each(name, number, unit, limits) for every number among the fields of a record, see common/data/fields.h;
-/// those of a vector are NAME_x, NAME_y, NAME_z.
-template <class Record, class Each>
-void numbers_of_fields(Record& record, Each each) {
+/// Calls each(name, component, number, form) for every number among the fields of a record, see common/data/fields.h.
+/// `component`: 'x', 'y' or 'z' of a vector, else 0.
+template <class Record, class Each, class... Context>
+void numbers_of_fields(Record& record, Each each, const Context&... context) {
   fields(
-      [&](const std::string& name, auto& member, const char* unit, const Limits& limits = {}) {
+      [&](const auto& name, auto& member, const auto& unit, const auto&... options) {
+        ColumnForm form{unit};
+        (form.take(options), ...);
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(member)>, Vec3>)
-          for (std::size_t k = 0; k < 3; ++k) each(name + "_" + "xyz"[k], member.v[k], unit, limits);
+          for (std::size_t k = 0; k < 3; ++k) each(name, "xyz"[k], member.v[k], form);
         else
-          each(name, member, unit, limits);
+          each(name, char{}, member, form);
       },
-      record);
+      record, context...);
 }
 
-template <class Record>
-std::vector<StoredColumn> columns_of() {
+template <class Record, class... Context>
+std::vector<StoredColumn> columns_of(const Context&... context) {
   std::vector<StoredColumn> columns;
   const Record blank{};
-  numbers_of_fields(blank, [&](const std::string& name, const auto& number, const char* unit, const Limits& limits) {
-    columns.push_back({name, unit, limits, std::is_integral_v<std::remove_cvref_t<decltype(number)>>});
-  });
+  numbers_of_fields(
+      blank,
+      [&](const auto& name, char component, const auto& number, ColumnForm form) {
+        if (form.width > 1 && component != 'x') return;
+        std::string full = name;
+        if (form.width == 1 && component != 0) full += std::string("_") + component;
+        std::string unit(form.unit);
+        form.unit = {};
+        using Number = std::remove_cvref_t<decltype(number)>;
+        columns.push_back({std::move(full), std::move(unit), form, !std::is_floating_point_v<Number>});
+      },
+      context...);
   return columns;
 }
 
-/// The fields of records as one data set each.
-template <class Record>
-void write_records(const h5::Group& group, const std::vector<Record>& records) {
-  std::vector<StoredColumn> columns = columns_of<Record>();
+/// The fields of records as one data set each. `context`: what fields() takes beside the record.
+template <class Record, class... Context>
+void write_records(const h5::Group& group, const std::vector<Record>& records, const Context&... context) {
+  std::vector<StoredColumn> columns = columns_of<Record>(context...);
   for (const Record& record : records) {
     auto column = columns.begin();
-    numbers_of_fields(record, [&](const std::string&, const auto& number, const char*, const Limits&) {
-      if (column->whole)
-        column->wholes.push_back(static_cast<std::int64_t>(number));
-      else
-        column->reals.push_back(static_cast<double>(number));
-      ++column;
-    });
+    numbers_of_fields(
+        record,
+        [&](const auto&, char component, const auto& number, const ColumnForm& form) {
+          if (column->whole)
+            column->wholes.push_back(static_cast<std::int64_t>(number));
+          else
+            column->reals.push_back(static_cast<double>(number));
+          if (form.width == 1 || component == 'z') ++column;
+        },
+        context...);
   }
   for (const StoredColumn& column : columns) column.write(group);
 }
 
 /// Reads them back into as many records as there are. Throws IoError.
-template <class Record>
-void read_records(const h5::Group& group, std::vector<Record>& records) {
-  std::vector<StoredColumn> columns = columns_of<Record>();
-  for (StoredColumn& column : columns) column.read(group, records.size());
+template <class Record, class... Context>
+void read_records(const h5::Group& group, std::vector<Record>& records, const Context&... context) {
+  std::vector<StoredColumn> columns = columns_of<Record>(context...);
+  for (StoredColumn& column : columns)
+    if (!column.form.later || group.has(column.name)) column.read(group, records.size());
   for (std::size_t k = 0; k < records.size(); ++k) {
     auto column = columns.begin();
-    numbers_of_fields(records[k], [&](const std::string&, auto& number, const char*, const Limits&) {
-      using Number = std::remove_cvref_t<decltype(number)>;
-      number = column->whole ? static_cast<Number>(column->wholes[k]) : static_cast<Number>(column->reals[k]);
-      ++column;
-    });
+    numbers_of_fields(
+        records[k],
+        [&](const auto&, char component, auto& number, const ColumnForm& form) {
+          using Number = std::remove_cvref_t<decltype(number)>;
+          const std::size_t at = form.width == 1 ? k : 3 * k + static_cast<std::size_t>(component - 'x');
+          if (column->is_there())
+            number = column->whole ? static_cast<Number>(column->wholes[at]) : static_cast<Number>(column->reals[at]);
+          if (form.width == 1 || component == 'z') ++column;
+        },
+        context...);
   }
 }
 
-/// All numbers of all records one after the other, for checkpoints.
+/// All numbers of all records one after the other, for checkpoints and tables of several columns.
 template <class Record>
 std::vector<double> rows_of(const std::vector<Record>& records) {
   std::vector<double> rows;
   for (const Record& record : records)
-    numbers_of_fields(record, [&](const std::string&, const auto& number, const char*, const Limits&) {
+    numbers_of_fields(record, [&](const auto&, char, const auto& number, const ColumnForm&) {
       rows.push_back(static_cast<double>(number));
     });
   return rows;
@@ -214,7 +268,7 @@ std::vector<Record> records_of(const std::vector<double>& rows) {
   std::vector<Record> records(rows.size() / columns_of<Record>().size());
   auto next = rows.begin();
   for (Record& record : records)
-    numbers_of_fields(record, [&](const std::string&, auto& number, const char*, const Limits&) {
+    numbers_of_fields(record, [&](const auto&, char, auto& number, const ColumnForm&) {
       number = static_cast<std::remove_cvref_t<decltype(number)>>(*next++);
     });
   return records;

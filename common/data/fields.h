@@ -1,5 +1,6 @@
 // The members of records, each with its name and unit once: fields(visit, record) calls visit(name, member, unit,
-// limits), in the order in which rows hold them. Columns of files, rows of checkpoints and JSON go by it.
+// options), in the order in which rows hold them. Columns and attributes of files, rows of checkpoints
+// and JSON go by it; options: Limits, and those of columns.h and attributes.h.
 #pragma once
 
 #include "common/core/statistics.h"
@@ -55,6 +56,8 @@ void fields(auto&& visit, Of<PackingRun> auto& r) {
 }
 
 void fields(auto&& visit, Of<MultiContactPartner> auto& p) {
+  visit("kind", p.kind, "1", UpTo{PartnerKind::soft, "kind of a neighbour out of range"});
+  visit("smooth", p.smooth, "1", kLater);
   visit("ratio", p.ratio, "1", Limits::not_negative());
   visit("direction", p.direction, "1");
 }
@@ -62,6 +65,13 @@ void fields(auto&& visit, Of<MultiContactPartner> auto& p) {
 void fields(auto&& visit, Of<MultiContactConfiguration> auto& c) {
   visit("centre_free", c.centre_free, "1", Limits::flag());
   visit("held_out", c.held_out, "1", Limits::flag());
+  visit("turning", c.turning, "1", kLater);
+}
+
+/// Fields of a MultiContactStage without its move and its overlaps.
+void fields(auto&& visit, Of<MultiContactStage> auto& s) {
+  visit("slide", s.slide, "Rs");
+  visit("roll", s.roll, "Rs", kLater);
 }
 
 /// Fields of a MultiContactPoint without its values per neighbour.
@@ -72,6 +82,7 @@ void fields(auto&& visit, Of<MultiContactPoint> auto& p) {
   visit("residual", p.residual, "1", Limits::anything());
   visit("max_overlap", p.max_overlap, "1", Limits::not_negative());
   visit("converged", p.converged, "1", Limits::flag());
+  visit("roll", p.roll, "Rs", kLater);
 }
 
 /// Fields of a MultiContactRun without its points.
@@ -79,6 +90,7 @@ void fields(auto&& visit, Of<MultiContactRun> auto& r) {
   visit("configuration", r.configuration, "1");
   visit("packing", r.packing, "1");
   fields(visit, r.cost);
+  visit("orientation", r.orientation, "1", Limits{0.0, 999999.0}, kLater);
 }
 
 }  // namespace softgrain

@@ -8,10 +8,53 @@
 #include "common/core/error.h"
 #include "common/core/limits.h"
 #include "common/core/material.h"
+#include "common/data/attributes.h"
 #include "common/data/columns.h"
+#include "common/data/fields.h"
 #include "common/data/histogram_io.h"
 
 namespace softgrain {
+
+namespace {
+
+constexpr Limits kNotNegative{0.0, kInfinity};
+
+}  // namespace
+
+/// What a curve says of itself, without its columns, its stages and where it comes from.
+void fields(auto&& visit, Of<MacroCurve> auto& c) {
+  visit("engine", c.engine);
+  visit("test", c.test);
+  visit("boundary", c.boundary, kLater);
+  visit("note", c.note);
+  visit("warning", c.warning, kIfAny);
+  visit("usable", c.usable);
+  visit("sample", c.sample, kNotNegative);
+  visit("bodies", c.bodies, kNotNegative);
+  visit("soft", c.soft, kNotNegative);
+  visit("grains", c.grains, kNotNegative);
+  visit("soft_volume_share", c.soft_volume_share, Limits::flag());
+  visit("solid_fraction", c.solid_fraction, kNotNegative);
+  fields(visit, c.cost);
+  visit("preload", c.preload, Limits::flag(), kLater);
+  const auto later = [&](const auto& name, auto& member, const auto&... options) {
+    visit(name, member, options..., kLater);
+  };
+  fields(later, c.preparation, "preparation_");
+}
+
+void fields(auto&& visit, Of<MacroStart> auto& s) {
+  visit("start", s.bodies);
+  visit("radius_min", s.radius_min, kNotNegative);
+  visit("radius_max", s.radius_max, kNotNegative);
+  visit("youngs_modulus", s.youngs_modulus, kNotNegative);
+  visit("friction", s.friction, kNotNegative);
+  visit("wall_friction", s.wall_friction, kNotNegative);
+  visit("poisson_ratio", s.poisson_ratio, Limits{kPoissonLowest, kPoissonHighest});
+  visit("size_x", s.size_x, kNotNegative, kLater);
+  visit("size_y", s.size_y, kNotNegative, kLater);
+  visit("size_z", s.size_z, kNotNegative, kLater);
+}
 
 namespace {
 
@@ -23,8 +66,6 @@ struct Column {
   std::vector<double> MacroCurve::*values;
   Limits limits{};
 };
-
-constexpr Limits kNotNegative{0.0, kInfinity};
 
 constexpr Column kColumns[] = {{"strain", "1", &MacroCurve::strain, {-kInfinity, 1.0}},
                                {"stress_axial", "Pa", &MacroCurve::stress_axial},
@@ -180,50 +221,23 @@ void read_column(const h5::Group& group, MacroCurve& curve, const Column& c, std
   curve.*c.values = read_numbers(group, c.name, c.unit, {length}, c.limits);
 }
 
-std::int64_t read_count(const h5::Group& group, const char* name) {
-  const std::int64_t value = group.integer(name);
-  if (value < 0) throw IoError(fmt::format("attribute '{}' is {}; allowed: at least 0", name, value));
-  return value;
-}
-
-/// A number of a curve and its name as an attribute.
-template <class T>
-struct Number {
-  const char* name;
-  double T::*value;
-};
-
-constexpr Number<LawIdentity> kLawNumbers[] = {{"law_solid_fraction", &LawIdentity::solid_fraction},
-                                               {"law_youngs_modulus", &LawIdentity::youngs_modulus}};
-
-/// A number that may be unknown, and its name as an attribute. An unknown number has no attribute.
-struct KnownNumber {
-  const char* name;
-  std::optional<double> LawIdentity::*value;
-};
-
-constexpr KnownNumber kLawKnown[] = {{"law_poisson_ratio", &LawIdentity::poisson_ratio},
-                                     {"law_friction", &LawIdentity::friction}};
-constexpr Number<MacroStart> kStartNumbers[] = {{"radius_min", &MacroStart::radius_min},
-                                                {"radius_max", &MacroStart::radius_max},
-                                                {"youngs_modulus", &MacroStart::youngs_modulus},
-                                                {"friction", &MacroStart::friction},
-                                                {"wall_friction", &MacroStart::wall_friction}};
-constexpr const char* kPoissonName = "poisson_ratio";  // of the start; below zero for auxetic grains
 constexpr const char* kRollingFriction = "rolling_friction";
 constexpr const char* kRollingStiffness = "rolling_stiffness_ratio";
-constexpr Number<MacroStart> kStartSizes[] = {
-    {"size_x", &MacroStart::size_x}, {"size_y", &MacroStart::size_y}, {"size_z", &MacroStart::size_z}};
-
 /// The law of cells, which is no form of a multi-contact law.
 const std::string kCellForm = "cell";
 
+/// Numbers of the law beside its form.
+void law_attributes(auto&& visit, Of<LawIdentity> auto& law) {
+  visit("law_hash", law.hash);
+  visit("law_solid_fraction", law.solid_fraction, kNotNegative);
+  visit("law_youngs_modulus", law.youngs_modulus, kNotNegative);
+  visit("law_poisson_ratio", law.poisson_ratio, Limits{});
+  visit("law_friction", law.friction, Limits{});
+}
+
 void write_origin(const h5::Group& group, const MacroCurve& curve) {
   if (!curve.start.bodies.empty()) {
-    group.attribute("start", curve.start.bodies);
-    for (const auto& n : kStartNumbers) group.attribute(n.name, curve.start.*n.value);
-    group.attribute(kPoissonName, curve.start.poisson_ratio);
-    for (const auto& n : kStartSizes) group.attribute(n.name, curve.start.*n.value);
+    write_attributes(group, curve.start);
     if (const RollingResistance& rolling = curve.start.rolling; rolling.friction > 0.0) {
       group.attribute(kRollingFriction, rolling.friction);
       group.attribute(kRollingStiffness, rolling.stiffness);
@@ -231,41 +245,21 @@ void write_origin(const h5::Group& group, const MacroCurve& curve) {
   }
   if (curve.law.hash.empty()) return;
   group.attribute("law_form", curve.law.form ? to_string(*curve.law.form) : kCellForm);
-  group.attribute("law_hash", curve.law.hash);
-  for (const auto& n : kLawNumbers) group.attribute(n.name, curve.law.*n.value);
-  for (const KnownNumber& n : kLawKnown)
-    if (curve.law.*n.value) group.attribute(n.name, *(curve.law.*n.value));
+  law_attributes(AttributeWriter{group}, curve.law);
 }
 
 /// Either may be absent.
 void read_origin(const h5::Group& group, MacroCurve& curve) {
   if (group.has_attribute("start")) {
-    curve.start.bodies = group.text("start");
-    for (const auto& n : kStartNumbers) curve.start.*n.value = read_attribute(group, n.name, kNotNegative);
-    curve.start.poisson_ratio = read_attribute(group, kPoissonName, {kPoissonLowest, kPoissonHighest});
-    if (group.has_attribute("size_x"))
-      for (const auto& n : kStartSizes) curve.start.*n.value = read_attribute(group, n.name, kNotNegative);
+    read_attributes(group, curve.start);
     if (group.has_attribute(kRollingFriction))
       curve.start.rolling = {read_attribute(group, kRollingFriction, kNotNegative),
                              read_attribute(group, kRollingStiffness, kNotNegative)};
   }
   if (!group.has_attribute("law_form")) return;
   if (group.text("law_form") != kCellForm) curve.law.form = read_word<LawForm>(group, "law_form");
-  curve.law.hash = group.text("law_hash");
-  for (const auto& n : kLawNumbers) curve.law.*n.value = read_attribute(group, n.name, kNotNegative);
-  for (const KnownNumber& n : kLawKnown)
-    if (group.has_attribute(n.name)) curve.law.*n.value = read_attribute(group, n.name);
+  law_attributes(AttributeReader{group}, curve.law);
 }
-
-struct Count {
-  const char* name;
-  std::int64_t MacroCurve::*value;
-};
-
-constexpr Count kCounts[] = {{"sample", &MacroCurve::sample},
-                             {"bodies", &MacroCurve::bodies},
-                             {"soft", &MacroCurve::soft},
-                             {"grains", &MacroCurve::grains}};
 
 }  // namespace
 
@@ -313,23 +307,8 @@ std::vector<std::vector<double>> read_rows(const h5::Group& group, const char* n
 }  // namespace
 
 void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
-  group.attribute("engine", curve.engine);
-  group.attribute("test", to_string(curve.test));
-  group.attribute("boundary", to_string(curve.boundary));
+  write_attributes(group, curve);
   write_stage_records(group, curve.stages);
-  group.attribute("note", curve.note);
-  if (!curve.warning.empty()) group.attribute("warning", curve.warning);
-  group.attribute("usable", static_cast<std::int64_t>(curve.usable));
-  for (const Count& c : kCounts) group.attribute(c.name, curve.*c.value);
-  group.attribute("soft_volume_share", curve.soft_volume_share);
-  group.attribute("solid_fraction", curve.solid_fraction);
-  group.attribute("loop_passes", curve.cost.loop_passes);
-  group.attribute("contact_evaluations", curve.cost.contact_evaluations);
-  group.attribute("seconds", curve.cost.seconds);
-  group.attribute("preload", curve.preload);
-  group.attribute("preparation_loop_passes", curve.preparation.loop_passes);
-  group.attribute("preparation_contact_evaluations", curve.preparation.contact_evaluations);
-  group.attribute("preparation_seconds", curve.preparation.seconds);
   write_origin(group, curve);
   for (const Column& c : kColumns) write_quantity(group, curve, c);
   for (const Column& c : kOptionalColumns) write_if_any(group, curve, c);
@@ -345,23 +324,9 @@ void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
 
 MacroCurve read_macro_curve(const h5::Group& group) {
   MacroCurve curve;
-  curve.engine = current_name(group.text("engine"));
-  curve.test = read_word<MacroTest>(group, "test");
-  if (group.has_attribute("boundary")) curve.boundary = read_word<Boundary>(group, "boundary");
+  read_attributes(group, curve);
+  curve.engine = current_name(curve.engine);
   curve.stages = read_stage_records(group);
-  curve.note = group.text("note");
-  if (group.has_attribute("warning")) curve.warning = group.text("warning");
-  curve.usable = group.integer("usable") != 0;
-  for (const Count& c : kCounts) curve.*c.value = read_count(group, c.name);
-  curve.soft_volume_share = read_attribute(group, "soft_volume_share", Limits::flag());
-  curve.solid_fraction = read_attribute(group, "solid_fraction", kNotNegative);
-  curve.cost = {read_count(group, "loop_passes"), read_count(group, "contact_evaluations"),
-                read_attribute(group, "seconds", kNotNegative)};
-  if (group.has_attribute("preload")) curve.preload = read_attribute(group, "preload", Limits::flag());
-  if (group.has_attribute("preparation_seconds"))
-    curve.preparation = {read_count(group, "preparation_loop_passes"),
-                         read_count(group, "preparation_contact_evaluations"),
-                         read_attribute(group, "preparation_seconds", kNotNegative)};
   read_origin(group, curve);
   const std::size_t points = group.doubles(kColumns[0].name).size();
   for (const Column& c : kColumns) read_column(group, curve, c, points);

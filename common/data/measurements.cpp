@@ -11,10 +11,18 @@
 #include <map>
 
 #include "common/core/error.h"
+#include "common/data/attributes.h"
 #include "common/data/fields.h"
 #include "common/data/soft_particle_schema.h"
 
 namespace softgrain {
+
+void fields(auto&& visit, Of<Measurements> auto& m) {
+  visit("shell_turns", m.shell_turns);
+  visit("approach_speed", m.approach_speed);
+  visit("turn", m.turn, kLater);
+  visit("turn_speed", m.turn_speed, kLater);
+}
 
 namespace {
 
@@ -63,11 +71,6 @@ void write_runs(const h5::Group& root, const Measurements& data) {
   }
   write_records(root.create("normal"), normal);
   write_records(root.create("tangential"), tangential);
-}
-
-TurnProtocol read_turn(const std::string& word) {
-  if (const auto turn = parse_enum<TurnProtocol>(word)) return *turn;
-  throw IoError("turn of unknown name '" + word + "'");
 }
 
 std::vector<std::string> read_relaxations(const h5::Group& group) {
@@ -127,11 +130,8 @@ void save(const Measurements& data, const std::string& path, const Provenance& p
   h5::AtomicFile file(path);
   const h5::Group root = file.root();
   write_format(root, kMeasurementsFormat);
-  root.attribute("shell_turns", static_cast<std::int64_t>(data.shell_turns));
-  root.attribute("approach_speed", data.approach_speed);
+  write_attributes(root, data);
   root.attribute("approach_speed_unit", "m/s");
-  root.attribute("turn", to_string(data.turn));
-  root.attribute("turn_speed", data.turn_speed);
   root.attribute("turn_speed_unit", "m/s");
   write_spec(root, data.spec);
   write_packings(root, data.packings);
@@ -144,14 +144,9 @@ Measurements load_measurements(const std::string& path) {
   const h5::Group root = h5::open_file(path);
   require_format(root, kMeasurementsFormat, path);
   Measurements data;
-  data.shell_turns = root.integer("shell_turns") != 0;
-  data.approach_speed = root.number("approach_speed");
   data.turn = TurnProtocol::frozen;
   try {
-    if (root.has_attribute("turn")) {
-      data.turn = read_turn(root.text("turn"));
-      data.turn_speed = root.number("turn_speed");
-    }
+    read_attributes(root, data);
     data.spec = read_spec(root);
     data.packings = read_packings(root);
     data.runs = read_runs(root, data.packings.size());

@@ -43,8 +43,6 @@ void write_partners(const h5::Group& group, const std::vector<MultiContactConfig
   for (const auto& c : configurations) all.insert(all.end(), c.partners.begin(), c.partners.end());
   const h5::Group g = group.create("partners");
   g.attribute("kinds", "0 plane, 1 solid, 2 soft");
-  write_column(g, "kind", "1", all, [](const auto& p) { return static_cast<std::int64_t>(p.kind); });
-  write_column(g, "smooth", "1", all, [](const auto& p) { return static_cast<std::int64_t>(p.smooth); });
   write_column(g, "on", "1", all, [](const auto& p) { return std::int64_t{p.on} + 1; });  // 0: the centre
   write_records(g, all);
 }
@@ -52,9 +50,6 @@ void write_partners(const h5::Group& group, const std::vector<MultiContactConfig
 std::vector<MultiContactPartner> read_partners(const h5::Group& group) {
   const h5::Group g = group.open("partners");
   std::vector<MultiContactPartner> all(column_length(g, "kind"));
-  read_integers(g, "kind", all,
-                [](auto& p, auto v) { p.kind = static_cast<PartnerKind>(below(v, 3, "kind of a neighbour")); });
-  if (g.has("smooth")) read_integers(g, "smooth", all, [](auto& p, auto v) { p.smooth = v != 0; });
   if (g.has("on"))
     read_integers(g, "on", all, [](auto& p, auto v) { p.on = static_cast<std::int32_t>(below(v, 1000, "on")) - 1; });
   read_records(g, all);
@@ -72,8 +67,7 @@ void write_stages(const h5::Group& group, const std::vector<MultiContactConfigur
   for (const auto& c : configurations) all.insert(all.end(), c.stages.begin(), c.stages.end());
   const h5::Group g = group.create("stages");
   for (std::size_t k = 0; k < all.size(); ++k) g.attribute("name_" + std::to_string(k), to_string(all[k].move));
-  write_column(g, "slide", "Rs", all, [](const auto& s) { return s.slide; });
-  write_column(g, "roll", "Rs", all, [](const auto& s) { return s.roll; });
+  write_records(g, all);
   write_column(g, "overlaps", "1", all, [](const auto& s) { return s.overlap.size(); });
   std::vector<double> overlaps;
   for (const auto& s : all) overlaps.insert(overlaps.end(), s.overlap.begin(), s.overlap.end());
@@ -91,8 +85,7 @@ std::vector<MultiContactStage> read_stages(const h5::Group& group) {
       throw IoError("a stage is called '" + name + "'; known are load, unload, reload, slide, oblique and roll");
     all[k].move = *move;
   }
-  read_finite(g, "slide", "Rs", all, [](auto& s, double v) { s.slide = v; });
-  if (g.has("roll")) read_finite(g, "roll", "Rs", all, [](auto& s, double v) { s.roll = v; });
+  read_records(g, all);
   const std::vector<double> overlaps = read_numbers(g, "overlap", "Rs", {g.doubles("overlap").size()}, kOverlaps);
   Slices slices(overlaps.size());
   read_integers(g, "overlaps", all, [&](auto& s, auto v) { s.overlap = take(overlaps, slices, v); });
@@ -104,7 +97,6 @@ void write_configurations(const h5::Group& root, const std::vector<MultiContactC
   const h5::Group g = root.create("configurations");
   for (std::size_t k = 0; k < all.size(); ++k) g.attribute("name_" + std::to_string(k), all[k].name);
   write_records(g, all);
-  write_column(g, "turning", "1", all, [](const auto& c) { return static_cast<std::int64_t>(c.turning); });
   write_column(g, "partner_count", "1", all, [](const auto& c) { return c.partners.size(); });
   write_column(g, "stage_count", "1", all, [](const auto& c) { return c.stages.size(); });
   write_partners(g, all);
@@ -130,7 +122,6 @@ std::vector<MultiContactConfiguration> read_configurations(const h5::Group& root
   std::vector<MultiContactConfiguration> all(column_length(g, "centre_free"));
   for (std::size_t k = 0; k < all.size(); ++k) all[k].name = g.text("name_" + std::to_string(k));
   read_records(g, all);
-  if (g.has("turning")) read_integers(g, "turning", all, [](auto& c, auto v) { c.turning = v != 0; });
   const std::vector<MultiContactPartner> partners = read_partners(g);
   const std::vector<MultiContactStage> stages = read_stages(g);
   Slices partner_slices(partners.size());
@@ -152,7 +143,6 @@ std::vector<MultiContactConfiguration> read_configurations(const h5::Group& root
 void write_points(const h5::Group& group, const std::vector<MultiContactPoint>& points) {
   const h5::Group g = group.create("points");
   write_records(g, points);
-  write_column(g, "roll", "Rs", points, [](const auto& p) { return p.roll; });
   write_column(g, "neighbours", "1", points, [](const auto& p) { return p.overlap.size(); });
   std::vector<NeighbourRow> rows;
   for (const MultiContactPoint& p : points)
@@ -197,7 +187,6 @@ std::vector<MultiContactPoint> read_points(const h5::Group& group) {
   Slices slices(rows.size());
   read_integers(g, "neighbours", points, [&](auto& p, auto v) { append_neighbours(p, take(rows, slices, v)); });
   slices.finish();
-  if (g.has("roll")) read_finite(g, "roll", "Rs", points, [](auto& p, double v) { p.roll = v; });
   if (group.has("moments")) read_moments(group.open("moments"), points, rows.size());
   return points;
 }
@@ -308,7 +297,6 @@ MultiContactMeasurements mean_over_orientations(const MultiContactMeasurements& 
 
 void write_multi_contact_runs(const h5::Group& group, const std::vector<MultiContactRun>& runs) {
   write_records(group, runs);
-  write_column(group, "orientation", "1", runs, [](const auto& r) { return r.orientation; });
   write_column(group, "point_count", "1", runs, [](const auto& r) { return r.points.size(); });
   std::vector<MultiContactPoint> points;
   for (const MultiContactRun& run : runs) points.insert(points.end(), run.points.begin(), run.points.end());
@@ -318,9 +306,6 @@ void write_multi_contact_runs(const h5::Group& group, const std::vector<MultiCon
 std::vector<MultiContactRun> read_multi_contact_runs(const h5::Group& group) {
   std::vector<MultiContactRun> runs(column_length(group, "configuration"));
   read_records(group, runs);
-  if (group.has("orientation"))
-    read_integers(group, "orientation", runs,
-                  [](auto& r, auto v) { r.orientation = below(v, 1000000, "orientation"); });
   const std::vector<MultiContactPoint> points = read_points(group);
   Slices slices(points.size());
   read_integers(group, "point_count", runs, [&](auto& r, auto v) { r.points = take(points, slices, v); });

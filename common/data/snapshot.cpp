@@ -9,6 +9,7 @@
 #include <span>
 
 #include "common/core/error.h"
+#include "common/data/attributes.h"
 #include "common/data/columns.h"
 #include "common/data/snapshot.h"
 
@@ -38,11 +39,71 @@ namespace {
 
 constexpr const char* kStatesFormat = "states";
 
-template <class Enum>
-Enum checked(std::int64_t value, Enum last, const char* what) {
-  if (value < 0 || value > static_cast<std::int64_t>(last)) throw IoError(std::string("unknown ") + what);
-  return static_cast<Enum>(value);
+/// Units of a state, and which columns it has.
+struct StateForm {
+  std::string length;
+  std::string velocity;
+  std::string spin;
+  std::string mass;
+  std::string force;
+  bool moves = false;
+  bool weighed = false;  ///< all masses are known
+  bool shifted = false;  ///< contacts reach into images
+};
+
+StateForm form_of(const Snapshot& s) {
+  const bool si = s.length_unit == "m" && s.force_unit == "N" && s.time_unit == "s";
+  return {s.length_unit, s.length_unit + "/" + s.time_unit, "rad/" + s.time_unit,
+          si ? "kg" : s.force_unit + " " + s.time_unit + "^2/" + s.length_unit, s.force_unit};
 }
+
+}  // namespace
+
+void fields(auto&& visit, Of<SnapshotParticle> auto& p, const StateForm& form) {
+  visit("position", p.position, form.length, kAsRows);
+  visit("radius", p.radius, form.length, Limits::not_negative());
+  if (form.moves) {
+    visit("velocity", p.velocity, form.velocity, kAsRows);
+    visit("spin", p.spin, form.spin, kAsRows, kLater);
+  }
+  if (form.weighed) visit("mass", p.mass, form.mass, Limits{.low = std::numeric_limits<double>::min()});
+  visit("id", p.id, "1");
+  visit("role", p.role, "1", UpTo{ParticleRole::inner, "unknown role"});
+  visit("body", p.body, "1");
+  visit("material", p.material, "1");
+}
+
+void fields(auto&& visit, Of<SnapshotWall> auto& w, const StateForm& form) {
+  visit("shape", w.shape, "1", UpTo{WallShape::sphere_inside, "unknown shape of a wall"});
+  visit("point", w.point, form.length, kAsRows);
+  visit("normal", w.normal, "1", kAsRows);
+  visit("radius", w.radius, form.length, Limits::not_negative());
+  visit("body", w.body, "1");
+}
+
+/// Without what it names and where its line ends.
+void fields(auto&& visit, Of<SnapshotContact> auto& c, const StateForm& form) {
+  visit("point", c.point, form.length, kAsRows);
+  visit("force", c.force, form.force, kAsRows);
+  visit("normal_force", c.normal_force, form.force);
+  if (form.shifted) visit("shift", c.shift, form.length, kAsRows);
+}
+
+/// Without its kind and its lists.
+void fields(auto&& visit, Of<Snapshot> auto& s) {
+  visit("series", s.series);
+  visit("label", s.label);
+  visit("frame", s.frame);
+  visit("time", s.time, kIfAny, Limits{});
+  visit("strain", s.strain, kIfAny, Limits{});
+  visit("overlap", s.overlap, kIfAny, Limits{});
+  visit("length_unit", s.length_unit);
+  visit("force_unit", s.force_unit);
+  visit("time_unit", s.time_unit);
+  visit("dimension", s.dimension);
+}
+
+namespace {
 
 void write_segments(const h5::Group& g, std::size_t count) {
   std::vector<std::int64_t> rows(2 * count);
@@ -50,29 +111,16 @@ void write_segments(const h5::Group& g, std::size_t count) {
   g.write("segment", std::span<const std::int64_t>(rows), {count, 2});
 }
 
-std::string mass_unit(const Snapshot& s) {
-  const bool si = s.length_unit == "m" && s.force_unit == "N" && s.time_unit == "s";
-  return si ? "kg" : s.force_unit + " " + s.time_unit + "^2/" + s.length_unit;
-}
-
 void write_particles(const h5::Group& g, const Snapshot& s) {
-  using P = SnapshotParticle;
   const auto& all = s.particles;
-  write_vectors(g, "position", s.length_unit, all, [](const P& p) { return p.position; });
-  write_column(g, "radius", s.length_unit, all, [](const P& p) { return p.radius; });
-  if (s.has_velocity) {
-    write_vectors(g, "velocity", s.length_unit + "/" + s.time_unit, all, [](const P& p) { return p.velocity; });
-    write_vectors(g, "spin", "rad/" + s.time_unit, all, [](const P& p) { return p.spin; });
-  }
-  if (std::ranges::all_of(all, [](const P& p) { return std::isfinite(p.mass); }))
-    write_column(g, "mass", mass_unit(s), all, [](const P& p) { return p.mass; });
-  write_column(g, "id", "1", all, [](const P& p) { return p.id; });
-  write_column(g, "role", "1", all, [](const P& p) { return static_cast<std::int64_t>(p.role); });
+  StateForm form = form_of(s);
+  form.moves = s.has_velocity;
+  form.weighed = std::ranges::all_of(all, [](const SnapshotParticle& p) { return std::isfinite(p.mass); });
+  write_records(g, all, form);
   g.attribute_of("role", "values", "0 solid, 1 soft, 2 inner");
-  write_column(g, "body", "1", all, [](const P& p) { return p.body; });
-  write_column(g, "material", "1", all, [](const P& p) { return p.material; });
   // ParaView's vertices want their numbers named.
-  write_column(g, "index", "1", all, [&](const P& p) { return static_cast<std::int64_t>(&p - all.data()); });
+  write_column(g, "index", "1", all,
+               [&](const SnapshotParticle& p) { return static_cast<std::int64_t>(&p - all.data()); });
 }
 
 /// Line k joins the two ends of contact k, as far as there are contacts.
@@ -85,53 +133,11 @@ void require_segments(const h5::Group& g) {
 }
 
 void read_particles(const h5::Group& g, Snapshot& s) {
-  using P = SnapshotParticle;
+  StateForm form = form_of(s);
+  form.moves = s.has_velocity = g.has("velocity");
+  form.weighed = g.has("mass");
   s.particles.resize(column_length(g, "id"));
-  auto& all = s.particles;
-  read_vectors(g, "position", s.length_unit, all, [](P& p, const Vec3& v) { p.position = v; });
-  read_finite(
-      g, "radius", s.length_unit, all, [](P& p, double v) { p.radius = v; }, Limits::not_negative());
-  s.has_velocity = g.has("velocity");
-  if (s.has_velocity)
-    read_vectors(g, "velocity", s.length_unit + "/" + s.time_unit, all, [](P& p, const Vec3& v) { p.velocity = v; });
-  if (g.has("spin")) read_vectors(g, "spin", "rad/" + s.time_unit, all, [](P& p, const Vec3& v) { p.spin = v; });
-  if (g.has("mass"))
-    read_finite(
-        g, "mass", mass_unit(s), all, [](P& p, double v) { p.mass = v; },
-        Limits{.low = std::numeric_limits<double>::min()});
-  read_integers(g, "id", all, [](P& p, std::int64_t v) { p.id = v; });
-  read_integers(g, "role", all, [](P& p, std::int64_t v) { p.role = checked(v, ParticleRole::inner, "role"); });
-  read_integers(g, "body", all, [](P& p, std::int64_t v) { p.body = v; });
-  read_integers(g, "material", all, [](P& p, std::int64_t v) { p.material = v; });
-}
-
-void write_walls(const h5::Group& g, const Snapshot& s) {
-  using W = SnapshotWall;
-  write_column(g, "shape", "1", s.walls, [](const W& w) { return static_cast<std::int64_t>(w.shape); });
-  g.attribute_of("shape", "values", "0 plane, 1 inside of a sphere");
-  write_vectors(g, "point", s.length_unit, s.walls, [](const W& w) { return w.point; });
-  write_vectors(g, "normal", "1", s.walls, [](const W& w) { return w.normal; });
-  write_column(g, "radius", s.length_unit, s.walls, [](const W& w) { return w.radius; });
-  write_column(g, "body", "1", s.walls, [](const W& w) { return w.body; });
-}
-
-void read_walls(const h5::Group& g, Snapshot& s) {
-  using W = SnapshotWall;
-  s.walls.resize(column_length(g, "shape"));
-  read_integers(g, "shape", s.walls,
-                [](W& w, std::int64_t v) { w.shape = checked(v, WallShape::sphere_inside, "shape of a wall"); });
-  read_vectors(g, "point", s.length_unit, s.walls, [](W& w, const Vec3& v) { w.point = v; });
-  read_vectors(g, "normal", "1", s.walls, [](W& w, const Vec3& v) { w.normal = v; });
-  read_finite(
-      g, "radius", s.length_unit, s.walls, [](W& w, double v) { w.radius = v; }, Limits::not_negative());
-  read_integers(g, "body", s.walls, [](W& w, std::int64_t v) { w.body = v; });
-}
-
-void write_number(const h5::Group& g, const char* name, double value) {
-  if (!std::isnan(value)) g.attribute(name, value);
-}
-double read_number(const h5::Group& g, const char* name) {
-  return g.has_attribute(name) ? read_attribute(g, name) : Snapshot::kNone;
+  read_records(g, s.particles, form);
 }
 
 void write_cell(const h5::Group& g, const Snapshot& s) {
@@ -158,30 +164,25 @@ void read_cell(const h5::Group& g, Snapshot& s) {
 
 void write_snapshot_contacts(const h5::Group& g, const std::vector<SnapshotContact>& contacts, const Snapshot& units,
                              std::size_t segments) {
-  using C = SnapshotContact;
   std::vector<std::int64_t> pairs;
   std::vector<double> ends;
-  bool shifted = false;
-  for (const C& c : contacts) {
+  StateForm form = form_of(units);
+  for (const SnapshotContact& c : contacts) {
     pairs.insert(pairs.end(), {c.i, c.j});
     ends.insert(ends.end(), {c.from[0], c.from[1], c.from[2], c.to[0], c.to[1], c.to[2]});
-    shifted = shifted || c.shift != Vec3{};
+    form.shifted = form.shifted || c.shift != Vec3{};
   }
   g.write("pair", std::span<const std::int64_t>(pairs), {contacts.size(), 2});
   g.write("ends", std::span<const double>(ends), {2 * contacts.size(), 3});
   g.attribute_of("ends", "unit", units.length_unit);
-  write_vectors(g, "point", units.length_unit, contacts, [](const C& c) { return c.point; });
-  write_vectors(g, "force", units.force_unit, contacts, [](const C& c) { return c.force; });
-  write_column(g, "normal_force", units.force_unit, contacts, [](const C& c) { return c.normal_force; });
-  if (shifted) write_vectors(g, "shift", units.length_unit, contacts, [](const C& c) { return c.shift; });
+  write_records(g, contacts, form);
   write_segments(g, segments);
 }
 
 std::vector<SnapshotContact> read_snapshot_contacts(const h5::Group& g, const SnapshotBodies& bodies,
                                                     const Snapshot& units) {
-  using C = SnapshotContact;
   const std::vector<std::int64_t> pairs = g.integers("pair");
-  std::vector<C> contacts(pairs.size() / 2);
+  std::vector<SnapshotContact> contacts(pairs.size() / 2);
   require_shape(g, "pair", {contacts.size(), 2});
   const std::vector<double> ends = read_numbers(g, "ends", units.length_unit, {2 * contacts.size(), 3});
   require_segments(g);
@@ -198,50 +199,36 @@ std::vector<SnapshotContact> read_snapshot_contacts(const h5::Group& g, const Sn
       contacts[k].to.v[c] = ends[6 * k + 3 + c];
     }
   }
-  read_vectors(g, "point", units.length_unit, contacts, [](C& c, const Vec3& v) { c.point = v; });
-  read_vectors(g, "force", units.force_unit, contacts, [](C& c, const Vec3& v) { c.force = v; });
-  read_finite(g, "normal_force", units.force_unit, contacts, [](C& c, double v) { c.normal_force = v; });
-  if (g.has("shift")) read_vectors(g, "shift", units.length_unit, contacts, [](C& c, const Vec3& v) { c.shift = v; });
+  StateForm form = form_of(units);
+  form.shifted = g.has("shift");
+  read_records(g, contacts, form);
   return contacts;
 }
 
 void write_snapshot(const h5::Group& g, const Snapshot& s) {
   g.attribute("kind", static_cast<std::int64_t>(s.kind));
   g.attribute("kind_name", to_string(s.kind));
-  g.attribute("series", s.series);
-  g.attribute("label", s.label);
-  g.attribute("frame", s.frame);
-  write_number(g, "time", s.time);
-  write_number(g, "strain", s.strain);
-  write_number(g, "overlap", s.overlap);
-  g.attribute("length_unit", s.length_unit);
-  g.attribute("force_unit", s.force_unit);
-  g.attribute("time_unit", s.time_unit);
-  g.attribute("dimension", static_cast<std::int64_t>(s.dimension));
+  write_attributes(g, s);
   write_particles(g.create("particles"), s);
-  write_walls(g.create("walls"), s);
+  const h5::Group walls = g.create("walls");
+  write_records(walls, s.walls, form_of(s));
+  walls.attribute_of("shape", "values", "0 plane, 1 inside of a sphere");
   write_cell(g, s);
   if (s.has_contacts) write_snapshot_contacts(g.create("contacts"), s.contacts, s, s.contacts.size());
 }
 
 Snapshot read_snapshot(const h5::Group& g) {
   Snapshot s;
-  s.kind = checked(g.integer("kind"), SnapshotKind::grain_box, "kind of a state");
-  s.series = g.text("series");
-  s.label = g.text("label");
-  s.frame = g.integer("frame");
-  s.time = read_number(g, "time");
-  s.strain = read_number(g, "strain");
-  s.overlap = read_number(g, "overlap");
-  s.length_unit = g.text("length_unit");
-  s.force_unit = g.text("force_unit");
-  s.time_unit = g.text("time_unit");
-  const std::int64_t dimension = g.integer("dimension");
-  if (dimension != 2 && dimension != 3)
-    throw IoError(fmt::format("a state has {} dimensions; allowed: 2, 3", dimension));
-  s.dimension = static_cast<int>(dimension);
+  const std::int64_t kind = g.integer("kind");
+  if (kind < 0 || kind > static_cast<std::int64_t>(SnapshotKind::grain_box)) throw IoError("unknown kind of a state");
+  s.kind = static_cast<SnapshotKind>(kind);
+  read_attributes(g, s);
+  if (s.dimension != 2 && s.dimension != 3)
+    throw IoError(fmt::format("a state has {} dimensions; allowed: 2, 3", s.dimension));
   read_particles(g.open("particles"), s);
-  read_walls(g.open("walls"), s);
+  const h5::Group walls = g.open("walls");
+  s.walls.resize(column_length(walls, "shape"));
+  read_records(walls, s.walls, form_of(s));
   read_cell(g, s);
   s.has_contacts = g.has("contacts");
   if (!s.has_contacts) return s;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/core/error.h"
+#include "common/data/attributes.h"
 #include "common/neighbours/verlet_list.h"
 
 namespace softgrain {
@@ -189,14 +190,18 @@ void read_cell(const h5::Group& g, Cell<D>& cell) {
   for (std::size_t k = 0; k < D; ++k) cell.periodic[k] = periodic[k] != 0;
 }
 
+void neighbour_counts(auto&& visit, auto& n) {
+  visit("rebuilds", n.rebuilds);
+  visit("passes_at_build", n.passes_at_build);
+  visit("hasty", n.short_lived, kLater);
+}
+
 template <int D>
 void write_neighbours(const h5::Group& g, const NeighbourState<D>& n) {
   write_vectors(g, "reference", n.reference);
   g.write("skin", n.skin);
   write_vectors(g, "reference_edges", rows(n.reference_edges));
-  g.attribute("rebuilds", n.rebuilds);
-  g.attribute("passes_at_build", n.passes_at_build);
-  g.attribute("hasty", n.short_lived);
+  neighbour_counts(AttributeWriter{g}, n);
 }
 
 template <int D>
@@ -207,9 +212,8 @@ void read_neighbours(const h5::Group& g, NeighbourState<D>& n, std::size_t bodie
   n.skin = read_numbers(g, "skin", listed);
   if (!std::all_of(n.skin.begin(), n.skin.end(), is_length)) damaged("skin");
   n.reference_edges = read_matrix<D>(g, "reference_edges");
-  n.rebuilds = g.integer("rebuilds");
-  n.passes_at_build = g.integer("passes_at_build");
-  n.short_lived = g.has_attribute("hasty") ? g.integer("hasty") : 0;
+  n.short_lived = 0;
+  neighbour_counts(AttributeReader{g}, n);
 }
 
 template <int D>
@@ -270,6 +274,14 @@ void read_contacts(const h5::Group& g, System<D>& s) {
   if (list.has_roll) list.roll = read_vectors<D, Stored<D>>(g, "roll", pairs);
 }
 
+void clock_and_counters(auto&& visit, auto& s) {
+  visit("time", s.time);
+  visit("step", s.step);
+  visit("loop_passes", s.cost.loop_passes);
+  visit("contact_evaluations", s.cost.contact_evaluations);
+  visit("seconds", s.cost.seconds);
+}
+
 }  // namespace
 
 template <int D>
@@ -280,11 +292,7 @@ void write_system(const h5::Group& group, const System<D>& s) {
   write_contacts(group.create("contacts"), s.contacts);
   write_vectors(group, "gravity", std::vector<Vec<D>>{s.gravity});
   group.attribute("dimension", Count{D});
-  group.attribute("time", s.time);
-  group.attribute("step", s.step);
-  group.attribute("loop_passes", s.cost.loop_passes);
-  group.attribute("contact_evaluations", s.cost.contact_evaluations);
-  group.attribute("seconds", s.cost.seconds);
+  clock_and_counters(AttributeWriter{group}, s);
 }
 
 template <int D>
@@ -295,9 +303,7 @@ void read_system(const h5::Group& group, System<D>& s) {
   read_neighbours(group.open("neighbours"), s.neighbours, static_cast<std::size_t>(s.particles.size()));
   read_contacts(group.open("contacts"), s);
   s.gravity = read_vectors<D>(group, "gravity", 1).front();
-  s.time = group.number("time");
-  s.step = group.integer("step");
-  s.cost = {group.integer("loop_passes"), group.integer("contact_evaluations"), group.number("seconds")};
+  clock_and_counters(AttributeReader{group}, s);
 }
 
 template void write_system<2>(const h5::Group&, const System<2>&);

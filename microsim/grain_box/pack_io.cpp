@@ -1,3 +1,4 @@
+#include <array>
 #include <span>
 
 #include "common/core/error.h"
@@ -6,56 +7,68 @@
 
 namespace softgrain {
 
+void fields(auto&& visit, Of<PackWall> auto& w) {
+  visit("wall_point", w.point, "m", kAsRows);
+  visit("wall_normal", w.normal, "1", kAsRows);
+}
+
+void fields(auto&& visit, Of<PackContact> auto& c) {
+  visit("contact_normal", c.normal, "1", kAsRows);
+  visit("contact_tangential_force", c.tangential_force, "N", kAsRows);
+}
+
 namespace {
 
-constexpr std::size_t kWallNumbers = 3;
-constexpr std::size_t kContactNumbers = 4;
+/// Members that stand side by side in one data set.
+constexpr std::array kWallNumbers{&PackWall::youngs_modulus, &PackWall::poisson_ratio, &PackWall::friction};
+constexpr std::array kContactNumbers{&PackContact::overlap, &PackContact::normal_force, &PackContact::contact_radius,
+                                     &PackContact::torsion};
 constexpr const char* kContactUnits = "overlap m, normal force N, contact radius m, torsion N m";
 constexpr std::size_t kContactMarks = 3;
 
-void write_walls(const h5::Group& g, const std::vector<PackWall>& walls) {
-  write_vectors(g, "wall_point", "m", walls, [](const PackWall& w) { return w.point; });
-  write_vectors(g, "wall_normal", "1", walls, [](const PackWall& w) { return w.normal; });
+template <class Record, std::size_t kCount>
+void write_side_by_side(const h5::Group& g, const std::string& name, const char* unit,
+                        const std::vector<Record>& records, const std::array<double Record::*, kCount>& members) {
   std::vector<double> numbers;
-  for (const PackWall& w : walls) numbers.insert(numbers.end(), {w.youngs_modulus, w.poisson_ratio, w.friction});
-  g.write("wall_E_nu_mu", std::span<const double>(numbers), {walls.size(), kWallNumbers});
-  g.attribute_of("wall_E_nu_mu", "unit", "Pa, 1, 1");
+  for (const Record& r : records)
+    for (const auto member : members) numbers.push_back(r.*member);
+  g.write(name, std::span<const double>(numbers), {records.size(), kCount});
+  g.attribute_of(name, "unit", unit);
+}
+
+template <class Record, std::size_t kCount>
+void take_side_by_side(const std::vector<double>& numbers, std::vector<Record>& records,
+                       const std::array<double Record::*, kCount>& members) {
+  for (std::size_t k = 0; k < records.size(); ++k)
+    for (std::size_t m = 0; m < kCount; ++m) records[k].*members[m] = numbers[kCount * k + m];
+}
+
+void write_walls(const h5::Group& g, const std::vector<PackWall>& walls) {
+  write_records(g, walls);
+  write_side_by_side(g, "wall_E_nu_mu", "Pa, 1, 1", walls, kWallNumbers);
 }
 
 void write_contacts(const h5::Group& g, const std::vector<PackContact>& contacts) {
-  write_vectors(g, "contact_normal", "1", contacts, [](const PackContact& c) { return c.normal; });
-  write_vectors(g, "contact_tangential_force", "N", contacts, [](const PackContact& c) { return c.tangential_force; });
-  std::vector<double> numbers;
+  write_records(g, contacts);
+  write_side_by_side(g, "contact_numbers", kContactUnits, contacts, kContactNumbers);
   std::vector<std::int64_t> marks;
-  for (const PackContact& c : contacts) {
-    numbers.insert(numbers.end(), {c.overlap, c.normal_force, c.contact_radius, c.torsion});
-    marks.insert(marks.end(), {c.i, c.j, c.sliding ? 1 : 0});
-  }
-  g.write("contact_numbers", std::span<const double>(numbers), {contacts.size(), kContactNumbers});
-  g.attribute_of("contact_numbers", "unit", kContactUnits);
+  for (const PackContact& c : contacts) marks.insert(marks.end(), {c.i, c.j, c.sliding ? 1 : 0});
   g.write("contact_pair_sliding", std::span<const std::int64_t>(marks), {contacts.size(), kContactMarks});
 }
 
 void read_walls(const h5::Group& g, GrainPack& pack) {
   const std::vector<double> numbers = g.doubles("wall_E_nu_mu");
-  pack.walls.resize(numbers.size() / kWallNumbers);
-  read_vectors(g, "wall_point", "m", pack.walls, [](PackWall& w, const Vec3& a) { w.point = a; });
-  read_vectors(g, "wall_normal", "1", pack.walls, [](PackWall& w, const Vec3& a) { w.normal = a; });
-  for (std::size_t k = 0; k < pack.walls.size(); ++k) {
-    pack.walls[k].youngs_modulus = numbers[kWallNumbers * k];
-    pack.walls[k].poisson_ratio = numbers[kWallNumbers * k + 1];
-    pack.walls[k].friction = numbers[kWallNumbers * k + 2];
-  }
+  pack.walls.resize(numbers.size() / kWallNumbers.size());
+  read_records(g, pack.walls);
+  take_side_by_side(numbers, pack.walls, kWallNumbers);
 }
 
 void read_contacts(const h5::Group& g, GrainPack& pack) {
   const std::vector<std::int64_t> marks = g.integers("contact_pair_sliding");
-  const std::vector<double> numbers =
-      read_numbers(g, "contact_numbers", kContactUnits, {marks.size() / kContactMarks, kContactNumbers});
   pack.contacts.resize(marks.size() / kContactMarks);
-  read_vectors(g, "contact_normal", "1", pack.contacts, [](PackContact& c, const Vec3& a) { c.normal = a; });
-  read_vectors(g, "contact_tangential_force", "N", pack.contacts,
-               [](PackContact& c, const Vec3& a) { c.tangential_force = a; });
+  take_side_by_side(read_numbers(g, "contact_numbers", kContactUnits, {pack.contacts.size(), kContactNumbers.size()}),
+                    pack.contacts, kContactNumbers);
+  read_records(g, pack.contacts);
   const auto bodies = static_cast<std::int64_t>(pack.position.size() + pack.walls.size());
   for (std::size_t k = 0; k < pack.contacts.size(); ++k) {
     const std::int64_t i = marks[kContactMarks * k];
@@ -65,10 +78,6 @@ void read_contacts(const h5::Group& g, GrainPack& pack) {
     c.i = static_cast<std::int32_t>(i);
     c.j = static_cast<std::int32_t>(j);
     c.sliding = marks[kContactMarks * k + 2] != 0;
-    c.overlap = numbers[kContactNumbers * k];
-    c.normal_force = numbers[kContactNumbers * k + 1];
-    c.contact_radius = numbers[kContactNumbers * k + 2];
-    c.torsion = numbers[kContactNumbers * k + 3];
   }
 }
 

@@ -7,8 +7,8 @@
 
 #include "common/core/error.h"
 #include "common/core/limits.h"
+#include "common/data/attributes.h"
 #include "common/data/columns.h"
-#include "common/data/soft_particle_schema.h"
 
 namespace softgrain {
 
@@ -16,124 +16,93 @@ namespace {
 
 constexpr const char* kFormat = "grain boxes";
 
-struct VectorColumn {
-  const char* name;
-  const char* unit;
-  Vec3 BoxPoint::*values;
-};
-constexpr VectorColumn kVectors[] = {
-    {"strain", "1", &BoxPoint::strain}, {"lengths", "m", &BoxPoint::lengths}, {"stress", "Pa", &BoxPoint::stress}};
-
-struct NumberColumn {
-  const char* name;
-  const char* unit;
-  double BoxPoint::*values;
-};
-constexpr NumberColumn kNumbers[] = {{"shear_stress", "Pa", &BoxPoint::shear},
-                                     {"imbalance", "1", &BoxPoint::imbalance},
-                                     {"pressure", "Pa", &BoxPoint::pressure},
-                                     {"deviator", "Pa", &BoxPoint::deviator},
-                                     {"bulk_modulus", "Pa", &BoxPoint::bulk},
-                                     {"shear_modulus", "Pa", &BoxPoint::shear_modulus},
-                                     {"bulk_modulus_elastic_probe", "Pa", &BoxPoint::bulk_probe},
-                                     {"shear_modulus_elastic_probe", "Pa", &BoxPoint::shear_probe},
-                                     {"bulk_modulus_effective_medium", "Pa", &BoxPoint::bulk_medium},
-                                     {"shear_modulus_effective_medium", "Pa", &BoxPoint::shear_medium},
-                                     {"sliding_share", "1", &BoxPoint::sliding_share},
-                                     {"coordination", "1", &BoxPoint::coordination},
-                                     {"coordination_without_rattlers", "1", &BoxPoint::coordination_without},
-                                     {"mean_normal_force", "N", &BoxPoint::mean_force},
-                                     {"solid_fraction", "1", &BoxPoint::solid_fraction}};
-
-/// Columns that files of older versions do not have.
-constexpr NumberColumn kLaterNumbers[] = {{"wall_moment", "Pa", &BoxPoint::moment},
-                                          {"sliding_limit_at_start", "1", &BoxPoint::at_start_limit}};
-
-struct CountColumn {
-  const char* name;
-  std::int64_t BoxPoint::*values;
-};
-constexpr CountColumn kCounts[] = {{"rattlers", &BoxPoint::rattlers}, {"fewest_contacts", &BoxPoint::fewest_contacts}};
-
-struct EffortColumn {
-  const char* name;
-  std::int64_t StepEffort::*values;
-};
-constexpr EffortColumn kEffort[] = {{"iterations", &StepEffort::iterations},
-                                    {"loop_passes", &StepEffort::loop_passes},
-                                    {"contact_evaluations", &StepEffort::contact_evaluations},
-                                    {"factorisations", &StepEffort::factorisations},
-                                    {"linear_iterations", &StepEffort::linear_iterations},
-                                    {"equilibria", &StepEffort::solutions},
-                                    {"retries", &StepEffort::retries}};
-
-void write_vector(const h5::Group& g, const VectorColumn& c, const std::vector<BoxPoint>& points) {
-  std::vector<double> flat;
-  for (const BoxPoint& p : points) flat.insert(flat.end(), (p.*c.values).v.begin(), (p.*c.values).v.end());
-  g.write(c.name, std::span<const double>(flat), {points.size(), 3});
-  g.attribute_of(c.name, "unit", c.unit);
-}
-
-void read_vector(const h5::Group& g, const VectorColumn& c, std::vector<BoxPoint>& points) {
-  require_shape(g, c.name, {points.size(), 3});
-  require_unit(g, c.name, c.unit);
-  const std::vector<double> flat = g.doubles(c.name);
-  for (std::size_t k = 0; k < points.size(); ++k)
-    for (std::size_t a = 0; a < 3; ++a) (points[k].*c.values).v[a] = flat[3 * k + a];
-}
-
 BoxPhase phase_of(std::int64_t number) {
   if (number < 0 || number > static_cast<std::int64_t>(BoxPhase::done)) throw IoError("a phase that is not known");
   return static_cast<BoxPhase>(number);
 }
 
-void write_points(const h5::Group& g, const std::vector<BoxPoint>& points) {
-  write_column(g, "phase", "1", points, [](const BoxPoint& p) { return static_cast<std::int64_t>(p.phase); });
-  for (const VectorColumn& c : kVectors) write_vector(g, c, points);
-  for (const NumberColumn& c : kNumbers)
-    write_column(g, c.name, c.unit, points, [&](const BoxPoint& p) { return p.*c.values; });
-  for (const NumberColumn& c : kLaterNumbers)
-    write_column(g, c.name, c.unit, points, [&](const BoxPoint& p) { return p.*c.values; });
-  for (const CountColumn& c : kCounts)
-    write_column(g, c.name, "1", points, [&](const BoxPoint& p) { return p.*c.values; });
-  for (const EffortColumn& c : kEffort)
-    write_column(g, c.name, "1", points, [&](const BoxPoint& p) { return p.effort.*c.values; });
-  write_column(g, "residual", "1", points, [](const BoxPoint& p) { return p.effort.residual; });
+}  // namespace
+
+void fields(auto&& visit, Of<BoxPoint> auto& p) {
+  const Limits any = Limits::anything();
+  visit("phase", p.phase, "1", UpTo{BoxPhase::done, "a phase that is not known"});
+  visit("strain", p.strain, "1", kAsRows, any);
+  visit("lengths", p.lengths, "m", kAsRows, any);
+  visit("stress", p.stress, "Pa", kAsRows, any);
+  visit("shear_stress", p.shear, "Pa", any);
+  visit("imbalance", p.imbalance, "1", any);
+  visit("pressure", p.pressure, "Pa", any);
+  visit("deviator", p.deviator, "Pa", any);
+  visit("bulk_modulus", p.bulk, "Pa", any);
+  visit("shear_modulus", p.shear_modulus, "Pa", any);
+  visit("bulk_modulus_elastic_probe", p.bulk_probe, "Pa", any);
+  visit("shear_modulus_elastic_probe", p.shear_probe, "Pa", any);
+  visit("bulk_modulus_effective_medium", p.bulk_medium, "Pa", any);
+  visit("shear_modulus_effective_medium", p.shear_medium, "Pa", any);
+  visit("sliding_share", p.sliding_share, "1", any);
+  visit("coordination", p.coordination, "1", any);
+  visit("coordination_without_rattlers", p.coordination_without, "1", any);
+  visit("mean_normal_force", p.mean_force, "N", any);
+  visit("solid_fraction", p.solid_fraction, "1", any);
+  visit("wall_moment", p.moment, "Pa", any, kLater);
+  visit("sliding_limit_at_start", p.at_start_limit, "1", any, kLater);
+  visit("rattlers", p.rattlers, "1");
+  visit("fewest_contacts", p.fewest_contacts, "1");
+  visit("iterations", p.effort.iterations, "1");
+  visit("loop_passes", p.effort.loop_passes, "1");
+  visit("contact_evaluations", p.effort.contact_evaluations, "1");
+  visit("factorisations", p.effort.factorisations, "1");
+  visit("linear_iterations", p.effort.linear_iterations, "1");
+  visit("equilibria", p.effort.solutions, "1");
+  visit("retries", p.effort.retries, "1");
+  visit("residual", p.effort.residual, "1", any);
 }
+
+void fields(auto&& visit, Of<BoxFailure> auto& f) {
+  visit("before_point", f.before_point, "1");
+  visit("strain", f.tried.strain, "1", Limits::anything());
+  visit("residual", f.tried.residual, "1", Limits::anything());
+}
+
+/// What the file holds of a specification, beside its lists. Files of earlier versions know no material.
+void fields(auto&& visit, Of<GrainBoxSpec> auto& s) {
+  visit("name", s.name);
+  visit("arrangement_of", s.of, kLater);
+  visit("grains", s.grains);
+  visit("friction", s.friction);
+  visit("wall_friction", s.walls.friction);
+  visit("generation_pressure_Pa", s.generation.pressure);
+  visit("youngs_modulus_Pa", s.material.youngs_modulus, kLater);
+  visit("poisson_ratio", s.material.poisson_ratio, kLater);
+  visit("density_kg_m3", s.material.density, kLater);
+  visit("test", s.loading.test);
+}
+
+/// Its numbers beside phase, points and pack.
+void fields(auto&& visit, Of<GrainBoxState> auto& s) {
+  visit("pressures_met", s.pressures_met, kLater);
+  visit("growth_passes", s.growth_passes);
+  visit("loose_passes", s.loose_passes);
+  visit("seconds", s.seconds);
+}
+
+namespace {
 
 std::vector<BoxPoint> read_points(const h5::Group& g) {
   std::vector<BoxPoint> points(column_length(g, "phase"));
-  read_integers(g, "phase", points, [](BoxPoint& p, std::int64_t v) { p.phase = phase_of(v); });
-  for (const VectorColumn& c : kVectors) read_vector(g, c, points);
-  for (const NumberColumn& c : kNumbers)
-    read_doubles(g, c.name, c.unit, points, [&](BoxPoint& p, double v) { p.*c.values = v; });
-  for (const NumberColumn& c : kLaterNumbers)
-    if (g.has(c.name)) read_doubles(g, c.name, c.unit, points, [&](BoxPoint& p, double v) { p.*c.values = v; });
-  for (const CountColumn& c : kCounts)
-    read_integers(g, c.name, points, [&](BoxPoint& p, std::int64_t v) { p.*c.values = v; });
-  for (const EffortColumn& c : kEffort)
-    read_integers(g, c.name, points, [&](BoxPoint& p, std::int64_t v) { p.effort.*c.values = v; });
-  read_doubles(g, "residual", "1", points, [](BoxPoint& p, double v) { p.effort.residual = v; });
+  read_records(g, points);
   return points;
 }
 
 void write_failures(const h5::Group& g, const std::vector<BoxFailure>& failures) {
-  write_column(g, "before_point", "1", failures, [](const BoxFailure& f) { return f.before_point; });
-  for (int a = 0; a < 3; ++a)
-    write_column(g, fmt::format("strain_{}", "xyz"[a]), "1", failures,
-                 [a](const BoxFailure& f) { return f.tried.strain[a]; });
-  write_column(g, "residual", "1", failures, [](const BoxFailure& f) { return f.tried.residual; });
+  write_records(g, failures);
   for (std::size_t k = 0; k < failures.size(); ++k)
     g.attribute(fmt::format("reason_{:06}", k), failures[k].tried.reason);
 }
 
 std::vector<BoxFailure> read_failures(const h5::Group& g) {
   std::vector<BoxFailure> failures(column_length(g, "before_point"));
-  read_integers(g, "before_point", failures, [](BoxFailure& f, std::int64_t v) { f.before_point = v; });
-  for (int a = 0; a < 3; ++a)
-    read_doubles(g, fmt::format("strain_{}", "xyz"[a]), "1", failures,
-                 [a](BoxFailure& f, double v) { f.tried.strain[a] = v; });
-  read_doubles(g, "residual", "1", failures, [](BoxFailure& f, double v) { f.tried.residual = v; });
+  read_records(g, failures);
   for (std::size_t k = 0; k < failures.size(); ++k) failures[k].tried.reason = g.text(fmt::format("reason_{:06}", k));
   return failures;
 }
@@ -157,63 +126,49 @@ void write_fits(const h5::Group& g, const GrainBoxResult& result) {
   g.attribute_of("ranges", "unit", "Pa");
 }
 
-void write_spec(const h5::Group& g, const GrainBoxSpec& spec) {
-  g.attribute("name", spec.name);
-  g.attribute("arrangement_of", spec.of);
-  g.attribute("grains", spec.grains);
-  g.attribute("friction", spec.friction);
-  g.attribute("wall_friction", spec.walls.friction);
-  g.attribute("generation_pressure_Pa", spec.generation.pressure);
+void write_box_spec(const h5::Group& g, const GrainBoxSpec& spec) {
+  write_attributes(g, spec);
   if (!spec.generation.lower_pressures.empty())
     g.write("generation_lower_pressures_Pa", std::span<const double>(spec.generation.lower_pressures));
-  g.attribute("youngs_modulus_Pa", spec.material.youngs_modulus);
-  g.attribute("poisson_ratio", spec.material.poisson_ratio);
-  g.attribute("density_kg_m3", spec.material.density);
   const double radii[] = {spec.material.radius_min, spec.material.radius_max};
   g.write("radii", std::span<const double>(radii));
   g.attribute_of("radii", "unit", "m");
-  g.attribute("test", spec.loading.test);
   g.write("increments", std::span<const double>(spec.loading.increments));
 }
 
+GrainBoxSpec read_box_spec(const h5::Group& g) {
+  GrainBoxSpec spec;
+  spec.of.clear();
+  spec.material.youngs_modulus = kNaN;
+  spec.material.density = kNaN;
+  read_attributes(g, spec);
+  if (spec.of.empty()) spec.of = spec.name;
+  if (g.has("generation_lower_pressures_Pa"))
+    spec.generation.lower_pressures = g.doubles("generation_lower_pressures_Pa");
+  if (g.has("radii")) {
+    const std::vector<double> radii = g.doubles("radii");
+    if (radii.size() != 2) throw IoError("data set 'radii' has a wrong length");
+    spec.material.radius_min = radii[0];
+    spec.material.radius_max = radii[1];
+  }
+  spec.loading.increments = g.doubles("increments");
+  const std::vector<double> ranges = g.open("fits").doubles("ranges");
+  if (ranges.size() != 4) throw IoError("data set 'ranges' has a wrong length");
+  spec.fit = {{ranges[0], ranges[1]}, {ranges[2], ranges[3]}};
+  return spec;
+}
+
 void write_result(const h5::Group& g, const GrainBoxResult& result) {
-  write_spec(g, result.spec);
+  write_box_spec(g, result.spec);
   g.attribute("usable", static_cast<std::int64_t>(result.usable));
   g.attribute("reason", result.reason);
   write_fits(g.create("fits"), result);
   write_state(g, result.state);
 }
 
-/// Files of earlier versions do not say it.
-void read_material(const h5::Group& g, GrainBoxMaterial& material) {
-  const std::vector<double> radii = g.doubles("radii");
-  if (radii.size() != 2) throw IoError("data set 'radii' has a wrong length");
-  material.radius_min = radii[0];
-  material.radius_max = radii[1];
-  material.youngs_modulus = g.number("youngs_modulus_Pa");
-  material.poisson_ratio = g.number("poisson_ratio");
-  if (g.has_attribute("density_kg_m3")) material.density = g.number("density_kg_m3");
-}
-
 GrainBoxResult read_result(const h5::Group& g) {
   GrainBoxResult result;
-  GrainBoxSpec& spec = result.spec;
-  spec.material.youngs_modulus = kNaN;
-  spec.material.density = kNaN;
-  spec.name = g.text("name");
-  spec.of = g.has_attribute("arrangement_of") ? g.text("arrangement_of") : spec.name;
-  spec.grains = g.integer("grains");
-  spec.friction = g.number("friction");
-  spec.walls.friction = g.number("wall_friction");
-  spec.generation.pressure = g.number("generation_pressure_Pa");
-  if (g.has("generation_lower_pressures_Pa"))
-    spec.generation.lower_pressures = g.doubles("generation_lower_pressures_Pa");
-  if (g.has("radii")) read_material(g, spec.material);
-  spec.loading.test = g.text("test");
-  spec.loading.increments = g.doubles("increments");
-  const std::vector<double> ranges = g.open("fits").doubles("ranges");
-  if (ranges.size() != 4) throw IoError("data set 'ranges' has a wrong length");
-  spec.fit = {{ranges[0], ranges[1]}, {ranges[2], ranges[3]}};
+  result.spec = read_box_spec(g);
   result.usable = g.integer("usable") != 0;
   result.reason = g.text("reason");
   result.state = read_state(g);
@@ -260,12 +215,9 @@ GrainBoxFits fit_growth(const GrainBoxResult& result) {
 
 void write_state(const h5::Group& g, const GrainBoxState& state) {
   g.attribute("phase", static_cast<std::int64_t>(state.phase));
-  g.attribute("pressures_met", state.pressures_met);
-  g.attribute("growth_passes", state.growth_passes);
-  g.attribute("loose_passes", state.loose_passes);
-  g.attribute("seconds", state.seconds);
+  write_attributes(g, state);
   g.write("stress_free_lengths", std::span<const double>(state.stress_free_lengths.v));
-  write_points(g.create("points"), state.points);
+  write_records(g.create("points"), state.points);
   write_failures(g.create("failures"), state.failures);
   write_pack(g.create("pack"), state.pack);
 }
@@ -273,10 +225,7 @@ void write_state(const h5::Group& g, const GrainBoxState& state) {
 GrainBoxState read_state(const h5::Group& g) {
   GrainBoxState state;
   state.phase = phase_of(g.integer("phase"));
-  if (g.has_attribute("pressures_met")) state.pressures_met = g.integer("pressures_met");
-  state.growth_passes = g.integer("growth_passes");
-  state.loose_passes = g.integer("loose_passes");
-  state.seconds = g.number("seconds");
+  read_attributes(g, state);
   const std::vector<double> lengths = g.doubles("stress_free_lengths");
   if (lengths.size() != 3) throw IoError("data set 'stress_free_lengths' has a wrong length");
   state.stress_free_lengths = {{lengths[0], lengths[1], lengths[2]}};

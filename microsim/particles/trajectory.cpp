@@ -1,15 +1,10 @@
 #include "microsim/particles/trajectory.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-#include <span>
 
-#include "common/core/error.h"
 #include "common/core/vec.h"
-#include "common/data/columns.h"
-#include "common/data/snapshot_io.h"
 #include "common/dynamics/contact_tensors.h"
 #include "common/dynamics/force_pass.h"
 #include "common/neighbours/spatial_order.h"
@@ -18,30 +13,6 @@
 namespace softgrain {
 
 namespace {
-
-/// How a member is called in the file.
-struct Column {
-  const char* name;
-  const char* unit;
-  std::vector<double> Trajectory::*values;
-  std::size_t width;      ///< numbers per body; 0: one number per frame
-  bool optional = false;  ///< no data set where it is empty
-};
-
-constexpr std::array<Column, 12> kColumns{{
-    {"time", "s", &Trajectory::time, 0},
-    {"position", "m", &Trajectory::position, 3},
-    {"velocity", "m/s", &Trajectory::velocity, 3},
-    {"spin", "rad/s", &Trajectory::spin, 3},
-    {"wall_position", "m", &Trajectory::wall_position, 3},
-    {"cell_edges", "m", &Trajectory::cell_edges, 3},
-    {"translational_energy", "J", &Trajectory::translational_energy, 0},
-    {"rotational_energy", "J", &Trajectory::rotational_energy, 0},
-    {"gravitational_energy", "J", &Trajectory::gravitational_energy, 0},
-    {"stress", "Pa", &Trajectory::stress, 3, true},
-    {"fabric", "1", &Trajectory::fabric, 3, true},
-    {"inertial_number", "1", &Trajectory::inertial_number, 0, true},
-}};
 
 void append(std::vector<double>& to, const Vec3& v) { to.insert(to.end(), v.v.begin(), v.v.end()); }
 
@@ -52,11 +23,6 @@ Vec3 axis_in_space(const Vec<1>& spin) { return {{0.0, 0.0, spin[0]}}; }
 template <int D>
 void append_edges(std::vector<double>& to, const Matrix<D>& edges) {
   for (int k = 0; k < 3; ++k) append(to, k < D ? in_space<D>(edges[k]) : Vec3{{0.0, 0.0, 1.0}});
-}
-
-h5::Shape shape_of(const Column& c, std::size_t frames, std::size_t values) {
-  if (c.width == 0) return {frames};
-  return {frames, frames == 0 ? 0 : values / (frames * c.width), c.width};
 }
 
 constexpr std::int64_t kMostSnapshots = 100;
@@ -91,28 +57,6 @@ void record_frame(Trajectory& t, const System<D>& s) {
 template void record_frame<2>(Trajectory&, const System<2>&);
 template void record_frame<3>(Trajectory&, const System<3>&);
 
-void write_trajectory(const h5::Group& group, const Trajectory& t) {
-  const std::size_t frames = t.time.size();
-  for (const Column& c : kColumns) {
-    const std::vector<double>& values = t.*c.values;
-    if (c.optional && values.empty()) continue;
-    group.write(c.name, values, shape_of(c, frames, values.size()));
-    group.attribute_of(c.name, "unit", c.unit);
-  }
-}
-
-Trajectory read_trajectory(const h5::Group& group) {
-  Trajectory t;
-  for (const Column& c : kColumns) {
-    std::vector<double>& values = t.*c.values;
-    if (c.optional && !group.has(c.name)) continue;
-    values = group.doubles(c.name);
-    require_unit(group, c.name, c.unit);
-    require_shape(group, c.name, shape_of(c, t.time.size(), values.size()));
-  }
-  return t;
-}
-
 template <int D>
 void record_contacts(FrameContacts& to, std::int64_t frame, const System<D>& system) {
   const std::vector<SnapshotContact> now = snapshot_contacts(system);
@@ -127,31 +71,6 @@ void record_contacts(FrameContacts& to, std::int64_t frame, const System<D>& sys
 
 template void record_contacts<2>(FrameContacts&, std::int64_t, const System<2>&);
 template void record_contacts<3>(FrameContacts&, std::int64_t, const System<3>&);
-
-void write_frame_contacts(const h5::Group& group, const FrameContacts& c) {
-  group.write("frame", std::span<const std::int64_t>(c.frame));
-  group.write("count", std::span<const std::int64_t>(c.count));
-  const std::int64_t most = c.count.empty() ? 0 : *std::max_element(c.count.begin(), c.count.end());
-  write_snapshot_contacts(group, c.contacts, Snapshot{}, static_cast<std::size_t>(most));
-}
-
-FrameContacts read_frame_contacts(const h5::Group& group, std::size_t particles, std::size_t bodies) {
-  FrameContacts c;
-  c.frame = group.integers("frame");
-  c.count = group.integers("count");
-  c.contacts = read_snapshot_contacts(group, {particles, bodies}, Snapshot{});
-  std::int64_t total = 0;
-  for (const std::int64_t n : c.count) {
-    if (n < 0 || n > static_cast<std::int64_t>(c.contacts.size())) throw IoError("contacts of frames do not fit");
-    total += n;
-  }
-  if (c.frame.size() != c.count.size() || total != static_cast<std::int64_t>(c.contacts.size()) ||
-      !std::is_sorted(c.frame.begin(), c.frame.end()))
-    throw IoError("contacts of frames do not fit");
-  const std::int64_t most = c.count.empty() ? 0 : *std::max_element(c.count.begin(), c.count.end());
-  require_shape(group, "segment", {static_cast<std::size_t>(most), 2});
-  return c;
-}
 
 std::int64_t default_snapshots(std::int64_t grains) {
   return std::clamp<std::int64_t>(kGrainFrames / std::max<std::int64_t>(grains, 1), 1, kMostSnapshots);

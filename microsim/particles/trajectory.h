@@ -1,33 +1,14 @@
-// Recorded frames of a run, the contacts of some of them for pictures, and what all contacts of a system together say.
+// Records frames of a run and the contacts of some of them (common/data/snapshot_frames.h), and what all contacts of a
+// system together say.
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "common/core/limits.h"
-#include "common/data/snapshot.h"
-#include "common/io/hdf5_file.h"
+#include "common/data/snapshot_frames.h"
 #include "common/system.h"
 
 namespace softgrain {
-
-/// One entry, or one block of 3 numbers per body, per frame; frames follow each other. Disks have z = 0 and spin about
-/// z.
-struct Trajectory {
-  std::vector<double> time;                  ///< [s]
-  std::vector<double> position;              ///< positions of particles [m]
-  std::vector<double> velocity;              ///< [m/s]
-  std::vector<double> spin;                  ///< [rad/s]
-  std::vector<double> wall_position;         ///< centre of a sphere-inside, point of a plane [m]
-  std::vector<double> cell_edges;            ///< row-major 3 x 3 [m]
-  std::vector<double> translational_energy;  ///< translational energy of particles [J]
-  std::vector<double> rotational_energy;     ///< rotational energy of particles [J]
-  std::vector<double> gravitational_energy;  ///< -sum m g.x [J]; zero at the origin
-  // Of cells that are periodic along all axes; empty elsewhere, not a number in frames that keep no contacts.
-  std::vector<double> stress;           ///< row-major 3 x 3, as contact_totals() [Pa; of disks N/m]
-  std::vector<double> fabric;           ///< row-major 3 x 3
-  std::vector<double> inertial_number;  ///< of sheared cells under pressure
-};
 
 /// Appends the system as it is.
 template <int D>
@@ -38,30 +19,9 @@ void record_frame(Trajectory& trajectory, const System<D>& system);
 template <int D>
 void record_tensors(Trajectory& trajectory, const System<D>& system, bool contacts);
 
-/// Data sets with units: time [frames], position [frames, particles, 3], ...
-void write_trajectory(const h5::Group& group, const Trajectory& trajectory);
-
-/// Throws IoError.
-Trajectory read_trajectory(const h5::Group& group);
-
-// The contacts of some recorded frames of a run, for pictures, and what all contacts of a system together say.
-
-/// Contacts of frame frame[k] are the next count[k] of `contacts`.
-struct FrameContacts {
-  std::vector<std::int64_t> frame;  ///< number of the frame in the trajectory, ascending
-  std::vector<std::int64_t> count;
-  std::vector<SnapshotContact> contacts;
-};
-
 /// Appends those of the system as it is. Never changes it.
 template <int D>
 void record_contacts(FrameContacts& to, std::int64_t frame, const System<D>& system);
-
-/// Data sets frame, count and those of write_snapshot_contacts (snapshot_io.h); a segment list for the largest count.
-void write_frame_contacts(const h5::Group& group, const FrameContacts& contacts);
-
-/// `particles` and `bodies` (with walls) bound what contacts may name. Throws IoError.
-FrameContacts read_frame_contacts(const h5::Group& group, std::size_t particles, std::size_t bodies);
 
 /// How many frames keep their contacts unless the scene says: fewer of large systems, so that they take about as much
 /// room as 200,000 grains do.

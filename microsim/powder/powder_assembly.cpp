@@ -193,15 +193,15 @@ class Phase {
     constexpr double kContacts = 1.0;
     auto& shots = state_.snapshots;
     const double z = state_.points.empty() ? 0.0 : state_.points.back().coordination;
-    const bool same = !shots.empty() && std::abs(powder_fraction(state_.system) - last_fraction()) < kVisible &&
+    const bool same = !shots.time.empty() && std::abs(powder_fraction(state_.system) - last_fraction()) < kVisible &&
                       std::abs(z - state_.pictured) < kContacts;
-    if (!shots.empty() && ((same && !done) || shots.back().time == state_.system.time)) return;
-    shots.push_back(powder_snapshot(state_.system));
+    if (!shots.time.empty() && ((same && !done) || shots.time.back() == state_.system.time)) return;
+    record_snapshot(shots, state_.system);
     state_.pictured = z;
   }
   [[nodiscard]] double last_fraction() const {
-    const PowderSnapshot& last = state_.snapshots.back();
-    return powder_fraction(state_.system) * state_.system.cell.volume() / (last.lengths[0] * last.lengths[1]);
+    const double* edges = &state_.snapshots.cell_edges[state_.snapshots.cell_edges.size() - 9];
+    return powder_fraction(state_.system) * state_.system.cell.volume() / (edges[0] * edges[4]);
   }
 
   /// Notes since when the cell keeps its lengths, or a network that could bear its contacts.

@@ -116,7 +116,7 @@ struct PowderState {
   std::vector<PowderPoint> points;
   std::vector<PowderStage> stages;  ///< results of phases that imposed a pressure and are over
   /// States at the start, after each phase, and when Phi or z have changed visibly.
-  std::vector<PowderSnapshot> snapshots;
+  Trajectory snapshots;
   double pictured = 0.0;  ///< z of the last snapshot
 };
 

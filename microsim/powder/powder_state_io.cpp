@@ -4,6 +4,7 @@
 #include <string>
 
 #include "common/core/error.h"
+#include "common/data/attributes.h"
 #include "common/data/columns.h"
 #include "common/data/fields.h"
 #include "common/io/hdf5_file.h"
@@ -13,100 +14,85 @@
 
 namespace softgrain {
 
-PowderSnapshot powder_snapshot(const System<2>& s) {
-  return {s.time,
-          {{s.cell.edges[0][0], s.cell.edges[1][1]}},
-          {s.particles.sphere.begin(), s.particles.sphere.begin() + s.particles.grains}};
+Snapshot powder_frames() {
+  Snapshot form;
+  form.kind = SnapshotKind::powder;
+  form.length_unit = "a";
+  form.force_unit = "F0";
+  form.time_unit = "T0";
+  form.dimension = 2;
+  form.periodic = {true, true, false};
+  return form;
 }
 
-void write_snapshots(const h5::Group& group, const std::vector<PowderSnapshot>& snapshots) {
-  if (snapshots.empty()) return;
-  const h5::Group all = group.create("snapshots");
-  for (std::size_t k = 0; k < snapshots.size(); ++k) {
-    const PowderSnapshot& s = snapshots[k];
-    std::vector<double> positions;
-    std::vector<double> radii;
-    for (const auto& d : s.disks) {
-      positions.insert(positions.end(), {d.x[0], d.x[1]});
-      radii.push_back(d.r);
-    }
-    const h5::Group one = all.create(std::to_string(k));
-    one.attribute("time", s.time);
-    one.write("positions", positions, {radii.size(), 2});
-    one.write("radii", radii);
-    one.write("cell", std::vector<double>{s.lengths[0], s.lengths[1]});
+void record_snapshot(Trajectory& t, const System<2>& s) {
+  t.time.push_back(s.time);
+  for (Slot k = 0; k < s.particles.grains; ++k) {
+    const Vec<2>& x = s.particles.sphere[static_cast<std::size_t>(k)].x;
+    t.position.insert(t.position.end(), {x[0], x[1], 0.0});
   }
-}
-
-std::vector<PowderSnapshot> read_snapshots(const h5::Group& group) {
-  std::vector<PowderSnapshot> out;
-  if (!group.has("snapshots")) return out;
-  const h5::Group all = group.open("snapshots");
-  for (std::size_t k = 0; all.has(std::to_string(k)); ++k) {
-    const h5::Group one = all.open(std::to_string(k));
-    const auto positions = one.doubles("positions");
-    const auto radii = one.doubles("radii");
-    const auto cell = one.doubles("cell");
-    if (positions.size() != 2 * radii.size() || cell.size() != 2)
-      throw IoError("powder: snapshot " + std::to_string(k) + " has arrays that do not fit together");
-    PowderSnapshot s{one.number("time"), {{cell[0], cell[1]}}, {}};
-    for (std::size_t n = 0; n < radii.size(); ++n)
-      s.disks.push_back({{{positions[2 * n], positions[2 * n + 1]}}, radii[n]});
-    out.push_back(std::move(s));
-  }
-  return out;
+  const Matrix<2>& e = s.cell.edges;
+  t.cell_edges.insert(t.cell_edges.end(), {e[0][0], e[0][1], 0.0, e[1][0], e[1][1], 0.0, 0.0, 0.0, 0.0});
 }
 
 namespace {
 
-// Members of a struct as attributes of a group, by one list of names for both directions.
-
-/// item(name, member) writes the member.
-struct AttributeWriter {
-  const h5::Group& group;
-  void operator()(const char* name, double value) const { group.attribute(name, value); }
-  void operator()(const char* name, std::int64_t value) const { group.attribute(name, value); }
-  void operator()(const char* name, bool value) const { group.attribute(name, std::int64_t{value ? 1 : 0}); }
-};
-
-/// item(name, member) reads it. Throws IoError when it is missing.
-struct AttributeReader {
-  const h5::Group& group;
-  void operator()(const char* name, double& value) const { value = group.number(name); }
-  void operator()(const char* name, std::int64_t& value) const { value = group.integer(name); }
-  void operator()(const char* name, bool& value) const { value = group.integer(name) != 0; }
-};
-
-void fields(auto&& item, Of<PowderSpec> auto& s) {
-  item("disks", s.disks);
-  item("diameter_min", s.diameter_min);
-  item("solid_fraction", s.solid_fraction);
-  item("stiffness", s.stiffness);
-  item("stiffness_ratio", s.stiffness_ratio);
-  item("friction", s.friction);
-  item("damping", s.damping);
-  item("cohesive", s.cohesive);
-  item("range", s.range);
-  item("rolling", s.rolling);
-  item("rolling_stiffness", s.rolling_stiffness);
-  item("rolling_friction", s.rolling_friction);
-  item("pressure", s.pressure);
+/// As version 0.2 wrote them: a group "snapshots" with a group 0, 1, ... for each, without units.
+Trajectory read_grouped_snapshots(const h5::Group& all) {
+  Trajectory t;
+  for (std::size_t k = 0; all.has(std::to_string(k)); ++k) {
+    const h5::Group one = all.open(std::to_string(k));
+    const auto positions = one.doubles("positions");
+    const auto cell = one.doubles("cell");
+    if (positions.size() != 2 * one.doubles("radii").size() || cell.size() != 2)
+      throw IoError("powder: snapshot " + std::to_string(k) + " has arrays that do not fit together");
+    t.time.push_back(one.number("time"));
+    for (std::size_t n = 0; n < positions.size(); n += 2)
+      t.position.insert(t.position.end(), {positions[n], positions[n + 1], 0.0});
+    t.cell_edges.insert(t.cell_edges.end(), {cell[0], 0.0, 0.0, 0.0, cell[1], 0.0, 0.0, 0.0, 0.0});
+  }
+  return t;
 }
 
 }  // namespace
 
+Trajectory read_snapshots(const h5::Group& group) {
+  if (group.has("snapshots")) return read_grouped_snapshots(group.open("snapshots"));
+  return group.has("trajectory") ? read_trajectory(group.open("trajectory"), powder_frames()) : Trajectory{};
+}
+
+void fields(auto&& visit, Of<PowderSpec> auto& s) {
+  visit("disks", s.disks);
+  visit("diameter_min", s.diameter_min);
+  visit("solid_fraction", s.solid_fraction);
+  visit("stiffness", s.stiffness);
+  visit("stiffness_ratio", s.stiffness_ratio);
+  visit("friction", s.friction);
+  visit("damping", s.damping);
+  visit("cohesive", s.cohesive);
+  visit("range", s.range);
+  visit("rolling", s.rolling);
+  visit("rolling_stiffness", s.rolling_stiffness);
+  visit("rolling_friction", s.rolling_friction);
+  visit("pressure", s.pressure);
+}
+
+namespace {
+
 /// V0 of each component. Files of version 0.2.0 and earlier have "start_speed" instead, of |v|.
 constexpr const char* kComponentSpeed = "start_speed_per_component";
 
+}  // namespace
+
 void write_powder_spec(const h5::Group& group, const PowderSpec& spec) {
-  fields(AttributeWriter{group}, spec);
+  write_attributes(group, spec);
   group.attribute(kComponentSpeed, spec.start_speed);
   if (spec.sizes) group.attribute("sizes", spec.sizes->text());
 }
 
 PowderSpec read_powder_spec(const h5::Group& group) {
   PowderSpec spec;
-  fields(AttributeReader{group}, spec);
+  read_attributes(group, spec);
   spec.start_speed = group.has_attribute(kComponentSpeed) ? group.number(kComponentSpeed)
                                                           : group.number("start_speed") / std::numbers::sqrt2;
   if (group.has_attribute("sizes")) spec.sizes = stored_grading(group.text("sizes"), 2);
@@ -135,25 +121,21 @@ void fields(auto&& visit, Of<PowderStage> auto& s) {
   visit("shear", s.shear, "1");
 }
 
-namespace {
-
 /// The numbers of a state beside its lists.
-void fields(auto&& item, Of<PowderState> auto& s) {
-  item("phase", s.phase);
-  item("phase_start", s.phase_start);
-  item("phase_edge_x", s.phase_edge.v[0]);
-  item("phase_edge_y", s.phase_edge.v[1]);
-  item("stiffness", s.stiffness);
-  item("phase_stiffness", s.phase_stiffness);
-  item("settling", s.settling);
-  item("still_since", s.still_since);
-  item("still_edge_x", s.still_edge.v[0]);
-  item("still_edge_y", s.still_edge.v[1]);
-  item("still_contacts", s.still_contacts);
-  item("pictured", s.pictured);
+void fields(auto&& visit, Of<PowderState> auto& s) {
+  visit("phase", s.phase);
+  visit("phase_start", s.phase_start);
+  visit("phase_edge_x", s.phase_edge.v[0]);
+  visit("phase_edge_y", s.phase_edge.v[1]);
+  visit("stiffness", s.stiffness);
+  visit("phase_stiffness", s.phase_stiffness);
+  visit("settling", s.settling);
+  visit("still_since", s.still_since);
+  visit("still_edge_x", s.still_edge.v[0]);
+  visit("still_edge_y", s.still_edge.v[1]);
+  visit("still_contacts", s.still_contacts);
+  visit("pictured", s.pictured);
 }
-
-}  // namespace
 
 void write_powder_state(const h5::Group& group, const PowderState& state) {
   group.attribute("columns", std::string("phase, time [T0], Phi, z, kinetic energy per disk, stress x, stress y"));
@@ -161,9 +143,13 @@ void write_powder_state(const h5::Group& group, const PowderState& state) {
   group.attribute("stage_columns", std::string("phase, imposed pressure, time [T0], Phi, z, mean repulsive and mean "
                                                "tensile force, bulk and shear modulus"));
   group.write("stages", rows_of(state.stages), {state.stages.size(), columns_of<PowderStage>().size()});
-  fields(AttributeWriter{group.create("progress")}, state);
-  write_snapshots(group, state.snapshots);
+  write_attributes(group.create("progress"), state);
+  if (!state.snapshots.time.empty()) write_trajectory(group.create("trajectory"), state.snapshots, powder_frames());
   write_system(group.create("system"), state.system);
+}
+
+std::vector<PowderPoint> read_course(const h5::Group& group) {
+  return records_of<PowderPoint>(group.doubles("course"));
 }
 
 std::vector<PowderStage> read_stages(const h5::Group& group) {
@@ -172,9 +158,9 @@ std::vector<PowderStage> read_stages(const h5::Group& group) {
 }
 
 void read_powder_state(const h5::Group& group, PowderState& state) {
-  state.points = records_of<PowderPoint>(group.doubles("course"));
+  state.points = read_course(group);
   state.stages = read_stages(group);
-  fields(AttributeReader{group.open("progress")}, state);
+  read_attributes(group.open("progress"), state);
   state.snapshots = read_snapshots(group);
   read_system(group.open("system"), state.system);
 }

@@ -4,29 +4,25 @@
 
 #include <vector>
 
+#include "common/data/snapshot_frames.h"
 #include "common/io/hdf5_file.h"
 #include "common/system.h"
 #include "microsim/powder/powder_start.h"
 
 namespace softgrain {
 
+struct PowderPoint;
 struct PowderState;
 struct PowderStage;
 
-struct PowderSnapshot {
-  double time = 0.0;             ///< [T0]
-  Vec<2> lengths{};              ///< lengths of the periodic cell [a]
-  std::vector<Sphere<2>> disks;  ///< centres as they are, not folded into the cell
-};
+/// Appends positions and cell of the system as it is: centres as they are, not folded into the cell.
+void record_snapshot(Trajectory& snapshots, const System<2>& system);
 
-PowderSnapshot powder_snapshot(const System<2>& system);
+/// The snapshots of an assembly; empty where a sample has none, in the form of version 0.2 too. Throws IoError.
+Trajectory read_snapshots(const h5::Group& group);
 
-/// Group "snapshots" with a group 0, 1, ... for each, in the order of time: data sets positions (N x 2), radii (N) and
-/// cell (2) [a], attribute time [T0].
-void write_snapshots(const h5::Group& group, const std::vector<PowderSnapshot>& snapshots);
-
-/// What write_snapshots wrote; empty without such a group. Throws IoError when shapes do not fit.
-std::vector<PowderSnapshot> read_snapshots(const h5::Group& group);
+/// What all snapshots of powders say of themselves: units and dimension.
+Snapshot powder_frames();
 
 /// Every member of the specification as an attribute of `group`, by its name.
 void write_powder_spec(const h5::Group& group, const PowderSpec& spec);
@@ -34,14 +30,16 @@ void write_powder_spec(const h5::Group& group, const PowderSpec& spec);
 /// Throws IoError when an attribute is missing.
 PowderSpec read_powder_spec(const h5::Group& group);
 
-/// Writes into `group`: data set "course" (columns named in its attribute), groups "progress" (attributes), "snapshots"
-/// and "system".
+/// Writes into `group`: data set "course" (columns named in its attribute), groups "progress" (attributes),
+/// "trajectory" (snapshots) and "system".
 void write_powder_state(const h5::Group& group, const PowderState& state);
 
 /// Reads into a state whose system has been made from the same PowderSpec. Throws IoError when something is missing.
 void read_powder_state(const h5::Group& group, PowderState& state);
 
-/// Reads the stages of a written state; empty where an earlier program left none.
+/// Reads the recorded points and the stages of a written state; empty the latter are empty where an earlier program
+/// left none.
+std::vector<PowderPoint> read_course(const h5::Group& group);
 std::vector<PowderStage> read_stages(const h5::Group& group);
 
 /// The system of a stored sample (a group with what write_powder_state wrote) with the law of its specification, to be

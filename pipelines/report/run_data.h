@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <typeindex>
+#include <utility>
 #include <vector>
 
 #include "common/data/law_band.h"
@@ -45,20 +47,21 @@ struct RunData {
   [[nodiscard]] Summary summary_as() const {
     return record_of<Summary>(summary);
   }
-  /// What `load` makes of a file of the directory, read once; null when there is none. For what one kind alone keeps.
+  /// What `load` makes of a file of the directory, read once for each type; null when there is none. For what one kind
+  /// alone keeps.
   template <class T>
   const T* file(const std::string& name, T (*load)(const std::string& path)) const {
-    const auto known = files_.find(name);
+    const auto known = files_.find({name, typeid(T)});
     if (known != files_.end()) return static_cast<const T*>(known->second.get());
     const std::string path = directory + "/" + name;
     if (!std::filesystem::exists(path)) return nullptr;
     hold(name, load(path));
-    return static_cast<const T*>(files_[name].get());
+    return static_cast<const T*>(files_.at({name, typeid(T)}).get());
   }
   /// Stands for that file from here on.
   template <class T>
   void hold(const std::string& name, T content) const {
-    files_[name] = std::make_shared<T>(std::move(content));
+    files_[{name, typeid(T)}] = std::make_shared<T>(std::move(content));
   }
   /// Law of a pair kind, if it was fitted and is usable for drawing.
   [[nodiscard]] const PairLaw* law(PairKind kind) const;
@@ -68,7 +71,7 @@ struct RunData {
   [[nodiscard]] StiffnessAngles angles(PairKind kind) const;
 
  private:
-  mutable std::map<std::string, std::shared_ptr<const void>> files_;
+  mutable std::map<std::pair<std::string, std::type_index>, std::shared_ptr<const void>> files_;
 };
 
 /// Whether a directory is that of a run that has not come to its end.

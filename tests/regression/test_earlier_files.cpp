@@ -11,6 +11,7 @@
 #include "common/data/law_card.h"
 #include "common/data/multi_contact_law.h"
 #include "common/io/text_file.h"
+#include "pipelines/snapshots/snapshots.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
 
@@ -73,6 +74,45 @@ INSTANTIATE_TEST_SUITE_P(Runs, EarlierFiles, testing::ValuesIn(earlier_runs()), 
     if (c == '-') c = '_';
   return name;
 });
+
+/// What `export` of the version before the snapshots of powders became a trajectory said: states, particles in all of
+/// them, the sum of their coordinates, and contacts.
+TEST(EarlierStates, AreTheSame) {
+  struct Known {
+    const char* run;
+    std::size_t states, particles;
+    double coordinates;
+    std::size_t contacts;
+  };
+  for (const Known& known : {Known{"before_frames/powder", 17, 1020, 8418.029410925485, 200},
+                             Known{"before_names/powder", 18, 1080, 8957.620213266815, 197},
+                             Known{"before_names/disks", 21, 756, -1186.4579558359471, 915},
+                             Known{"before_0_3/particles", 5, 60, -3.3859919191369374, 19}}) {
+    std::size_t particles = 0;
+    std::size_t contacts = 0;
+    double coordinates = 0.0;
+    const std::vector<Snapshot> states = read_snapshots(earlier(known.run));
+    for (const Snapshot& s : states) {
+      particles += s.particles.size();
+      contacts += s.contacts.size();
+      for (const SnapshotParticle& p : s.particles) coordinates += p.position[0] + p.position[1] + p.position[2];
+    }
+    EXPECT_EQ(states.size(), known.states) << known.run;
+    EXPECT_EQ(particles, known.particles) << known.run;
+    EXPECT_NEAR(coordinates, known.coordinates, 1e-9 * std::abs(known.coordinates)) << known.run;
+    EXPECT_EQ(contacts, known.contacts) << known.run;
+  }
+}
+
+/// A file that two sections read in two forms: of a box that is not periodic there are energies, no stresses.
+TEST(EarlierStates, EnergiesAreNotDrawnAsStresses) {
+  const TemporaryDirectory directory;
+  fs::copy(earlier("before_0_3/particles"), directory.file("run"), fs::copy_options::recursive);
+  ASSERT_EQ(run_the_program("report '" + directory.file("run") + "'").status, 0);
+  const std::string report = read_text(directory.file("run") + "/report.html");
+  EXPECT_NE(report.find("Energy over time"), std::string::npos);
+  EXPECT_EQ(report.find("Stress over time"), std::string::npos);
+}
 
 /// Numbers as they stand in the files; of "bag" the word as well.
 TEST(EarlierCards, LawTablesOfBothVocabularies) {

@@ -1,13 +1,17 @@
 // Structure of powders from the state of a run to its file, summary and report.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "common/core/error.h"
 #include "common/io/text_file.h"
+#include "common/state/system_io.h"
+#include "microsim/powder/powder_assembly.h"
 #include "microsim/powder/powder_start.h"
 #include "microsim/powder/powder_state_io.h"
+#include "pipelines/kinds/cohesive_powder/powder_data.h"
 #include "pipelines/kinds/cohesive_powder/report_plots.h"
 #include "pipelines/kinds/cohesive_powder/scene.h"
 #include "pipelines/kinds/cohesive_powder/summary.h"
@@ -124,22 +128,57 @@ TEST(PowderSpecIo, AnOldSpeedIsThatOfBothComponents) {
 
 TEST(PowderSnapshots, ComeBackAsTheyWere) {
   const test::TemporaryDirectory directory;
-  System<2> s = make_powder(spec_of(12), 2, 0);
-  std::vector<PowderSnapshot> snapshots{powder_snapshot(s)};
+  PowderState state = start_powder(spec_of(12), 2, 0);
+  System<2>& s = state.system;
+  const Vec<2> lengths{{s.cell.edges[0][0], s.cell.edges[1][1]}};
+  record_snapshot(state.snapshots, s);
   s.time = 7.5;
   s.particles.sphere[3].x = {{-4.0, 99.0}};
-  snapshots.push_back(powder_snapshot(s));
+  s.cell.edges[1][1] = 25.0;
+  record_snapshot(state.snapshots, s);
   {
     h5::AtomicFile file(directory.file("s.h5"));
-    write_snapshots(file.root(), snapshots);
+    write_powder_state(file.root(), state);
     file.commit();
   }
-  const auto back = read_snapshots(h5::open_file(directory.file("s.h5")));
+  const h5::Group root = h5::open_file(directory.file("s.h5"));
+  EXPECT_EQ(root.open("trajectory").shape("position"), (h5::Shape{2, 12, 3}));
+  EXPECT_EQ(root.open("trajectory").text_of("time", "unit"), "T0");
+  const SnapshotSeries back = read_powder_series(root, snapshot_of(s, false));
   ASSERT_EQ(back.size(), 2U);
-  EXPECT_EQ(back[1].time, 7.5);
-  EXPECT_EQ(back[1].disks[3].x, snapshots[1].disks[3].x);
-  EXPECT_EQ(back[0].disks[11].r, snapshots[0].disks[11].r);
-  EXPECT_EQ(back[0].lengths, snapshots[0].lengths);
+  EXPECT_EQ(back.at(1)->time, 7.5);
+  EXPECT_EQ(back.at(1)->particles[3].position, (Vec3{{-4.0, 99.0, 0.0}}));
+  EXPECT_EQ(back.at(1)->cell_edges[1], (Vec3{{0.0, 25.0, 0.0}}));
+  EXPECT_EQ(back.at(0)->particles[11].radius, s.particles.sphere[11].r);
+  EXPECT_EQ(back.at(0)->cell_edges[0][0], lengths[0]);
+  EXPECT_EQ(back.at(0)->cell_edges[1][1], lengths[1]);
+  EXPECT_FALSE(back.at(0)->has_contacts || back.at(0)->has_velocity);
+  PowderState again = start_powder(spec_of(12), 2, 0);
+  read_powder_state(root, again);
+  EXPECT_EQ(again.snapshots.position, state.snapshots.position);
+}
+
+/// As files and checkpoints of version 0.2 have them.
+TEST(PowderSnapshots, OfVersion02AreRead) {
+  const test::TemporaryDirectory directory;
+  {
+    h5::AtomicFile file(directory.file("s.h5"));
+    const h5::Group all = file.root().create("snapshots");
+    for (const double time : {0.0, 2.5}) {
+      const h5::Group one = all.create(time > 0.0 ? "1" : "0");
+      one.attribute("time", time);
+      one.write("positions", std::vector<double>{1.0, 2.0, 3.0, 4.0 + time}, {2, 2});
+      one.write("radii", std::vector<double>{0.5, 0.25});
+      one.write("cell", std::vector<double>{8.0, 9.0});
+    }
+    file.commit();
+  }
+  const Trajectory t = read_snapshots(h5::open_file(directory.file("s.h5")));
+  EXPECT_EQ(t.time, (std::vector<double>{0.0, 2.5}));
+  EXPECT_EQ(t.position, (std::vector<double>{1.0, 2.0, 0.0, 3.0, 4.0, 0.0, 1.0, 2.0, 0.0, 3.0, 6.5, 0.0}));
+  EXPECT_EQ(t.cell_edges[13], 9.0);
+  test::Hdf5Edit(directory.file("s.h5")).remove("snapshots/1/cell");
+  EXPECT_THROW((void)read_snapshots(h5::open_file(directory.file("s.h5"))), IoError);
 }
 
 TEST(PowderPlots, AHistogramIsADensity) {
@@ -153,7 +192,13 @@ TEST(PowderPlots, AHistogramIsADensity) {
 
 PowderSample pair_across_the_boundary(double overlap, double force) {
   PowderSample sample;
-  sample.packing = {0.0, {{4.0, 4.0}}, {{{{0.1, 2.0}}, 0.5}, {{{3.1, 2.0}}, 0.5}, {{{2.0, 0.7}}, 0.4}}};
+  sample.packing.cell_edges = {{{{4.0, 0.0, 0.0}}, {{0.0, 4.0, 0.0}}, {}}};
+  for (const auto& [x, y, r] : {std::array{0.1, 2.0, 0.5}, {3.1, 2.0, 0.5}, {2.0, 0.7, 0.4}}) {
+    SnapshotParticle disk;
+    disk.position = {{x, y, 0.0}};
+    disk.radius = r;
+    sample.packing.particles.push_back(disk);
+  }
   ContactRecord<2> c;
   c.i = 0;
   c.j = 1;

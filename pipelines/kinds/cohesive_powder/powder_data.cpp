@@ -2,33 +2,46 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
+#include "common/data/attributes.h"
+#include "common/state/system_io.h"
 #include "microsim/powder/powder_state_io.h"
 
 namespace softgrain {
+
+void fields(auto&& visit, Of<FittedCurve> auto& c) {
+  visit("fit_usable", c.fit.usable);
+  visit("fit_reason", c.fit.reason, kLater);
+  visit("fit_k_low", c.fit.k_low);
+  visit("fit_k_high", c.fit.k_high);
+  visit("amplitude", c.fit.model.amplitude);
+  visit("dF", c.fit.model.dimension);
+  visit("xi", c.fit.model.length);
+  visit("c", c.fit.model.background);
+  visit("tie_cost", c.fit.tie_cost, kLater);
+}
+
 namespace {
 
-constexpr std::size_t kCourseColumns = 7;
+struct CurveColumn {
+  const char* name;
+  const char* unit;  ///< empty: none is written
+  std::vector<double> ScatteringCurve::*values;
+};
+constexpr CurveColumn kCurve[] = {{"k", "1/a", &ScatteringCurve::k},
+                                  {"intensity", "a^2", &ScatteringCurve::intensity},
+                                  {"modes", "", &ScatteringCurve::modes}};
 
 /// The published picture of a pack with rolling resistance colours contacts below it as unstressed [CP 3.5].
 constexpr double kRollingIdleColour = 1e-2;
-
-std::vector<PowderMoment> read_course(const h5::Group& group) {
-  const auto rows = group.doubles("course");
-  std::vector<PowderMoment> out;
-  for (std::size_t k = 0; k + kCourseColumns <= rows.size(); k += kCourseColumns)
-    out.push_back({rows[k + 1], rows[k + 2], rows[k + 3], rows[k + 4]});
-  return out;
-}
 
 std::optional<FittedCurve> read_scattering(const h5::Group& group) {
   if (!group.has("scattering")) return std::nullopt;
   const h5::Group g = group.open("scattering");
   FittedCurve out;
-  out.curve = {g.doubles("k"), g.doubles("intensity"), g.doubles("modes")};
-  out.model = {g.number("amplitude"), g.number("dF"), g.number("xi"), g.number("c")};
-  out.usable = g.integer("fit_usable") != 0;
-  out.k_low = g.number("fit_k_low");
-  out.k_high = g.number("fit_k_high");
+  for (const CurveColumn& c : kCurve) out.curve.*c.values = g.doubles(c.name);
+  read_attributes(g, out);
   return out;
 }
 
@@ -38,14 +51,30 @@ PowderSample read_sample(const h5::Group& group, const PowderSpec& spec) {
   out.course = read_course(group);
   out.stages = read_stages(group);
   const System<2> system = read_powder_system(group, spec);
-  out.packing = powder_snapshot(system);
+  out.packing = snapshot_of(system, false);
   out.contacts = contact_records(system);
-  out.snapshots = read_snapshots(group);
+  out.snapshots = read_powder_series(group, out.packing);
   out.scattering = read_scattering(group);
   return out;
 }
 
 }  // namespace
+
+void write_scattering(const h5::Group& group, const FittedCurve& fitted) {
+  const h5::Group g = group.create("scattering");
+  for (const CurveColumn& c : kCurve) {
+    g.write(c.name, fitted.curve.*c.values);
+    if (*c.unit != '\0') g.attribute_of(c.name, "unit", c.unit);
+  }
+  write_attributes(g, fitted);
+  if (!fitted.fit.covariance.empty()) g.write("covariance", fitted.fit.covariance, {4, 4});
+}
+
+SnapshotSeries read_powder_series(const h5::Group& sample, Snapshot state) {
+  state.has_velocity = false;
+  for (SnapshotParticle& p : state.particles) p.mass = Snapshot::kNone;
+  return {std::move(state), read_snapshots(sample)};
+}
 
 PowderRun load_powder(const std::string& path) {
   const h5::Group root = h5::open_file(path);

@@ -13,30 +13,22 @@
 
 namespace softgrain {
 
-/// One row of the course of an assembly.
-struct PowderMoment {
-  double time = 0.0;  ///< [T0]
-  double fraction = 0.0;
-  double coordination = 0.0;
-  double kinetic = 0.0;  ///< per disk [F0 a]
-};
-
 /// Intensity with the best fit to it.
 struct FittedCurve {
   ScatteringCurve curve;
-  ScatteringModel model;
-  bool usable = false;
-  double k_low = 0.0;  ///< fitted range
-  double k_high = 0.0;
+  ScatteringFit fit;  ///< read from a file: the model, the range, and whether it is usable
 };
+
+/// Writes the group "scattering".
+void write_scattering(const h5::Group& group, const FittedCurve& fitted);
 
 struct PowderSample {
   bool usable = false;
-  PowderSnapshot packing;                  ///< packing at the end
+  Snapshot packing;                        ///< packing at the end
   std::vector<ContactRecord<2>> contacts;  ///< contacts of `packing`, computed again from the stored state and its laws
-  std::vector<PowderMoment> course;
+  std::vector<PowderPoint> course;
   std::vector<PowderStage> stages;
-  std::vector<PowderSnapshot> snapshots;
+  std::optional<SnapshotSeries> snapshots;
   std::optional<FittedCurve> scattering;
 };
 
@@ -46,6 +38,9 @@ struct PowderRun {
   double idle_colour = kPowderZeroForce;  ///< pictures show contacts with |N| below it as unstressed [F0]
   bool cohesive = true;
 };
+
+/// The snapshots of a sample, of the disks of a state of it. Throws IoError.
+SnapshotSeries read_powder_series(const h5::Group& sample, Snapshot state);
 
 /// Throws IoError.
 PowderRun load_powder(const std::string& path);

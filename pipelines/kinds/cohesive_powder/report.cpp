@@ -207,23 +207,24 @@ std::string tables(const RunData& run) {
 }
 
 /// Selects at most kSnapshots snapshots, the first and the last included.
-std::vector<const PowderSnapshot*> chosen(const std::vector<PowderSnapshot>& all) {
-  std::vector<const PowderSnapshot*> out;
+std::vector<Snapshot> chosen(const SnapshotSeries& all) {
+  std::vector<Snapshot> out;
   const std::size_t n = std::min(all.size(), kSnapshots);
-  for (std::size_t k = 0; k < n; ++k) out.push_back(&all[n < 2 ? 0 : k * (all.size() - 1) / (n - 1)]);
+  for (std::size_t k = 0; k < n; ++k)
+    if (const auto one = all.at(n < 2 ? 0 : k * (all.size() - 1) / (n - 1))) out.push_back(*one);
   return out;
 }
 
 std::string snapshots(const PowderRun& run) {
   if (run.samples.empty()) return "";
-  const auto list = chosen(run.samples.front().snapshots);
+  const std::vector<Snapshot> list = chosen(*run.samples.front().snapshots);
   double longest = 0.0;
-  for (const auto* s : list) longest = std::max({longest, s->lengths[0], s->lengths[1]});
+  for (const Snapshot& s : list) longest = std::max({longest, s.cell_edges[0][0], s.cell_edges[1][1]});
   if (!(longest > 0.0)) return "";
   std::string cells;
   for (std::size_t k = 0; k < list.size(); ++k) {
-    const std::string title = fmt::format("{}: t = {} T0", k + 1, format_number(list[k]->time, 3));
-    cells += "<div>" + snapshot_view(*list[k], (kSnapshotWidth - 4.0) / longest, kSnapshotWidth, title) + "</div>\n";
+    const std::string title = fmt::format("{}: t = {} T0", k + 1, format_number(list[k].time, 3));
+    cells += "<div>" + snapshot_view(list[k], (kSnapshotWidth - 4.0) / longest, kSnapshotWidth, title) + "</div>\n";
   }
   return "<figure><div class=\"strip\">\n" + cells + "</div>\n<figcaption>" +
          escape("The assembly of sample 0, all pictures to the same scale.") + "</figcaption></figure>\n";
@@ -277,29 +278,11 @@ namespace softgrain {
 namespace {
 
 void name_units(Snapshot& s, const PowderSpec& spec) {
-  s.kind = SnapshotKind::powder;
-  s.length_unit = "a";
-  s.force_unit = spec.cohesive ? "F0" : "P a";
-  s.time_unit = "T0";
-}
-
-Snapshot picture_of(const PowderSnapshot& from, const PowderSpec& spec) {
-  Snapshot s;
-  name_units(s, spec);
-  s.dimension = 2;
-  s.time = from.time;
-  for (std::size_t k = 0; k < 2; ++k) {
-    s.periodic[k] = true;
-    s.cell_edges[k].v[k] = from.lengths.v[k];
-  }
-  for (const Sphere<2>& disk : from.disks) {
-    SnapshotParticle p;
-    p.position = {{disk.x[0], disk.x[1], 0.0}};
-    p.radius = disk.r;
-    p.id = p.body = static_cast<std::int64_t>(s.particles.size());
-    s.particles.push_back(p);
-  }
-  return s;
+  const Snapshot form = powder_frames();
+  s.kind = form.kind;
+  s.length_unit = form.length_unit;
+  s.force_unit = spec.cohesive ? form.force_unit : "P a";
+  s.time_unit = form.time_unit;
 }
 
 /// The last picture of an assembly may be its end, which is told with contacts instead.
@@ -308,17 +291,19 @@ void visit_sample(const h5::Group& group, const PowderSpec& spec, std::size_t sa
   Snapshot last = snapshot_of(read_powder_system(group, spec));
   name_units(last, spec);
   last.time = group.open("system").number("time");
-  std::vector<Snapshot> states;
-  if (choice == SnapshotChoice::all)
-    for (const PowderSnapshot& picture : read_snapshots(group))
-      if (picture.time < last.time) states.push_back(picture_of(picture, spec));
-  states.push_back(std::move(last));
-  for (std::size_t k = 0; k < states.size(); ++k) {
-    states[k].series = fmt::format("sample_{}", sample);
-    states[k].label = fmt::format("powder, sample {}, time {:.4g} T0", sample, states[k].time);
-    states[k].frame = static_cast<std::int64_t>(k);
-    visit(states[k]);
+  std::int64_t frame = 0;
+  const auto show = [&](Snapshot& s) {
+    s.series = fmt::format("sample_{}", sample);
+    s.label = fmt::format("powder, sample {}, time {:.4g} T0", sample, s.time);
+    s.frame = frame++;
+    visit(s);
+  };
+  if (choice == SnapshotChoice::all) {
+    const SnapshotSeries pictures = read_powder_series(group, last);
+    for (std::size_t k = 0; k < pictures.size(); ++k)
+      if (auto picture = pictures.at(k); picture && picture->time < last.time) show(*picture);
   }
+  show(last);
 }
 
 }  // namespace

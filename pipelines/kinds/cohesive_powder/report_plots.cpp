@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kCurvePoints = 600;
 constexpr int kBins = 48;
 
-using MomentValue = double (*)(const PowderMoment&);
+using MomentValue = double (*)(const PowderPoint&);
 
 Series course_series(const PowderSample& sample, std::size_t number, std::size_t samples, MomentValue value) {
   Series s{.label = samples > 1 && samples <= 8 ? fmt::format("sample {}", number) : "",
@@ -102,17 +102,17 @@ std::string angle_figure(const PowderForces& forces) {
 }
 
 Series fit_line(const FittedCurve& fitted) {
-  const std::string label = fitted.usable
-                                ? fmt::format("fit: dF = {}, xi = {} a", format_number(fitted.model.dimension, 3),
-                                              format_number(fitted.model.length, 3))
+  const std::string label = fitted.fit.usable
+                                ? fmt::format("fit: dF = {}, xi = {} a", format_number(fitted.fit.model.dimension, 3),
+                                              format_number(fitted.fit.model.length, 3))
                                 : "fit, not to be relied on";
   Series s{.label = label, .hover = "", .x = {}, .y = {}};
   for (int n = 0; n <= 160; ++n) {
-    const double k = fitted.k_low * std::pow(fitted.k_high / fitted.k_low, n / 160.0);
+    const double k = fitted.fit.k_low * std::pow(fitted.fit.k_high / fitted.fit.k_low, n / 160.0);
     s.x.push_back(k);
-    s.y.push_back(scattering_intensity(fitted.model, k));
+    s.y.push_back(scattering_intensity(fitted.fit.model, k));
   }
-  s.style = {.color = palette::vermillion, .width = 2.2, .dash = fitted.usable ? "" : "5 3"};
+  s.style = {.color = palette::vermillion, .width = 2.2, .dash = fitted.fit.usable ? "" : "5 3"};
   return s;
 }
 
@@ -150,20 +150,20 @@ std::string course_figures(const PowderRun& run) {
   const AxisOptions time{.label = "time [T0]"};
   const std::string fraction = course_figure(
       run, {.id = "powder-phi", .title = "Solid fraction", .x = time, .y = {.label = "Phi"}},
-      [](const PowderMoment& m) { return m.fraction; }, "Area of the disks over that of the cell.");
+      [](const PowderPoint& m) { return m.fraction; }, "Area of the disks over that of the cell.");
   if (fraction.empty()) return "";
   return figure_row(
       {fraction,
        course_figure(
            run, {.id = "powder-z", .title = "Coordination number", .x = time, .y = {.label = "z", .low = 0.0}},
-           [](const PowderMoment& m) { return m.coordination; }, "Interactions per disk, distant pairs included."),
+           [](const PowderPoint& m) { return m.coordination; }, "Interactions per disk, distant pairs included."),
        course_figure(
            run,
            {.id = "powder-kinetic",
             .title = "Kinetic energy",
             .x = time,
             .y = {.label = "kinetic energy per disk [F0 a]", .scale = Scale::logarithmic}},
-           [](const PowderMoment& m) { return m.kinetic; }, "Relative to the moving cell.")});
+           [](const PowderPoint& m) { return m.kinetic; }, "Relative to the moving cell.")});
 }
 
 std::string force_figures(const PowderRun& run) {
@@ -195,12 +195,12 @@ std::string scattering_figure(const PowderRun& run) {
        .x = main->curve.k,
        .y = main->curve.intensity,
        .style = {.color = palette::blue, .width = 0.0, .marker = Marker::circle, .marker_size = 2.2}});
-  if (main->k_high > main->k_low && main->k_low > 0.0) plot.add(fit_line(*main));
+  if (main->fit.k_high > main->fit.k_low && main->fit.k_low > 0.0) plot.add(fit_line(*main));
   return figure(
       plot.svg(),
-      main->k_high > 0.0
+      main->fit.k_high > 0.0
           ? fmt::format("Fitted for k a from {} to {}: beyond that the disks' own form factor bends the curve.",
-                        format_number(main->k_low, 3), format_number(main->k_high, 3))
+                        format_number(main->fit.k_low, 3), format_number(main->fit.k_high, 3))
           : std::string("Too few wave numbers for a fit: the cell is small."));
 }
 

@@ -43,6 +43,6 @@ double strong_force(const std::vector<ContactRecord<2>>& contacts);
 inline constexpr double kStrongLine = 0.22;
 
 /// Disks alone, small; `scale` [px per a] is the caller's, so that a row of pictures shows a cell that shrinks.
-std::string snapshot_view(const PowderSnapshot& snapshot, double scale, double width, const std::string& title);
+std::string snapshot_view(const Snapshot& snapshot, double scale, double width, const std::string& title);
 
 }  // namespace softgrain::report

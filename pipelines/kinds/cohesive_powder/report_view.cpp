@@ -65,13 +65,18 @@ void for_images(const CellView& view, const Vec<2>& low, const Vec<2>& high, con
     }
 }
 
-std::string circle(const CellView& view, const Sphere<2>& disk) {
-  const Vec<2> at = view.folded(disk.x);
-  const Vec<2> r{{disk.r, disk.r}};
+Vec<2> centre_of(const SnapshotParticle& disk) { return {{disk.position[0], disk.position[1]}}; }
+
+/// Lengths of the periodic cell [a].
+Vec<2> lengths_of(const Snapshot& s) { return {{s.cell_edges[0][0], s.cell_edges[1][1]}}; }
+
+std::string circle(const CellView& view, const SnapshotParticle& disk) {
+  const Vec<2> at = view.folded(centre_of(disk));
+  const Vec<2> r{{disk.radius, disk.radius}};
   std::string out;
   for_images(view, at - r, at + r, [&](const Vec<2>& shift) {
     out += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"/>\n", coordinate(view.x(at[0] + shift[0])),
-                       coordinate(view.y(at[1] + shift[1])), svg::number(disk.r * view.scale));
+                       coordinate(view.y(at[1] + shift[1])), svg::number(disk.radius * view.scale));
   });
   return out;
 }
@@ -124,20 +129,20 @@ std::string draw_contacts(const CellView& view, const PowderSample& sample, Powd
     const double share = strong > 0.0 ? std::min(kStrongLine * std::abs(c.normal_force) / strong, kWidestLine) : 0.0;
     const double width = lines == PowderLines::forces ? share * view.scale : (idle ? 1.5 : 1.0) * thin;
     LineGroup& group = c.overlap <= 0.0 ? distant : idle ? unstressed : c.normal_force > 0.0 ? compressive : tensile;
-    group.add(width, line(view, sample.packing.disks[static_cast<std::size_t>(c.i)].x, c.branch));
+    group.add(width, line(view, centre_of(sample.packing.particles[static_cast<std::size_t>(c.i)]), c.branch));
   }
   return compressive.svg() + tensile.svg() + unstressed.svg() + distant.svg();
 }
 
 std::string draw_disks(const CellView& view, const PowderSample& sample, double zero) {
-  std::vector<bool> carries(sample.packing.disks.size(), false);
+  std::vector<bool> carries(sample.packing.particles.size(), false);
   for (const auto& c : sample.contacts)
     if (std::abs(c.normal_force) >= zero)
       carries[static_cast<std::size_t>(c.i)] = carries[static_cast<std::size_t>(c.j)] = true;
   std::string active;
   std::string idle;
   for (std::size_t n = 0; n < carries.size(); ++n)
-    (carries[n] ? active : idle) += circle(view, sample.packing.disks[n]);
+    (carries[n] ? active : idle) += circle(view, sample.packing.particles[n]);
   const auto group = [](const char* fill, const std::string& content) {
     return fmt::format("<g fill=\"{}\" stroke=\"#8d8575\" stroke-width=\"0.5\">\n{}</g>\n", fill, content);
   };
@@ -181,8 +186,9 @@ std::string open_svg(double width, double height, const std::string& title) {
       svg::number(width), svg::number(height), escape(title));
 }
 
-bool drawable(const PowderSnapshot& s) {
-  return !s.disks.empty() && s.lengths[0] > 0.0 && s.lengths[1] > 0.0 && std::isfinite(s.lengths[0] + s.lengths[1]);
+bool drawable(const Snapshot& s) {
+  const Vec<2> lengths = lengths_of(s);
+  return !s.particles.empty() && lengths[0] > 0.0 && lengths[1] > 0.0 && std::isfinite(lengths[0] + lengths[1]);
 }
 
 /// Letters and digits of a title: unique in a page as titles are.
@@ -205,7 +211,7 @@ double strong_force(const std::vector<ContactRecord<2>>& contacts) {
 
 std::string packing_view(const PowderSample& sample, PowderLines lines, double zero, const std::string& title) {
   if (!drawable(sample.packing)) return "";
-  const Vec<2>& lengths = sample.packing.lengths;
+  const Vec<2> lengths = lengths_of(sample.packing);
   const CellView view{lengths, kMargin, kTop, (kWidth - 2.0 * kMargin) / lengths[0]};
   const double bottom = kTop + view.height();
   std::vector<LegendEntry> legend{{kCompressive, "compressive"}, {kTensile, "tensile"}};
@@ -218,11 +224,12 @@ std::string packing_view(const PowderSample& sample, PowderLines lines, double z
          draw_legend_row(legend, bottom + 0.5 * kLegend) + "</svg>\n";
 }
 
-std::string snapshot_view(const PowderSnapshot& snapshot, double scale, double width, const std::string& title) {
+std::string snapshot_view(const Snapshot& snapshot, double scale, double width, const std::string& title) {
   if (!drawable(snapshot)) return "";
-  const CellView view{snapshot.lengths, 0.5 * (width - snapshot.lengths[0] * scale), 22.0, scale};
+  const Vec<2> lengths = lengths_of(snapshot);
+  const CellView view{lengths, 0.5 * (width - lengths[0] * scale), 22.0, scale};
   std::string disks = "<g fill=\"#56677a\">\n";
-  for (const auto& d : snapshot.disks) disks += circle(view, d);
+  for (const SnapshotParticle& d : snapshot.particles) disks += circle(view, d);
   return open_svg(width, 22.0 + view.height() + 2.0, title) + svg::text(0.5 * width, 14.0, title, {.size = 12.0}) +
          frame_and_clip(view, id_of(title), disks + "</g>\n") + "</svg>\n";
 }

@@ -13,6 +13,7 @@
 #include "common/dynamics/force_pass.h"
 #include "microsim/powder/powder_mesh.h"
 #include "microsim/powder/powder_start.h"
+#include "pipelines/kinds/cohesive_powder/powder_data.h"
 #include "pipelines/kinds/cohesive_powder/summary.h"
 
 namespace softgrain {
@@ -115,24 +116,6 @@ namespace {
 
 using nlohmann::json;
 
-void write_curve(const h5::Group& group, const ScatteringCurve& curve, const ScatteringFit& fit) {
-  group.write("k", curve.k);
-  group.attribute_of("k", "unit", "1/a");
-  group.write("intensity", curve.intensity);
-  group.attribute_of("intensity", "unit", "a^2");
-  group.write("modes", curve.modes);
-  group.attribute("fit_usable", std::int64_t{fit.usable ? 1 : 0});
-  group.attribute("fit_reason", fit.reason);
-  group.attribute("fit_k_low", fit.k_low);
-  group.attribute("fit_k_high", fit.k_high);
-  group.attribute("amplitude", fit.model.amplitude);
-  group.attribute("dF", fit.model.dimension);
-  group.attribute("xi", fit.model.length);
-  group.attribute("c", fit.model.background);
-  group.attribute("tie_cost", fit.tie_cost);
-  if (!fit.covariance.empty()) group.write("covariance", fit.covariance, {4, 4});
-}
-
 void write_holes(const h5::Group& group, const PowderHoles& holes) {
   std::vector<double> area;
   std::vector<double> radius;
@@ -174,12 +157,12 @@ double fitted(const PowderStructure& s, double ScatteringModel::*member) {
 }  // namespace
 
 void write_structure(const h5::Group& group, const PowderStructure& s) {
-  if (s.curve) write_curve(group.create("scattering"), *s.curve, s.fit);
+  if (s.curve) write_scattering(group, {*s.curve, s.fit});
   if (s.holes) write_holes(group.create("holes"), *s.holes);
 }
 
 void write_structures(const h5::Group& root, const PowderStructures& s) {
-  if (s.mean_curve) write_curve(root.create("scattering"), *s.mean_curve, s.fit);
+  if (s.mean_curve) write_scattering(root, {*s.mean_curve, s.fit});
 }
 
 void add_structure(PackSummary& sample, const PowderStructure& s) {

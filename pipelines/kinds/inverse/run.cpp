@@ -10,6 +10,7 @@
 #include "common/core/error.h"
 #include "common/core/parallel_tasks.h"
 #include "common/core/statistics.h"
+#include "common/data/fields.h"
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
 #include "common/io/text_file.h"
@@ -53,23 +54,16 @@ struct TaskResult {
 };
 
 void write_result(const h5::Group& group, const Task& task, const TaskResult& r) {
-  std::vector<double> rows;
-  for (const NormalPoint& p : r.normal)
-    rows.insert(rows.end(), {p.delta, p.force, p.residual, p.max_overlap, p.converged ? 1.0 : 0.0});
-  group.write("normal", rows);
+  group.write("normal", rows_of(r.normal));
   group.write("u", task.u);
-  group.write("cost", std::vector<double>{static_cast<double>(r.cost.loop_passes),
-                                          static_cast<double>(r.cost.contact_evaluations), r.cost.seconds});
+  group.write("cost", rows_of(std::vector{r.cost}));
 }
 
 /// False when the file belongs to another point.
 bool read_result(const h5::Group& group, const Task& task, TaskResult& r) {
   if (group.doubles("u") != task.u) return false;
-  const std::vector<double> rows = group.doubles("normal");
-  for (std::size_t k = 0; k + 5 <= rows.size(); k += 5)
-    r.normal.push_back({rows[k], rows[k + 1], rows[k + 2], rows[k + 3], rows[k + 4] != 0.0});
-  const std::vector<double> cost = group.doubles("cost");
-  r.cost = {static_cast<std::int64_t>(cost.at(0)), static_cast<std::int64_t>(cost.at(1)), cost.at(2)};
+  r.normal = records_of<NormalPoint>(group.doubles("normal"));
+  r.cost = records_of<Cost>(group.doubles("cost")).at(0);
   return true;
 }
 

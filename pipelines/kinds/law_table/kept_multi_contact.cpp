@@ -1,9 +1,17 @@
 #include "pipelines/kinds/law_table/multi_contact_stage.h"
 
 #include "common/core/error.h"
+#include "common/data/attributes.h"
 #include "common/state/system_io.h"
 
 namespace softgrain {
+
+/// Without its run and its positions.
+void fields(auto&& visit, Of<MultiContactPlace> auto& p) {
+  visit("stage", p.stage);
+  visit("leg", p.leg);
+  visit("increments", p.increments);
+}
 
 namespace {
 
@@ -25,9 +33,7 @@ MultiContactTarget read_target(const h5::Group& group, const std::string& name) 
 }
 
 void write_place(const h5::Group& group, const MultiContactPlace& place, const MultiContactExperiment& e) {
-  group.attribute("stage", static_cast<std::int64_t>(place.stage));
-  group.attribute("leg", static_cast<std::int64_t>(place.leg));
-  group.attribute("increments", place.increments);
+  write_attributes(group, place);
   write_target(group, "stage_from", place.stage_from);
   write_target(group, "leg_from", place.leg_from);
   write_target(group, "now", e.now());
@@ -37,9 +43,7 @@ void write_place(const h5::Group& group, const MultiContactPlace& place, const M
 
 MultiContactPlace read_place(const h5::Group& group, MultiContactExperiment& e) {
   MultiContactPlace place;
-  place.stage = static_cast<std::size_t>(group.integer("stage"));
-  place.leg = static_cast<std::size_t>(group.integer("leg"));
-  place.increments = group.integer("increments");
+  read_attributes(group, place);
   place.stage_from = read_target(group, "stage_from");
   place.leg_from = read_target(group, "leg_from");
   MultiContactTarget now = read_target(group, "now");

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <utility>
 
 #include "common/core/error.h"
 #include "common/core/text.h"
-#include "microsim/particles/trajectory.h"
+#include "common/data/snapshot_frames.h"
 #include "pipelines/kinds/particles/scene.h"
 #include "pipelines/kinds/particles/summary.h"
 #include "pipelines/report/html.h"
@@ -51,21 +52,18 @@ std::vector<std::string> pair_row(const PairSummary& s) {
           format_number(s.max_force, 6), format_number(s.max_overlap, 6)};
 }
 
-/// Energies of the recorded frames [J] over time [s].
-struct FrameEnergies {
-  std::vector<double> time;
-  std::vector<double> translational;
-  std::vector<double> rotational;
-  std::vector<double> gravitational;
+/// Numbers of the recorded frames of run.h5.
+struct FrameNumbers {
+  Trajectory of;       ///< times, energies, and what a cell that is periodic along all axes has of stresses
+  bool plane = false;  ///< stresses are those of disks
 };
 
-FrameEnergies load_energies(const std::string& path) {
-  const h5::Group frames = h5::open_file(path).open("trajectory");
-  FrameEnergies e{frames.doubles("time"), frames.doubles("translational_energy"), frames.doubles("rotational_energy"),
-                  frames.doubles("gravitational_energy")};
-  for (const auto* values : {&e.translational, &e.rotational, &e.gravitational})
-    if (values->size() != e.time.size()) throw IoError(path + ": as many energies as times are needed");
-  return e;
+FrameNumbers load_numbers(const std::string& path) {
+  const h5::Group root = h5::open_file(path);
+  using T = Trajectory;
+  return {read_columns(root.open("trajectory"), {&T::translational_energy, &T::rotational_energy,
+                                                 &T::gravitational_energy, &T::stress, &T::inertial_number}),
+          root.has_attribute("dimension") && root.integer("dimension") == 2};
 }
 
 /// Stress and inertial number of the recorded frames of a cell that is periodic along all axes.
@@ -76,23 +74,16 @@ struct FrameStresses {
   std::vector<double> inertial_number;
 };
 
-FrameStresses load_stresses(const std::string& path) {
-  const h5::Group root = h5::open_file(path);
-  const h5::Group frames = root.open("trajectory");
+FrameStresses stresses_of(const FrameNumbers& frames) {
   FrameStresses s;
-  if (!frames.has("stress") || !frames.has("inertial_number")) return s;
-  const std::vector<double> time = frames.doubles("time");
-  const std::vector<double> stress = frames.doubles("stress");
-  const std::vector<double> inertial = frames.doubles("inertial_number");
-  if (stress.size() != 9 * time.size() || inertial.size() != time.size())
-    throw IoError(path + ": as many stresses as times are needed");
-  const bool plane = root.has_attribute("dimension") && root.integer("dimension") == 2;
-  for (std::size_t k = 0; k < time.size(); ++k) {
-    const double* t = &stress[9 * k];
+  const Trajectory& all = frames.of;
+  if (all.stress.empty() || all.inertial_number.empty()) return s;
+  for (std::size_t k = 0; k < all.time.size(); ++k) {
+    const double* t = &all.stress[9 * k];
     if (!std::isfinite(t[0])) continue;  // a frame without its contacts
-    s.time.push_back(time[k]);
-    s.inertial_number.push_back(inertial[k]);
-    s.pressure.push_back(plane ? -(t[0] + t[4]) / 2.0 : -(t[0] + t[4] + t[8]) / 3.0);
+    s.time.push_back(all.time[k]);
+    s.inertial_number.push_back(all.inertial_number[k]);
+    s.pressure.push_back(frames.plane ? -(t[0] + t[4]) / 2.0 : -(t[0] + t[4] + t[8]) / 3.0);
     s.shear.push_back(0.5 * (t[1] + t[3]));
   }
   return s;
@@ -134,9 +125,9 @@ std::string inertial_figure(const FrameStresses& s) {
   return figure(plot.svg(), "d: mean diameter by number; below 1e-3 a flow counts as quasi-static.");
 }
 
-std::string energy_figure(const FrameEnergies& e) {
+std::string energy_figure(const Trajectory& e) {
   double largest = 0.0;
-  for (const auto* values : {&e.translational, &e.rotational, &e.gravitational})
+  for (const auto* values : {&e.translational_energy, &e.rotational_energy, &e.gravitational_energy})
     for (const double v : *values)
       if (std::isfinite(v)) largest = std::max(largest, std::abs(v));
   if (e.time.size() < 2 || largest == 0.0) return "";
@@ -146,9 +137,9 @@ std::string energy_figure(const FrameEnergies& e) {
              .x = {.label = "time [s]"},
              .y = {.label = "energy [" + prefix.symbol + "J]"}});
   std::size_t color = 0;
-  for (const auto& [label, values] : {std::pair{"translational", &e.translational},
-                                      {"rotational", &e.rotational},
-                                      {"gravitational", &e.gravitational}}) {
+  for (const auto& [label, values] : {std::pair{"translational", &e.translational_energy},
+                                      {"rotational", &e.rotational_energy},
+                                      {"gravitational", &e.gravitational_energy}}) {
     Series s{.label = label, .hover = "", .x = e.time, .y = *values, .style = {.color = palette::cycle(color++)}};
     for (double& v : s.y) v /= prefix.factor;
     if (std::ranges::any_of(s.y, [](double v) { return v != 0.0; })) plot.add(std::move(s));
@@ -159,18 +150,19 @@ std::string energy_figure(const FrameEnergies& e) {
 }  // namespace
 
 std::string energies_section(const RunData& run) {
-  const FrameEnergies* energies = run.file<FrameEnergies>("run.h5", load_energies);
-  const std::string drawn = energies == nullptr ? "" : energy_figure(*energies);
+  const FrameNumbers* frames = run.file("run.h5", load_numbers);
+  const std::string drawn = frames == nullptr ? "" : energy_figure(frames->of);
   return drawn.empty() ? "" : section("energy", "Energies", "Energies of the recorded frames.", figure_row({drawn}));
 }
 
 std::string stresses_section(const RunData& run) {
-  const FrameStresses* stresses = run.file<FrameStresses>("run.h5", load_stresses);
-  if (stresses == nullptr) return "";
-  const std::string stress = stress_figure(*stresses);
+  const FrameNumbers* frames = run.file("run.h5", load_numbers);
+  if (frames == nullptr) return "";
+  const FrameStresses stresses = stresses_of(*frames);
+  const std::string stress = stress_figure(stresses);
   return stress.empty() ? ""
                         : section("stress", "Stress", "Stress of the contacts in the recorded frames.",
-                                  figure_row({stress, inertial_figure(*stresses)}));
+                                  figure_row({stress, inertial_figure(stresses)}));
 }
 
 std::string particles_section(const RunData& run) {
@@ -190,168 +182,19 @@ std::string particles_section(const RunData& run) {
 
 namespace softgrain {
 
-namespace {
-
-/// All that run.h5 says of bodies; positions come with every frame.
-struct Bodies {
-  std::vector<SnapshotParticle> particles;
-  std::vector<SnapshotWall> walls;
-  std::array<bool, 3> periodic{};
-  int dimension = 3;
-};
-
-void require(bool fits, const char* what) {
-  if (!fits) throw IoError(fmt::format("data set '{}' does not fit the rest of the file", what));
-}
-
-bool all_finite(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
-}
-
-std::vector<SnapshotParticle> read_particles(const h5::Group& bodies) {
-  const std::vector<double> radius = bodies.doubles("radius");
-  const std::vector<std::int64_t> material = bodies.integers("material");
-  require(material.size() == radius.size(), "material");
-  const auto positive = [](double x) { return std::isfinite(x) && x > 0.0; };
-  require(std::ranges::all_of(radius, positive), "radius");
-  std::vector<double> mass(radius.size(), kNaN);
-  if (bodies.has("mass")) mass = bodies.doubles("mass");
-  require(mass.size() == radius.size(), "mass");
-  require(!bodies.has("mass") || std::ranges::all_of(mass, positive), "mass");
-  std::vector<std::int64_t> soft;
-  if (bodies.has("material_is_soft")) soft = bodies.integers("material_is_soft");
-  std::vector<SnapshotParticle> particles(radius.size());
-  for (std::size_t k = 0; k < particles.size(); ++k) {
-    SnapshotParticle& p = particles[k];
-    p.radius = radius[k];
-    p.mass = mass[k];
-    p.material = material[k];
-    p.id = p.body = static_cast<std::int64_t>(k);
-    const auto m = static_cast<std::size_t>(material[k]);
-    if (material[k] >= 0 && m < soft.size() && soft[m] != 0) p.role = ParticleRole::soft;
-  }
-  return particles;
-}
-
-/// Walls of the full state that ends the file. They have as many coordinates as the run has dimensions.
-std::vector<SnapshotWall> read_walls(const h5::Group& bodies, std::size_t particles, std::size_t dimension) {
-  const std::vector<std::int64_t> counts = bodies.integers("counts");
-  const std::vector<double> spheres = bodies.doubles("sphere");
-  const std::vector<double> normals = bodies.doubles("plane_normal");
-  require(counts.size() == 3 && counts[0] == static_cast<std::int64_t>(particles) && counts[1] >= 0 && counts[2] >= 0,
-          "counts");
-  const auto shells = static_cast<std::size_t>(counts[1]);
-  const auto planes = static_cast<std::size_t>(counts[2]);
-  require(spheres.size() == (dimension + 1) * (particles + shells + planes), "sphere");
-  require(normals.size() == dimension * planes && all_finite(normals), "plane_normal");
-  std::vector<SnapshotWall> walls(shells + planes);
-  for (std::size_t k = 0; k < walls.size(); ++k) {
-    if (k < shells) {
-      walls[k].shape = WallShape::sphere_inside;
-      walls[k].radius = spheres[(dimension + 1) * (particles + k) + dimension];
-      require(std::isfinite(walls[k].radius), "sphere");
-    } else {
-      for (std::size_t c = 0; c < dimension; ++c) walls[k].normal.v[c] = normals[dimension * (k - shells) + c];
-    }
-  }
-  return walls;
-}
-
-Bodies read_bodies(const h5::Group& root) {
-  Bodies out;
-  out.particles = read_particles(root.open("bodies"));
-  const h5::Group last = root.open("final");
-  if (root.has_attribute("dimension")) out.dimension = static_cast<int>(root.integer("dimension"));
-  require(out.dimension == 2 || out.dimension == 3, "dimension");
-  const auto dimension = static_cast<std::size_t>(out.dimension);
-  out.walls = read_walls(last.open("bodies"), out.particles.size(), dimension);
-  const std::vector<std::int64_t> periodic = last.open("cell").integers("periodic");
-  require(periodic.size() == dimension, "periodic");
-  for (std::size_t k = 0; k < dimension; ++k) out.periodic[k] = periodic[k] != 0;
-  return out;
-}
-
-Vec3 vector_at(const std::vector<double>& flat, std::size_t row) {
-  return {{flat[3 * row], flat[3 * row + 1], flat[3 * row + 2]}};
-}
-
-void require_fits(const Trajectory& t, const Bodies& bodies) {
-  const std::size_t frames = t.time.size();
-  require(t.position.size() == 3 * frames * bodies.particles.size(), "position");
-  require(t.velocity.size() == t.position.size(), "velocity");
-  require(t.spin.size() == t.position.size(), "spin");
-  require(t.wall_position.size() == 3 * frames * bodies.walls.size(), "wall_position");
-  require(t.cell_edges.size() == 9 * frames && all_finite(t.cell_edges), "cell_edges");
-  require(all_finite(t.wall_position), "wall_position");
-  require(all_finite(t.time), "time");
-}
-
-Snapshot frame_of(const Trajectory& t, const Bodies& bodies, std::size_t frame) {
-  Snapshot s;
-  s.series = "particles";
-  s.frame = static_cast<std::int64_t>(frame);
-  s.time = t.time[frame];
-  s.label = fmt::format("particles at {:.4g} s", s.time);
-  s.has_velocity = true;
-  s.dimension = bodies.dimension;
-  s.particles = bodies.particles;
-  s.walls = bodies.walls;
-  s.periodic = bodies.periodic;
-  for (std::size_t k = 0; k < s.particles.size(); ++k) {
-    s.particles[k].position = vector_at(t.position, frame * s.particles.size() + k);
-    s.particles[k].velocity = vector_at(t.velocity, frame * s.particles.size() + k);
-    s.particles[k].spin = vector_at(t.spin, frame * s.particles.size() + k);
-  }
-  for (std::size_t k = 0; k < s.walls.size(); ++k)
-    s.walls[k].point = vector_at(t.wall_position, frame * s.walls.size() + k);
-  // The file has the matrix row by row; an edge is a column.
-  for (std::size_t edge = 0; edge < 3; ++edge)
-    for (std::size_t row = 0; row < 3; ++row) s.cell_edges[edge].v[row] = t.cell_edges[9 * frame + 3 * row + edge];
-  return s;
-}
-
-bool is_valid(const Snapshot& s) {
-  return std::all_of(s.particles.begin(), s.particles.end(), [](const SnapshotParticle& p) {
-    return std::isfinite(norm2(p.position)) && std::isfinite(norm2(p.velocity)) && std::isfinite(norm2(p.spin));
-  });
-}
-
-/// First contact of every recorded frame.
-std::vector<std::size_t> starts_of(const FrameContacts& contacts) {
-  std::vector<std::size_t> starts{0};
-  for (const std::int64_t n : contacts.count) starts.push_back(starts.back() + static_cast<std::size_t>(n));
-  return starts;
-}
-
-void add_contacts(Snapshot& s, const FrameContacts& all, const std::vector<std::size_t>& starts) {
-  const auto at = std::lower_bound(all.frame.begin(), all.frame.end(), s.frame);
-  if (at == all.frame.end() || *at != s.frame) return;
-  const auto k = static_cast<std::size_t>(at - all.frame.begin());
-  s.has_contacts = true;
-  s.contacts.assign(all.contacts.begin() + static_cast<std::ptrdiff_t>(starts[k]),
-                    all.contacts.begin() + static_cast<std::ptrdiff_t>(starts[k + 1]));
-}
-
-}  // namespace
-
 void visit_particles(const std::string& path, SnapshotChoice choice, const VisitSnapshot& visit) {
   const h5::Group root = h5::open_file(path);
   if (!root.has_attribute("kind") || parse_enum<SnapshotKind>(root.text("kind")) != SnapshotKind::particles)
     throw IoError(path + ": holds no particles");
-  const Bodies bodies = read_bodies(root);
-  const Trajectory t = read_trajectory(root.open("trajectory"));
-  require_fits(t, bodies);
-  FrameContacts contacts;
-  if (root.has("frame_contacts"))
-    contacts = read_frame_contacts(root.open("frame_contacts"), bodies.particles.size(),
-                                   bodies.particles.size() + bodies.walls.size());
-  const std::vector<std::size_t> starts = starts_of(contacts);
-  const std::size_t frames = t.time.size();
-  for (std::size_t k = choice == SnapshotChoice::last && frames > 0 ? frames - 1 : 0; k < frames; ++k) {
-    Snapshot s = frame_of(t, bodies, k);
-    if (!is_valid(s)) continue;
-    add_contacts(s, contacts, starts);
-    visit(s);
+  Snapshot form = moving_frames();
+  form.series = "particles";
+  const SnapshotSeries frames = read_series(root, "final", std::move(form));
+  for (std::size_t k = choice == SnapshotChoice::last && frames.size() > 0 ? frames.size() - 1 : 0; k < frames.size();
+       ++k) {
+    std::optional<Snapshot> s = frames.at(k);
+    if (!s) continue;
+    s->label = fmt::format("particles at {:.4g} s", s->time);
+    visit(*s);
   }
 }
 

@@ -22,6 +22,13 @@
 
 namespace softgrain {
 
+void fields(auto&& visit, Of<SettleResult> auto& r) {
+  visit("force", r.force, "N");
+  visit("residual", r.residual, "1");
+  visit("max_overlap", r.max_overlap, "1");
+  visit("converged", r.converged, "1");
+}
+
 namespace {
 
 /// One packing (or pair) under one relaxation.
@@ -59,11 +66,9 @@ void write_run(const h5::Group& group, const MeasurementState& state) {
   group.write("tangential", rows_of(run.tangential));
   group.write("cost", rows_of(std::vector{run.normal_cost, run.tangential_cost}));
   group.attribute("normal_overlap", state.experiment.normal_overlap);
-  std::vector<double> rotating;  // empty: no rotations under way
-  if (const auto& rest = state.rotating)
-    rotating = {rest->force[0], rest->force[1],    rest->force[2],
-                rest->residual, rest->max_overlap, rest->converged ? 1.0 : 0.0};
-  group.write("rotating", rotating);
+  std::vector<SettleResult> rotating;  // empty: no rotations under way
+  if (state.rotating) rotating.push_back(*state.rotating);
+  group.write("rotating", rows_of(rotating));
   write_system(group.create("system"), state.experiment.system);
 }
 
@@ -75,8 +80,8 @@ void read_run(const h5::Group& group, MeasurementState& state) {
   run.normal_cost = cost.at(0);
   run.tangential_cost = cost.at(1);
   state.experiment.normal_overlap = group.number("normal_overlap");
-  if (const auto r = group.doubles("rotating"); r.size() == 6)
-    state.rotating = SettleResult{{{r[0], r[1], r[2]}}, r[3], r[4], r[5] != 0.0};
+  if (const auto rotating = records_of<SettleResult>(group.doubles("rotating")); !rotating.empty())
+    state.rotating = rotating.front();
   read_system(group.open("system"), state.experiment.system);
 }
 

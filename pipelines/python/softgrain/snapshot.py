@@ -1,6 +1,6 @@
 """States of a run: particles, walls and contacts with their forces, from run.h5 and states_*.h5.
 
-powder.h5 and grain_box.h5 keep states in forms of their own: `softgrain export RUN --to csv` makes tables of them.
+powder.h5 and grain_box.h5 end in states whose contacts the program computes: `softgrain export RUN --to csv` makes tables of them.
 """
 from dataclasses import dataclass, field
 from pathlib import Path
