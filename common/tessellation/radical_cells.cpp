@@ -310,31 +310,83 @@ const HalfFace* find(const OneCell& cell, std::int32_t j, int image) {
   return at != cell.halves.end() && at->j == j && at->image == image ? &*at : nullptr;
 }
 
+/// Cells from which several threads join them: one costs about a microsecond.
+constexpr std::int64_t kManyCells = 500;
+/// Cells that a thread cuts in a row. A small site among large ones costs several times the 30 us of others.
+constexpr int kCutInRow = 8;
+
+/// Whether cell u is the one that tells of a face. Faces at planes are told apart from others (j below 0).
+bool tells(std::size_t u, const HalfFace& half) {
+  const auto i = static_cast<std::int32_t>(u);
+  return half.j >= 0 && (i != half.j ? i < half.j : half.image > home_image<3>());
+}
+
+/// The first face of cell u that its neighbour knows otherwise; null: none.
+const HalfFace* find_mismatch(const std::vector<OneCell>& cells, std::size_t u, double allowed) {
+  for (const HalfFace& half : cells[u].halves) {
+    if (half.j < 0) continue;
+    const HalfFace* other =
+        find(cells[static_cast<std::size_t>(half.j)], static_cast<std::int32_t>(u), image_count<3>() - 1 - half.image);
+    if (std::abs(half.area - (other != nullptr ? other->area : 0.0)) > allowed) return &half;
+  }
+  return nullptr;
+}
+
+/// Throws for the first cell with a fault; where there is none, for the first that does not agree with a neighbour.
+/// (The neighbours of a cell with a fault do not agree with it.)
+[[noreturn]] void throw_fault(const std::vector<OneCell>& cells, double allowed) {
+  for (std::size_t u = 0; u < cells.size(); ++u) require_valid(cells[u], u);
+  for (std::size_t u = 0; u < cells.size(); ++u)
+    if (const HalfFace* half = find_mismatch(cells, u, allowed))
+      throw UnusableResult(fmt::format("cells: sites {} and {} do not agree about their face", u, half->j));
+  throw UnusableResult("cells: they do not fit together");
+}
+
+/// Fills in what cell u tells, from these places on.
+void fill_faces(const Sphere<3>& site, const OneCell& cell, std::size_t u, CellFace* face, WallFace* wall) {
+  const auto i = static_cast<std::int32_t>(u);
+  for (const HalfFace& half : cell.halves) {
+    const Vec3 centroid = site.x + half.centroid;
+    if (half.j < 0)  // faces at planes come first, with the highest plane in front
+      *wall++ = {i, -1 - half.j, half.area, centroid};
+    else if (tells(u, half))
+      *face++ = {i, half.j, half.image, half.area, norm(half.separation), centroid, half.separation};
+  }
+}
+
 /// The faces of all cells, each once, and whether both sides tell the same.
 RadicalCells join(const std::vector<Sphere<3>>& sites, const std::vector<OneCell>& cells, const Room& room,
                   double spacing) {
   RadicalCells out;
   const double allowed = kSideMismatch * spacing * spacing;
-  double total = 0.0;
-  for (std::size_t u = 0; u < cells.size(); ++u) {
-    require_valid(cells[u], u);
-    total += cells[u].volume;
-    out.volume.push_back(cells[u].volume);
-    const auto i = static_cast<std::int32_t>(u);
-    // Faces at planes come first (j below 0), with the highest plane in front.
+  const auto n = static_cast<std::int64_t>(cells.size());
+  std::vector<std::size_t> first_face(cells.size() + 1, 0);
+  std::vector<std::size_t> first_wall(cells.size() + 1, 0);
+  bool good = true;
+#pragma omp parallel for schedule(static) reduction(&& : good) if (n >= kManyCells)
+  for (std::int64_t k = 0; k < n; ++k) {
+    const auto u = static_cast<std::size_t>(k);
+    good = good && cells[u].fault == CellFault::none && find_mismatch(cells, u, allowed) == nullptr;
     for (const HalfFace& half : cells[u].halves) {
-      const Vec3 centroid = sites[u].x + half.centroid;
-      if (half.j < 0) {
-        out.at_walls.push_back({i, -1 - half.j, half.area, centroid});
-        continue;
-      }
-      const bool first = i != half.j ? i < half.j : half.image > home_image<3>();
-      const HalfFace* other = find(cells[static_cast<std::size_t>(half.j)], i, image_count<3>() - 1 - half.image);
-      if (std::abs(half.area - (other != nullptr ? other->area : 0.0)) > allowed)
-        throw UnusableResult(fmt::format("cells: sites {} and {} do not agree about their face", i, half.j));
-      if (first)
-        out.faces.push_back({i, half.j, half.image, half.area, norm(half.separation), centroid, half.separation});
+      first_wall[u + 1] += half.j < 0 ? 1 : 0;
+      first_face[u + 1] += tells(u, half) ? 1 : 0;
     }
+  }
+  if (!good) throw_fault(cells, allowed);
+  double total = 0.0;
+  out.volume.reserve(cells.size());
+  for (const OneCell& cell : cells) {
+    total += cell.volume;
+    out.volume.push_back(cell.volume);
+  }
+  std::partial_sum(first_face.begin(), first_face.end(), first_face.begin());
+  std::partial_sum(first_wall.begin(), first_wall.end(), first_wall.begin());
+  out.faces.resize(first_face.back());
+  out.at_walls.resize(first_wall.back());
+#pragma omp parallel for schedule(static) if (n >= kManyCells)
+  for (std::int64_t k = 0; k < n; ++k) {
+    const auto u = static_cast<std::size_t>(k);
+    fill_faces(sites[u], cells[u], u, out.faces.data() + first_face[u], out.at_walls.data() + first_wall[u]);
   }
   std::sort(out.at_walls.begin(), out.at_walls.end(), [](const WallFace& a, const WallFace& b) {
     return a.site != b.site ? a.site < b.site : a.plane < b.plane;
@@ -354,7 +406,7 @@ RadicalCells radical_cells_in(const std::vector<Sphere<3>>& sites, const Room& r
 #pragma omp parallel
   {
     Cutter cutter(sites, room, bins, spacing);
-#pragma omp for schedule(static)
+#pragma omp for schedule(dynamic, kCutInRow)
     for (std::int32_t i = 0; i < n; ++i) cells[static_cast<std::size_t>(i)] = cutter.cut(i);
   }
   return join(sites, cells, room, spacing);
