@@ -23,6 +23,9 @@ constexpr double kSideMismatch = 1e-7;   ///< squared spacings: areas of the two
 constexpr double kOutside = 1e-9;
 constexpr double kVolumeMismatch = 1e-9;
 
+/// Squared distances of planes over those that can cut, times 4, with room for rounding.
+constexpr double kBeyond = 4.0 * (1.0 + 1e-9);
+
 /// Stands for the plane of two sites at one place; sorts before all others.
 constexpr double kTogether = -std::numeric_limits<double>::infinity();
 
@@ -79,13 +82,15 @@ class Bins {
   /// No site of ring r is nearer than this: the site lies anywhere in its own bin.
   [[nodiscard]] double nearest(int ring) const { return (ring - 1) * narrowest_ * (1.0 - 1e-6); }
 
-  /// Spheres of the bins that are `ring` bins away, by the distance of their planes. False: no bin is.
-  bool gather(std::int32_t i, int ring, std::vector<Candidate>& out) const {
+  /// Spheres of the bins that are `ring` bins away, with the distance of their planes where that is up to `radius`.
+  /// False: no bin is.
+  bool gather(std::int32_t i, int ring, double radius, std::vector<Candidate>& out) const {
     bool any = false;
     for (int a = -ring; a <= ring; ++a)
       for (int b = -ring; b <= ring; ++b) {
         const bool side = std::abs(a) == ring || std::abs(b) == ring;
-        for (int c = -ring; c <= ring; c += side || ring == 0 ? 1 : 2 * ring) any = visit(i, {a, b, c}, out) || any;
+        for (int c = -ring; c <= ring; c += side || ring == 0 ? 1 : 2 * ring)
+          any = visit(i, {a, b, c}, radius * radius, out) || any;
       }
     return any;
   }
@@ -95,12 +100,13 @@ class Bins {
     return static_cast<std::size_t>((at[0] * count_[1] + at[1]) * count_[2] + at[2]);
   }
 
-  bool visit(std::int32_t i, const Steps& offset, std::vector<Candidate>& out) const {
+  bool visit(std::int32_t i, const Steps& offset, double radius2, std::vector<Candidate>& out) const {
     const auto u = static_cast<std::size_t>(i);
     Steps at{};
     Steps steps{};
     for (std::size_t k = 0; k < 3; ++k) {
       at[k] = bin_[u][k] + offset[k];
+      if (at[k] >= 0 && at[k] < count_[k]) continue;
       steps[k] = at[k] >= 0 ? at[k] / count_[k] : -((count_[k] - 1 - at[k]) / count_[k]);
       if (!room_.periodic && steps[k] != 0) return false;
       at[k] -= steps[k] * count_[k];
@@ -114,7 +120,9 @@ class Bins {
       const Vec3 d = other.x + shift - own.x;
       const double d2 = norm2(d);
       const bool apart = d2 > coincident2_;
-      const double plane = 0.5 * (d2 + own.r * own.r - other.r * other.r) / std::sqrt(d2);
+      const double twice = d2 + own.r * own.r - other.r * other.r;  // the distance of the plane, times 2 |d|
+      if (apart && twice > 0.0 && twice * twice > kBeyond * radius2 * d2) continue;
+      const double plane = 0.5 * twice / std::sqrt(d2);
       out.push_back({j, steps, d, apart ? plane : kTogether});
     }
     return true;
@@ -168,7 +176,7 @@ class Cutter {
     for (int ring = 0;; ++ring) {
       if (bins_.nearest(ring) > radius + std::sqrt(std::max(0.0, radius * radius + lead))) break;
       found_.clear();
-      if (!bins_.gather(i, ring, found_)) break;
+      if (!bins_.gather(i, ring, radius, found_)) break;
       std::sort(found_.begin(), found_.end(), [](const Candidate& a, const Candidate& b) {
         return a.plane != b.plane ? a.plane < b.plane : (a.j != b.j ? a.j < b.j : a.steps < b.steps);
       });
