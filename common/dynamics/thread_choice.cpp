@@ -75,6 +75,9 @@ int cores_left(int threads) {
   return idle ? std::clamp(static_cast<int>(cores + 1.0 - kIdle), 1, threads) : threads;
 }
 
+/// Of the number of threads of this thread's passes.
+thread_local std::uint64_t changes_so_far = 0;
+
 /// The choice, and the block that is under way: it may go on from one use of the threads to the next.
 struct Meter {
   explicit Meter(int threads) : choice(threads, cores_left(threads)) {}
@@ -93,7 +96,9 @@ struct Meter {
     };
     block.waited = of_passes(waits.since_last());
     block.idle = on_fewer() ? of_passes(idle.since_last()) : -1.0;
+    const int threads = choice.threads();
     choice.took(block);
+    if (choice.threads() != threads) ++changes_so_far;
     block = {};
     if (on_fewer()) (void)idle.since_last();
     asking = asked.seconds();
@@ -133,18 +138,16 @@ double pace_of(const ThreadChoice::Block& block) { return block.seconds / block.
 }  // namespace
 
 void ThreadChoice::add(const Block& block) {
+  if (!(recent_.work > 0.0)) recent_ = {.waited = 0.0, .idle = 0.0};
   const double left = trial_ > 0 ? 1.0 : kFade;
-  const bool first = !(recent_.work > 0.0);
-  const auto sum = [&](double& all, double part) {
-    const bool unknown = part < 0.0 || all < 0.0;
-    all = unknown ? -1.0 : left * all + part;
+  const double seconds = left * recent_.seconds + block.seconds;
+  // What one block did not know the next ones may: theirs then counts for all.
+  const auto sum = [&](double all, double part) {
+    if (part < 0.0) return -1.0;
+    return all < 0.0 ? part * seconds / block.seconds : left * all + part;
   };
-  if (first) recent_ = {.waited = 0.0, .idle = 0.0};
-  recent_.seconds = left * recent_.seconds + block.seconds;
-  recent_.cpu_seconds = left * recent_.cpu_seconds + block.cpu_seconds;
-  recent_.work = left * recent_.work + block.work;
-  sum(recent_.waited, block.waited);
-  sum(recent_.idle, block.idle);
+  recent_ = {seconds, left * recent_.cpu_seconds + block.cpu_seconds, left * recent_.work + block.work,
+             sum(recent_.waited, block.waited), sum(recent_.idle, block.idle)};
   since_ += block.seconds;
   ++blocks_;
 }
@@ -253,6 +256,8 @@ void PassThreads::passed(std::int64_t passes, std::int64_t pairs) {
   begin();
 }
 
+std::uint64_t thread_changes() { return changes_so_far; }
+
 void watch_cores() {
   const std::lock_guard lock(watch_guard);
   core_watch = std::make_unique<CoreWatch>();
@@ -278,6 +283,13 @@ void ThreadPace::share_out(std::size_t threads) {
   if (passes >= look_after) look_after = std::min(2 * look_after, kLookAtLeastEvery);
   seconds.assign(threads, 0.0);
   passes = 0;
+}
+
+bool ThreadPace::forget_changed() {
+  if (changes == thread_changes()) return false;
+  *this = {};
+  changes = thread_changes();
+  return true;
 }
 
 bool ThreadPace::uneven() const {

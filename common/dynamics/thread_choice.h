@@ -86,6 +86,9 @@ class PassThreads {
   double cpu_begin_ = 0.0;
 };
 
+/// How often the number of threads of this thread's passes has been changed so far.
+std::uint64_t thread_changes();
+
 /// To be called when a program begins to work: passes begin with as many threads as other programs leave cores from
 /// here to the first pass.
 void watch_cores();
@@ -105,11 +108,16 @@ struct ThreadPace {
   std::vector<double> seconds;  ///< spent by each since the shares were made [s]
   int passes = 0;               ///< since then
   int look_after = 64;          ///< passes between two looks at the pace: ever more, as new shares need a new plan
+  std::uint64_t changes = 0;    ///< thread_changes() when the first of these passes was made
 
   /// Makes the shares anew, in proportion to the pairs per second of each thread; equal ones for another number of
   /// threads or before enough has been measured. No thread gets less than a fifth of an equal share: what it is
   /// measured by would be noise.
   void share_out(std::size_t threads);
+
+  /// Forgets everything where the number of threads has been changed since: threads were slow because others had their
+  /// cores, or that was long ago. Whether it did.
+  bool forget_changed();
 
   /// Whether the fastest thread waits for the slowest long enough for new shares to pay.
   [[nodiscard]] bool uneven() const;

@@ -163,6 +163,15 @@ TEST(ThreadChoice, AMomentOfAnotherProgramTriesNothing) {
   }
 }
 
+/// A block of which the kernel told nothing, as after long other work, leaves the next ones what they know.
+TEST(ThreadChoice, WhatOneBlockDoesNotKnowTheNextOneDoes) {
+  ThreadChoice choice(2);
+  choice.took({0.02, 0.04, 1.0, -1.0, -1.0});
+  EXPECT_EQ(choice.threads(), 2);
+  choice.took({0.02, 0.04, 1.0, 0.01, -1.0});
+  EXPECT_EQ(choice.threads(), 1);
+}
+
 /// Of eight cores others keep some busy: so many threads remain as there are cores left, not one.
 TEST(ThreadChoice, AsManyThreadsAsCoresAreLeft) {
   for (const int others : {1, 3}) {
@@ -220,6 +229,10 @@ TEST(CoreUse, ThreadsThatWaitForACoreAreNoticed) {
 TEST(PassThreads, GiveTheThreadsBack) {
   const int before = omp_get_max_threads();
   const ThreadUse use = thread_use();
+  const std::uint64_t changes = thread_changes();
+  ThreadPace pace;
+  (void)pace.forget_changed();
+  pace.share_out(3);
   omp_set_num_threads(3);
   for (int k = 0; k < 3; ++k) {
     PassThreads threads(10000);
@@ -231,6 +244,10 @@ TEST(PassThreads, GiveTheThreadsBack) {
   EXPECT_NEAR(after.seconds - use.seconds, 0.3, 0.1);
   EXPECT_GT(after.fewer - use.fewer, 0.0) << "trials on one thread";
   EXPECT_LT(after.fewer - use.fewer, after.seconds - use.seconds);
+  EXPECT_GT(thread_changes(), changes);
+  EXPECT_TRUE(pace.forget_changed()) << "shares of another time";
+  EXPECT_TRUE(pace.share.empty());
+  EXPECT_FALSE(pace.forget_changed());
   omp_set_num_threads(before);
 }
 
