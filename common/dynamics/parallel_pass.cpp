@@ -287,7 +287,8 @@ template <int D>
 void parallel_pass(System<D>& s, const BlockPass<D>& asked, int threads) {
   auto& plan = s.contacts.plan.template get<Plan<D>>();
   const int many = std::min(threads, 255);
-  if (plan.build != s.contacts.build || plan.shares.size() != static_cast<std::size_t>(many) || plan.pace.uneven())
+  if (plan.pace.forget_changed() || plan.build != s.contacts.build ||
+      plan.shares.size() != static_cast<std::size_t>(many) || plan.pace.uneven())
     make_plan(s, static_cast<std::size_t>(many), plan);
   Pass<D> pass(s, asked, plan);
   const bool sums = !s.contacts.particle_sum.empty();

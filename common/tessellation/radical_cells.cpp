@@ -23,6 +23,9 @@ constexpr double kSideMismatch = 1e-7;   ///< squared spacings: areas of the two
 constexpr double kOutside = 1e-9;
 constexpr double kVolumeMismatch = 1e-9;
 
+/// Squared distances of planes over those that can cut, times 4, with room for rounding.
+constexpr double kBeyond = 4.0 * (1.0 + 1e-9);
+
 /// Stands for the plane of two sites at one place; sorts before all others.
 constexpr double kTogether = -std::numeric_limits<double>::infinity();
 
@@ -79,13 +82,15 @@ class Bins {
   /// No site of ring r is nearer than this: the site lies anywhere in its own bin.
   [[nodiscard]] double nearest(int ring) const { return (ring - 1) * narrowest_ * (1.0 - 1e-6); }
 
-  /// Spheres of the bins that are `ring` bins away, by the distance of their planes. False: no bin is.
-  bool gather(std::int32_t i, int ring, std::vector<Candidate>& out) const {
+  /// Spheres of the bins that are `ring` bins away, with the distance of their planes where that is up to `radius`.
+  /// False: no bin is.
+  bool gather(std::int32_t i, int ring, double radius, std::vector<Candidate>& out) const {
     bool any = false;
     for (int a = -ring; a <= ring; ++a)
       for (int b = -ring; b <= ring; ++b) {
         const bool side = std::abs(a) == ring || std::abs(b) == ring;
-        for (int c = -ring; c <= ring; c += side || ring == 0 ? 1 : 2 * ring) any = visit(i, {a, b, c}, out) || any;
+        for (int c = -ring; c <= ring; c += side || ring == 0 ? 1 : 2 * ring)
+          any = visit(i, {a, b, c}, radius * radius, out) || any;
       }
     return any;
   }
@@ -95,12 +100,13 @@ class Bins {
     return static_cast<std::size_t>((at[0] * count_[1] + at[1]) * count_[2] + at[2]);
   }
 
-  bool visit(std::int32_t i, const Steps& offset, std::vector<Candidate>& out) const {
+  bool visit(std::int32_t i, const Steps& offset, double radius2, std::vector<Candidate>& out) const {
     const auto u = static_cast<std::size_t>(i);
     Steps at{};
     Steps steps{};
     for (std::size_t k = 0; k < 3; ++k) {
       at[k] = bin_[u][k] + offset[k];
+      if (at[k] >= 0 && at[k] < count_[k]) continue;
       steps[k] = at[k] >= 0 ? at[k] / count_[k] : -((count_[k] - 1 - at[k]) / count_[k]);
       if (!room_.periodic && steps[k] != 0) return false;
       at[k] -= steps[k] * count_[k];
@@ -114,7 +120,9 @@ class Bins {
       const Vec3 d = other.x + shift - own.x;
       const double d2 = norm2(d);
       const bool apart = d2 > coincident2_;
-      const double plane = 0.5 * (d2 + own.r * own.r - other.r * other.r) / std::sqrt(d2);
+      const double twice = d2 + own.r * own.r - other.r * other.r;  // the distance of the plane, times 2 |d|
+      if (apart && twice > 0.0 && twice * twice > kBeyond * radius2 * d2) continue;
+      const double plane = 0.5 * twice / std::sqrt(d2);
       out.push_back({j, steps, d, apart ? plane : kTogether});
     }
     return true;
@@ -168,7 +176,7 @@ class Cutter {
     for (int ring = 0;; ++ring) {
       if (bins_.nearest(ring) > radius + std::sqrt(std::max(0.0, radius * radius + lead))) break;
       found_.clear();
-      if (!bins_.gather(i, ring, found_)) break;
+      if (!bins_.gather(i, ring, radius, found_)) break;
       std::sort(found_.begin(), found_.end(), [](const Candidate& a, const Candidate& b) {
         return a.plane != b.plane ? a.plane < b.plane : (a.j != b.j ? a.j < b.j : a.steps < b.steps);
       });
@@ -310,31 +318,83 @@ const HalfFace* find(const OneCell& cell, std::int32_t j, int image) {
   return at != cell.halves.end() && at->j == j && at->image == image ? &*at : nullptr;
 }
 
+/// Cells from which several threads join them: one costs about a microsecond.
+constexpr std::int64_t kManyCells = 500;
+/// Cells that a thread cuts in a row. A small site among large ones costs several times the 30 us of others.
+constexpr int kCutInRow = 8;
+
+/// Whether cell u is the one that tells of a face. Faces at planes are told apart from others (j below 0).
+bool tells(std::size_t u, const HalfFace& half) {
+  const auto i = static_cast<std::int32_t>(u);
+  return half.j >= 0 && (i != half.j ? i < half.j : half.image > home_image<3>());
+}
+
+/// The first face of cell u that its neighbour knows otherwise; null: none.
+const HalfFace* find_mismatch(const std::vector<OneCell>& cells, std::size_t u, double allowed) {
+  for (const HalfFace& half : cells[u].halves) {
+    if (half.j < 0) continue;
+    const HalfFace* other =
+        find(cells[static_cast<std::size_t>(half.j)], static_cast<std::int32_t>(u), image_count<3>() - 1 - half.image);
+    if (std::abs(half.area - (other != nullptr ? other->area : 0.0)) > allowed) return &half;
+  }
+  return nullptr;
+}
+
+/// Throws for the first cell with a fault; where there is none, for the first that does not agree with a neighbour.
+/// (The neighbours of a cell with a fault do not agree with it.)
+[[noreturn]] void throw_fault(const std::vector<OneCell>& cells, double allowed) {
+  for (std::size_t u = 0; u < cells.size(); ++u) require_valid(cells[u], u);
+  for (std::size_t u = 0; u < cells.size(); ++u)
+    if (const HalfFace* half = find_mismatch(cells, u, allowed))
+      throw UnusableResult(fmt::format("cells: sites {} and {} do not agree about their face", u, half->j));
+  throw UnusableResult("cells: they do not fit together");
+}
+
+/// Fills in what cell u tells, from these places on.
+void fill_faces(const Sphere<3>& site, const OneCell& cell, std::size_t u, CellFace* face, WallFace* wall) {
+  const auto i = static_cast<std::int32_t>(u);
+  for (const HalfFace& half : cell.halves) {
+    const Vec3 centroid = site.x + half.centroid;
+    if (half.j < 0)  // faces at planes come first, with the highest plane in front
+      *wall++ = {i, -1 - half.j, half.area, centroid};
+    else if (tells(u, half))
+      *face++ = {i, half.j, half.image, half.area, norm(half.separation), centroid, half.separation};
+  }
+}
+
 /// The faces of all cells, each once, and whether both sides tell the same.
 RadicalCells join(const std::vector<Sphere<3>>& sites, const std::vector<OneCell>& cells, const Room& room,
                   double spacing) {
   RadicalCells out;
   const double allowed = kSideMismatch * spacing * spacing;
-  double total = 0.0;
-  for (std::size_t u = 0; u < cells.size(); ++u) {
-    require_valid(cells[u], u);
-    total += cells[u].volume;
-    out.volume.push_back(cells[u].volume);
-    const auto i = static_cast<std::int32_t>(u);
-    // Faces at planes come first (j below 0), with the highest plane in front.
+  const auto n = static_cast<std::int64_t>(cells.size());
+  std::vector<std::size_t> first_face(cells.size() + 1, 0);
+  std::vector<std::size_t> first_wall(cells.size() + 1, 0);
+  bool good = true;
+#pragma omp parallel for schedule(static) reduction(&& : good) if (n >= kManyCells)
+  for (std::int64_t k = 0; k < n; ++k) {
+    const auto u = static_cast<std::size_t>(k);
+    good = good && cells[u].fault == CellFault::none && find_mismatch(cells, u, allowed) == nullptr;
     for (const HalfFace& half : cells[u].halves) {
-      const Vec3 centroid = sites[u].x + half.centroid;
-      if (half.j < 0) {
-        out.at_walls.push_back({i, -1 - half.j, half.area, centroid});
-        continue;
-      }
-      const bool first = i != half.j ? i < half.j : half.image > home_image<3>();
-      const HalfFace* other = find(cells[static_cast<std::size_t>(half.j)], i, image_count<3>() - 1 - half.image);
-      if (std::abs(half.area - (other != nullptr ? other->area : 0.0)) > allowed)
-        throw UnusableResult(fmt::format("cells: sites {} and {} do not agree about their face", i, half.j));
-      if (first)
-        out.faces.push_back({i, half.j, half.image, half.area, norm(half.separation), centroid, half.separation});
+      first_wall[u + 1] += half.j < 0 ? 1 : 0;
+      first_face[u + 1] += tells(u, half) ? 1 : 0;
     }
+  }
+  if (!good) throw_fault(cells, allowed);
+  double total = 0.0;
+  out.volume.reserve(cells.size());
+  for (const OneCell& cell : cells) {
+    total += cell.volume;
+    out.volume.push_back(cell.volume);
+  }
+  std::partial_sum(first_face.begin(), first_face.end(), first_face.begin());
+  std::partial_sum(first_wall.begin(), first_wall.end(), first_wall.begin());
+  out.faces.resize(first_face.back());
+  out.at_walls.resize(first_wall.back());
+#pragma omp parallel for schedule(static) if (n >= kManyCells)
+  for (std::int64_t k = 0; k < n; ++k) {
+    const auto u = static_cast<std::size_t>(k);
+    fill_faces(sites[u], cells[u], u, out.faces.data() + first_face[u], out.at_walls.data() + first_wall[u]);
   }
   std::sort(out.at_walls.begin(), out.at_walls.end(), [](const WallFace& a, const WallFace& b) {
     return a.site != b.site ? a.site < b.site : a.plane < b.plane;
@@ -354,7 +414,7 @@ RadicalCells radical_cells_in(const std::vector<Sphere<3>>& sites, const Room& r
 #pragma omp parallel
   {
     Cutter cutter(sites, room, bins, spacing);
-#pragma omp for schedule(static)
+#pragma omp for schedule(dynamic, kCutInRow)
     for (std::int32_t i = 0; i < n; ++i) cells[static_cast<std::size_t>(i)] = cutter.cut(i);
   }
   return join(sites, cells, room, spacing);

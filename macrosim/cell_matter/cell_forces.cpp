@@ -84,6 +84,7 @@ CellForces cell_forces(const CellLaw& law, const std::vector<CellContent>& conte
                        const FaceSprings& springs) {
   CellForces out;
   out.force.resize(sites.size());
+  out.response.reserve(sites.size());
   const double tail = law.memory ? law.memory->least_state : 0.0;
   for (std::size_t i = 0; i < sites.size(); ++i) {
     out.response.push_back(respond(law.equation, law.guard, content[i], cells.volume[i], tail));

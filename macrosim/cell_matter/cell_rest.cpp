@@ -5,6 +5,7 @@
 
 #include "common/dynamics/fire.h"
 #include "common/dynamics/slow_dynamics.h"
+#include "common/dynamics/thread_choice.h"
 #include "common/io/interrupt.h"
 #include "macrosim/cell_matter/cell_axes.h"
 #include "macrosim/cell_matter/cell_packing.h"
@@ -47,14 +48,22 @@ bool CellPacking::move(const std::vector<Vec3>& steps, const Vec3& factors) {
   for (std::size_t i = 0; i < sites_.size(); ++i) sites_[i].x += steps[i];
   if (factors != kAsItIs) stretch(factors);
   room_.bring_home(sites_, periods_);
-  auto cells = cells_;
-  auto forces = forces_;
-  if (evaluate()) return true;
+  RadicalCells cells = std::move(cells_);  // evaluate() makes both anew
+  CellForces forces = std::move(forces_);
+  const auto put_back = [&] {
+    cells_ = std::move(cells);
+    forces_ = std::move(forces);
+  };
+  try {
+    if (evaluate()) return true;
+  } catch (...) {
+    put_back();
+    throw;
+  }
   sites_ = sites;
   periods_ = periods;
   room_ = room;
-  cells_ = std::move(cells);
-  forces_ = std::move(forces);
+  put_back();
   return false;
 }
 
@@ -67,6 +76,7 @@ double CellPacking::unrest(const CellRelaxation& options, const Axes* axes) cons
 /// Where the tangent at each place would lead, mixed with the last steps. Ends as not_run where that does not get on.
 RelaxationResult CellPacking::settle(const CellRelaxation& options, Axes* axes) {
   RelaxationResult result;
+  PassThreads threads(sites_.size(), PassKind::cells);
   StepMixer mixer(kMixed);
   const auto n = static_cast<double>(sites_.size());
   const double spacing = std::cbrt(room_.volume() / n);
@@ -102,6 +112,7 @@ RelaxationResult CellPacking::settle(const CellRelaxation& options, Axes* axes) 
       mixer.forget();
       longest = 0.25 * std::min(longest, farthest);
     }
+    threads.passed(1, std::ssize(cells_.faces));
   }
   return result;
 }
@@ -109,6 +120,7 @@ RelaxationResult CellPacking::settle(const CellRelaxation& options, Axes* axes) 
 /// Relaxes by Fire, with the stiffness of the faces of each site as its mass.
 RelaxationResult CellPacking::glide(const CellRelaxation& options, Axes* axes) {
   RelaxationResult result;
+  PassThreads threads(sites_.size(), PassKind::cells);
   Fire fire;
   std::vector<Vec3> velocity(sites_.size());
   std::vector<Vec3> steps(sites_.size());
@@ -158,6 +170,7 @@ RelaxationResult CellPacking::glide(const CellRelaxation& options, Axes* axes) {
       std::fill(velocity.begin(), velocity.end(), Vec3{});
       if (axes != nullptr) axes->stop();
     }
+    threads.passed(1, std::ssize(cells_.faces));
   }
   return result;
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "common/core/parallel_tasks.h"
+
 namespace softgrain {
 
 namespace {
@@ -57,7 +59,7 @@ SpringSet FaceSprings::trial(const FaceFriction& friction, bool memory, const Ra
     out.parts.resize(cells.faces.size());
     out.energy.resize(cells.faces.size());
   }
-  for (std::size_t f = 0; f < out.springs.size(); ++f) {
+  const auto try_one = [&](std::size_t f) {
     const CellFace& face = cells.faces[f];
     const auto i = static_cast<std::size_t>(face.i);
     const auto j = static_cast<std::size_t>(face.j);
@@ -69,15 +71,18 @@ SpringSet FaceSprings::trial(const FaceFriction& friction, bool memory, const Ra
     spring.separation = face.separation;
     spring.stiffness = friction.stiffness * bulk * face.area / face.distance;
     if (memory) spring.shape = face.area / face.distance;
-    if (!(friction.coefficient > 0.0)) continue;
+    if (!(friction.coefficient > 0.0)) return;
     const auto before = find(keys[f]);
-    if (!before) continue;
+    if (!before) return;
     const Vec3 normal = face.separation * (1.0 / face.distance);
     if (memory)
       pull_six(kept_.springs[*before], kept_.parts[*before], normal, limit, f, out);
     else
       pull_one(kept_.springs[*before], normal, limit, spring);
-  }
+  };
+  in_pieces(out.springs.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) try_one(f);
+  });
   return out;
 }
 

@@ -71,15 +71,15 @@ Run::Run(RunContext held, const Scene& scene, std::uint64_t scene_seed, const st
 
 namespace {
 
-/// Where several threads did not pay; empty elsewhere. A matter of the machine, so on the terminal and in the log
+/// Where all threads did not pay; empty elsewhere. A matter of the machine, so on the terminal and in the log
 /// alone.
-std::string alone_text() {
+std::string fewer_threads_text() {
   constexpr double kLong = 5.0;  // [s]
   constexpr double kMost = 0.5;
   const ThreadUse use = thread_use();
-  if (use.alone < std::max(kLong, kMost * use.seconds)) return "";
-  return fmt::format("one thread had {:.0f} % of the motion: several were no faster (small scene, or busy cores)\n",
-                     100.0 * use.alone / use.seconds);
+  if (use.fewer < std::max(kLong, kMost * use.seconds)) return "";
+  return fmt::format("fewer threads had {:.0f} % of the motion: all were no faster (small scene, or busy cores)\n",
+                     100.0 * use.fewer / use.seconds);
 }
 
 }  // namespace
@@ -88,7 +88,7 @@ ExitStatus Run::finish(nlohmann::json summary, const std::string& console) const
   if (!summary.contains("seconds")) summary["seconds"] = seconds();
   const bool good = is_good(summary.value("status", ""));
   context.finish(std::move(summary), provenance,
-                 console + alone_text() + fmt::format("{:.0f} s; report: {}", seconds(), path("report.html")));
+                 console + fewer_threads_text() + fmt::format("{:.0f} s; report: {}", seconds(), path("report.html")));
   write_report(context.directory());
   store.clear();
   return good ? ExitStatus::good : ExitStatus::not_usable;

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "common/dynamics/thread_choice.h"
 #include "common/io/json_record.h"
 #include "common/io/text_file.h"
 #include "pipelines/law/terminal_plot.h"
@@ -148,6 +149,7 @@ RunContext::RunContext(const CommonOptions& options, const std::string& command,
     remove_earlier_run(directory_, command, inputs);
   }
   omp_set_num_threads(threads_);
+  if (threads_ > 1) watch_cores();
   const Provenance build = build_provenance();
   shows_ = !options_.member;
   try {

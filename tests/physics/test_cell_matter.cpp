@@ -4,8 +4,10 @@
 #include <omp.h>
 
 #include <cmath>
+#include <vector>
 
 #include "common/core/error.h"
+#include "common/core/parallel_tasks.h"
 #include "tests/support/cell_samples.h"
 
 namespace softgrain {
@@ -279,18 +281,29 @@ TEST_P(CellMatter, SpringsSurviveSitesThatCrossTheBoundary) {
   EXPECT_GT(here[2][2] - here[0][0], 0.2 * here[2][2]);
 }
 
+/// So many that cells are joined, and springs are tried, on several threads.
 TEST_P(CellMatter, IsTheSameBitsForAnyNumberOfThreads) {
-  const CellSample s = cell_sample(30, 0.42, GetParam(), 11);
+  const CellSample s = cell_sample(620, 0.42, GetParam(), 11);
   const CellStart start = start_at_pressure(s.law, s.bodies, s.volume, s.fines, 1e-3);
   const int before = omp_get_max_threads();
-  std::array<Matrix<3>, 2> stress;
-  for (std::size_t n = 0; n < 2; ++n) {
-    omp_set_num_threads(n == 0 ? 1 : 3);
-    CellPacking p = packing_of(s, start, {0.6, 1.0});
-    for (int step = 0; step < 2; ++step) stress[n] = p.strain({{1.0, 1.0, 0.98}}).stress;
+  std::vector<CellPacking> ends;
+  for (const int threads : {1, 2, 3, 5, 8}) {
+    omp_set_num_threads(threads);
+    ends.push_back(packing_of(s, start, {0.6, 1.0}));
+    (void)ends.back().strain({{1.0, 1.0, 0.99}});
   }
   omp_set_num_threads(before);
-  EXPECT_EQ(stress[0], stress[1]);
+  const CellPacking& one = ends.front();
+  ASSERT_GT(one.cells().faces.size(), kParallelLength);
+  for (const CellPacking& many : ends) {
+    EXPECT_EQ(one.now().stress, many.now().stress);
+    EXPECT_EQ(one.now().tessellations, many.now().tessellations);
+    EXPECT_EQ(one.now().energy, many.now().energy);
+    EXPECT_TRUE(one.cells().faces == many.cells().faces);
+    EXPECT_EQ(one.forces().force, many.forces().force);
+    for (std::size_t f = 0; f < one.forces().trial.springs.size(); ++f)
+      ASSERT_EQ(one.forces().trial.springs[f].force, many.forces().trial.springs[f].force) << f;
+  }
 }
 
 TEST_P(CellMatter, TheGuardHoldsCellsThatLoseTheirPoresAndCountsThem) {

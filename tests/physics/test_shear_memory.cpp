@@ -4,8 +4,10 @@
 #include <omp.h>
 
 #include <cmath>
+#include <vector>
 
 #include "common/core/error.h"
+#include "common/core/parallel_tasks.h"
 #include "common/io/hdf5_file.h"
 #include "macrosim/cell_matter/material_point.h"
 #include "macrosim/cell_specimen.h"
@@ -355,16 +357,25 @@ TEST(ShearMemoryCells, GoOnWithTheSameBitsFromAFile) {
   EXPECT_THROW(CellPacking(law, forgetful, true), IoError);
 }
 
+/// So many that their springs are tried on several threads.
 TEST(ShearMemoryCells, AreTheSameBitsForAnyNumberOfThreads) {
   const int before = omp_get_max_threads();
-  std::array<Matrix<3>, 2> stress;
-  for (std::size_t n = 0; n < 2; ++n) {
-    omp_set_num_threads(n == 0 ? 1 : 3);
-    CellPacking p = packing_with(sample_memory(), 0.61, 1e-3);
-    stress[n] = shear(p, 3).stress;
+  std::vector<CellState> ends;
+  for (const int threads : {1, 2, 3, 5, 8}) {
+    omp_set_num_threads(threads);
+    CellPacking p = packing_with(sample_memory(), 0.61, 1e-3, 620);
+    (void)shear(p, 1);
+    ends.push_back(p.state());
   }
   omp_set_num_threads(before);
-  EXPECT_EQ(stress[0], stress[1]);
+  const CellState& one = ends.front();
+  ASSERT_GT(one.springs.springs.size(), kParallelLength);
+  for (const CellState& many : ends) {
+    EXPECT_EQ(one.stress, many.stress);
+    EXPECT_EQ(one.strength, many.strength);
+    EXPECT_EQ(one.next_pores, many.next_pores);
+    EXPECT_EQ(one.springs.parts, many.springs.parts);
+  }
 }
 
 TEST(ShearMemoryCells, HoldTheStressThatIsAsked) {

@@ -98,6 +98,18 @@ TEST_F(CellsMacro, FollowTheEquationOfStateOfTheirMeanDensity) {
   EXPECT_EQ(summary["status"], "good");
 }
 
+/// So many cells that they are joined, and the springs of their faces tried, on several threads.
+TEST_F(CellsMacro, ManyAreTheSameBitsOnAnyThreads) {
+  scene("", "share = 0.4\n", "law = \"" SOFTGRAIN_SOURCE_DIR "/results/material_law/cell_law_memory.toml\"\n");
+  const std::string many = "--set macro.bodies=700 --set macro.steps=1 --set macro.strain=0.005";
+  expect(run("one", many), 0, {});
+  for (const int threads : {2, 3, 5, 8}) {
+    const std::string name = fmt::format("on_{}", threads);
+    expect(run(name, many, threads), 0, {});
+    expect_same_runs(file("one"), file(name));
+  }
+}
+
 TEST_F(CellsMacro, AreTheSameBitsOnAnyThreadsAndWhereTheyWereStopped) {
   scene("samples = 2\n");
   const auto start = [&](const std::string& name, const std::string& threads, bool resume) {

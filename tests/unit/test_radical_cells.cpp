@@ -332,17 +332,43 @@ TEST(RadicalCells, UnitsOfLengthDoNotMatter) {
     EXPECT_NEAR(again.faces[k].area / (micro * micro), found.faces[k].area, 1e-10);
 }
 
+/// So many that several threads join them.
 TEST(RadicalCells, AreTheSameBitsForAnyNumberOfThreads) {
-  const Cell<3> cell = sheared_cell({{6.0, 6.0, 6.0}}, 1.7, -0.4, 0.5);
-  const auto sites = random_sites(cell, 200, 0.1, 0.6, 5);
+  const Cell<3> cell = sheared_cell({{9.0, 9.0, 9.0}}, 1.7, -0.4, 0.5);
+  const Cell<3> cube = sheared_cell({{9.0, 9.0, 9.0}}, 0.0, 0.0, 0.0);
+  const auto sites = random_sites(cell, 700, 0.1, 0.6, 5);
+  const auto between = random_sites(cube, 700, 0.1, 0.6, 6);
+  const PlaneBox box{{}, {{9.0, 9.0, 9.0}}};
   const int before = omp_get_max_threads();
   omp_set_num_threads(1);
   const RadicalCells one = radical_cells(sites, cell);
-  omp_set_num_threads(3);
-  const RadicalCells three = radical_cells(sites, cell);
+  const RadicalCells walled = radical_cells(between, box);
+  for (const int threads : {2, 3, 5, 8}) {
+    omp_set_num_threads(threads);
+    const RadicalCells many = radical_cells(sites, cell);
+    EXPECT_EQ(one.volume, many.volume) << threads;
+    EXPECT_TRUE(one.faces == many.faces) << threads;
+    const RadicalCells walled_too = radical_cells(between, box);
+    EXPECT_TRUE(walled.faces == walled_too.faces) << threads;
+    EXPECT_TRUE(walled.at_walls == walled_too.at_walls) << threads;
+  }
   omp_set_num_threads(before);
-  EXPECT_EQ(one.volume, three.volume);
-  EXPECT_TRUE(one.faces == three.faces);
+  EXPECT_TRUE(std::is_sorted(one.faces.begin(), one.faces.end(), [](const CellFace& a, const CellFace& b) {
+    return std::tuple(a.i, a.j, a.image) < std::tuple(b.i, b.j, b.image);
+  }));
+}
+
+TEST(RadicalCells, TellTheFirstOfSeveralFaultsOnAnyNumberOfThreads) {
+  const Cell<3> cell = sheared_cell({{9.0, 9.0, 9.0}}, 0.0, 0.0, 0.0);
+  auto sites = random_sites(cell, 700, 0.1, 0.6, 7);
+  sites[690].x = sites[310].x;
+  sites[680].x = sites[320].x;
+  const int before = omp_get_max_threads();
+  for (const int threads : {1, 8}) {
+    omp_set_num_threads(threads);
+    test::expect_refused<InputError>([&] { radical_cells(sites, cell); }, "sites 310 and 690 are at the same place");
+  }
+  omp_set_num_threads(before);
 }
 
 TEST(RadicalCells, RefuseWhatHasNoCellsAndSayWhy) {

@@ -1,7 +1,16 @@
 // All threads or one: by the pace that was measured.
 #include <gtest/gtest.h>
 #include <omp.h>
+#include <sched.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <thread>
+
+#include "common/core/cost.h"
+#include "common/dynamics/core_use.h"
 #include "common/dynamics/thread_choice.h"
 
 namespace softgrain {
@@ -64,9 +73,166 @@ TEST(ThreadChoice, NothingToChooseWithOneThread) {
   EXPECT_EQ(choice.threads(), 1);
 }
 
+/// Two threads on two cores; of the second core another program takes every other slice, however short. The first
+/// thread begins a pass when the second one has ended the last.
+struct SharedCore {
+  double pass = 1.2e-3;    ///< on one thread [s]
+  double slice = 3e-3;     ///< [s]
+  double two = 1.75;       ///< speed of two threads that nobody disturbs
+  bool spins = true;       ///< whether a thread that waits for the other one takes its core meanwhile
+  double busy_from = 0.0;  ///< [s]
+  double busy_to = 1e9;
+  double now = 0.0;
+
+  [[nodiscard]] bool taken(double at) const {
+    return at >= busy_from && at < busy_to && static_cast<std::int64_t>(at / slice) % 2 == 0;
+  }
+
+  /// When the second core has done so much from `at` on.
+  [[nodiscard]] double end_of(double at, double work) const {
+    while (work > 0.0) {
+      const double next = (std::floor(at / slice * (1.0 + 1e-12)) + 1.0) * slice;
+      const double part = taken(at + 1e-3 * slice) ? 0.0 : std::min(work, next - at);
+      work -= part;
+      at = work > 0.0 ? next : at + part;
+    }
+    return at;
+  }
+
+  ThreadChoice::Block block(int threads) {
+    ThreadChoice::Block out{.waited = 0.0, .idle = -1.0};
+    const double begin = now;
+    while (now < begin + 0.02) {
+      out.work += 1.0;
+      const double part = pass / two;
+      const double end = threads == 1 ? now + pass : std::max(now + part, end_of(now, part));
+      if (threads > 1) out.waited += end - now - part;
+      out.cpu_seconds += threads == 1 ? pass : part + (spins ? end - now : part);
+      now = end;
+    }
+    out.seconds = now - begin;
+    if (threads == 1) out.idle = now >= busy_from && now < busy_to ? 0.0 : out.seconds;
+    return out;
+  }
+
+  /// Passes so many times; returns the time that it took over that of one thread.
+  double go(ThreadChoice& choice, double passes) {
+    const double begin = now;
+    double work = 0.0;
+    while (work < passes) {
+      const ThreadChoice::Block made = block(choice.threads());
+      choice.took(made);
+      work += made.work;
+    }
+    return (now - begin) / (work * pass);
+  }
+};
+
+/// Runs of two to three seconds beside a program that never rests, from the first pass on.
+TEST(ThreadChoice, BesideABusyProgramTwoThreadsTakeNoLongerThanOne) {
+  for (const double slice : {1e-3, 3e-3, 6e-3})
+    for (const double pass : {0.2e-3, 1.2e-3, 5e-3})
+      for (const bool spins : {true, false}) {
+        ThreadChoice choice(2);
+        SharedCore machine{.pass = pass, .slice = slice, .spins = spins};
+        const double ratio = machine.go(choice, 2.5 / pass);
+        EXPECT_LT(ratio, 1.02) << slice << " " << pass << " " << spins;
+      }
+}
+
+/// The other program comes after a second and goes after another two: all threads are back within a quarter of one.
+TEST(ThreadChoice, AllThreadsComeBackWhenCoresAreIdle) {
+  ThreadChoice choice(2);
+  SharedCore machine{.busy_from = 1.0, .busy_to = 3.0};
+  EXPECT_NEAR(machine.go(choice, 0.97 * 1.75 / machine.pass), 1.0 / 1.75, 1e-3);
+  EXPECT_EQ(choice.threads(), 2);
+  EXPECT_LT(machine.go(choice, (3.0 - machine.now) / machine.pass), 1.03);
+  EXPECT_EQ(choice.threads(), 1);
+  (void)machine.go(choice, 0.25 / machine.pass);
+  EXPECT_EQ(choice.threads(), 2);
+  EXPECT_NEAR(machine.go(choice, 1000.0), 1.0 / 1.75, 1e-3);
+}
+
+/// A program that wakes up for some milliseconds every second takes no thread away.
+TEST(ThreadChoice, AMomentOfAnotherProgramTriesNothing) {
+  ThreadChoice choice(2);
+  for (int k = 0; k < 200; ++k) {
+    const double waited = k % 50 == 10 ? 5e-3 : 0.0;
+    choice.took({0.02, 0.04 - waited, 1.0, waited, -1.0});
+    EXPECT_EQ(choice.threads(), 2) << k;
+  }
+}
+
+/// A block of which the kernel told nothing, as after long other work, leaves the next ones what they know.
+TEST(ThreadChoice, WhatOneBlockDoesNotKnowTheNextOneDoes) {
+  ThreadChoice choice(2);
+  choice.took({0.02, 0.04, 1.0, -1.0, -1.0});
+  EXPECT_EQ(choice.threads(), 2);
+  choice.took({0.02, 0.04, 1.0, 0.01, -1.0});
+  EXPECT_EQ(choice.threads(), 1);
+}
+
+/// Of eight cores others keep some busy: so many threads remain as there are cores left, not one.
+TEST(ThreadChoice, AsManyThreadsAsCoresAreLeft) {
+  for (const int others : {1, 3}) {
+    ThreadChoice choice(8);
+    const auto go_on = [&](int blocks, int busy) {
+      int fewest = 8;
+      for (int k = 0; k < blocks; ++k) {
+        const int threads = choice.threads();
+        fewest = std::min(fewest, threads);
+        const int lacking = std::max(0, threads + busy - 8);
+        const double speed = 0.9 * threads * (lacking > 0 ? 0.5 : 1.0);
+        const double idle = threads < 8 ? 0.02 * std::max(0, 8 - threads - busy) : -1.0;
+        choice.took({0.02, 0.02 * (threads - 0.5 * lacking), 0.02 * speed, 0.01 * lacking, idle});
+      }
+      return fewest;
+    };
+    EXPECT_EQ(go_on(50, 0), 8);
+    const int fewest = go_on(100, others);
+    EXPECT_EQ(choice.threads(), 8 - others);
+    EXPECT_GE(fewest, 8 - others);
+    go_on(20, 0);
+    EXPECT_EQ(choice.threads(), 8);
+  }
+}
+
+/// Two threads that want one core: at every moment one of them waits.
+TEST(CoreUse, ThreadsThatWaitForACoreAreNoticed) {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  ASSERT_EQ(sched_getaffinity(0, sizeof(allowed), &allowed), 0);
+  unsigned core = 0;
+  while (!CPU_ISSET(core, &allowed)) ++core;
+  CoreWaits waits;
+  if (!waits.since_last()) GTEST_SKIP() << "the kernel does not tell";
+  IdleCores idle;
+  const Stopwatch clock;
+  const auto spin = [&] {
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(core, &one);
+    (void)sched_setaffinity(0, sizeof(one), &one);
+    while (clock.seconds() < 0.2) {
+    }
+  };
+  std::thread first(spin);
+  std::thread second(spin);
+  while (clock.seconds() < 0.18) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const double waited = waits.since_last().value_or(0.0);  // while both are there
+  first.join();
+  second.join();
+  EXPECT_GT(waited, 0.08);
+  EXPECT_LT(idle.since_last().value_or(0.0), CPU_COUNT(&allowed) * (clock.seconds() + 0.02));
+}
+
 TEST(PassThreads, GiveTheThreadsBack) {
   const int before = omp_get_max_threads();
   const ThreadUse use = thread_use();
+  const std::uint64_t changes = thread_changes();
+  ThreadPace pace;
+  (void)pace.forget_changed();
+  pace.share_out(3);
   omp_set_num_threads(3);
   for (int k = 0; k < 3; ++k) {
     PassThreads threads(10000);
@@ -76,8 +242,12 @@ TEST(PassThreads, GiveTheThreadsBack) {
   EXPECT_EQ(omp_get_max_threads(), 3);
   const ThreadUse after = thread_use();
   EXPECT_NEAR(after.seconds - use.seconds, 0.3, 0.1);
-  EXPECT_GT(after.alone - use.alone, 0.0) << "trials on one thread";
-  EXPECT_LT(after.alone - use.alone, after.seconds - use.seconds);
+  EXPECT_GT(after.fewer - use.fewer, 0.0) << "trials on one thread";
+  EXPECT_LT(after.fewer - use.fewer, after.seconds - use.seconds);
+  EXPECT_GT(thread_changes(), changes);
+  EXPECT_TRUE(pace.forget_changed()) << "shares of another time";
+  EXPECT_TRUE(pace.share.empty());
+  EXPECT_FALSE(pace.forget_changed());
   omp_set_num_threads(before);
 }
 
