@@ -151,10 +151,6 @@ struct MacroSpec {
   double wall_friction = 0.0;
   RollingResistance rolling{};  ///< of solid contacts with friction, in a preparation with friction too
   double density = 2500.0;
-  /// Materials of solid grains that differ, by MacroBody::material; empty: all have the numbers above. With it they
-  /// are E, nu and density that stand for all (means over the solid volume: E is the unit of stresses), and the largest
-  /// mu of any contact. Walls have them too.
-  GrainMaterials grain_materials{};
   double start_pressure = 1.0e-5;  ///< pressure at the end of the preparation, over E
   MacroTest test = MacroTest::oedometric;
   std::vector<double> splits;  ///< radii that split grains into coarse and fine, over the largest radius: shares of the
@@ -173,6 +169,10 @@ struct MacroSpec {
   std::int64_t max_passes = 20000;  ///< largest number of passes per relaxation
   TwinMotion twin;
   bool kt_secant = true;  ///< tangential law: the secant of the card, as published, instead of the initial slope
+  /// Materials of solid grains that differ, by MacroBody::material; empty: all have E, nu, mu and density
+  /// above. With it these stand for all: E, nu and density are means over the solid volume (E is the unit of stresses),
+  /// mu is that of the roughest. Walls have them too.
+  GrainMaterials grain_materials{};
 };
 
 }  // namespace softgrain
