@@ -54,9 +54,8 @@ void set_solid_laws(const MacroSpec& spec, const std::vector<std::int32_t>& numb
     const Material of_a = solid_material(spec, a, "grain");
     const std::int32_t at_a = number[static_cast<std::size_t>(a)];
     for (std::int32_t b = a; b < count_of_materials(spec); ++b) {
-      const double friction = spec.grain_materials.empty()
-                                  ? contacts.friction
-                                  : std::min(contacts.friction, friction_between(spec, a, b));
+      const double friction =
+          spec.grain_materials.empty() ? contacts.friction : std::min(contacts.friction, friction_between(spec, a, b));
       laws.set(at_a, number[static_cast<std::size_t>(b)], law(of_a, solid_material(spec, b, "grain"), friction));
     }
     laws.set(at_a, wall, law(of_a, of_wall, contacts.wall_friction));

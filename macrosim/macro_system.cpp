@@ -214,8 +214,7 @@ MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, 
   for (const MacroBody& b : packing.bodies) {
     out.body.push_back(static_cast<std::int32_t>(out.body.size()));
     add_grain(s.particles,
-              solid_sphere(b.x, b.r,
-                           b.soft ? spec.density * inner_solid_fraction : grain_density(spec, b.material),
+              solid_sphere(b.x, b.r, b.soft ? spec.density * inner_solid_fraction : grain_density(spec, b.material),
                            b.soft ? 1 : number.at(static_cast<std::size_t>(b.material))));
   }
   close_box(out, spec, packing, 2);

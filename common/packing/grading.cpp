@@ -262,13 +262,13 @@ double Grading::obtained_passing(const std::vector<double>& radii, double r) con
 }
 
 bool Grading::same_shape(double unit, const Grading& other, double other_unit) const {
-  return dimension_ == other.dimension_ &&
-         std::equal(pieces_.begin(), pieces_.end(), other.pieces_.begin(), other.pieces_.end(),
-                    [&](const SizePiece& a, const SizePiece& b) {
-                      return nearly(a.low / unit, b.low / other_unit) && nearly(a.high / unit, b.high / other_unit) &&
-                             nearly(a.volume, b.volume) && a.material == b.material &&
-                             (a.low == a.high || nearly(a.exponent, b.exponent));
-                    });
+  return dimension_ == other.dimension_ && std::equal(pieces_.begin(), pieces_.end(), other.pieces_.begin(),
+                                                      other.pieces_.end(), [&](const SizePiece& a, const SizePiece& b) {
+                                                        return nearly(a.low / unit, b.low / other_unit) &&
+                                                               nearly(a.high / unit, b.high / other_unit) &&
+                                                               nearly(a.volume, b.volume) && a.material == b.material &&
+                                                               (a.low == a.high || nearly(a.exponent, b.exponent));
+                                                      });
 }
 
 std::vector<SizePiece> pieces_between(const Grading& grading, double low, double high) {
@@ -281,8 +281,7 @@ std::vector<SizePiece> pieces_between(const Grading& grading, double low, double
     const double from = std::max(low, p.low);
     const double to = std::min(high, p.high);
     if (!(from < to)) continue;
-    out.push_back(
-        {from, to, p.exponent, p.volume * (p.passing(to, kSpheres) - p.passing(from, kSpheres)), p.material});
+    out.push_back({from, to, p.exponent, p.volume * (p.passing(to, kSpheres) - p.passing(from, kSpheres)), p.material});
   }
   std::erase_if(out, [](const SizePiece& p) { return !(p.volume > 0.0); });
   return out;

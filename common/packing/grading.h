@@ -27,8 +27,8 @@ inline constexpr auto enum_names<GradingForm> = enum_name_list<GradingForm>({{Gr
 struct SizePiece {
   double low = 0.0;
   double high = 0.0;
-  double exponent = 4.0;  ///< 4: the volume of spheres is even over the logarithm of the size
-  double volume = 1.0;    ///< share of the volume of all grains
+  double exponent = 4.0;      ///< 4: the volume of spheres is even over the logarithm of the size
+  double volume = 1.0;        ///< share of the volume of all grains
   std::int32_t material = 0;  ///< what its grains are made of, place in GrainMaterials
 
   [[nodiscard]] double radius(double u) const;  ///< below it are u of its grains, 0 <= u <= 1

@@ -75,6 +75,9 @@ class SharedResults {
   std::function<void(const std::string&)> say_;
 };
 
+SOFTGRAIN_EVERY_MEMBER(GrainMaterial, name, youngs_modulus, poisson_ratio, friction, density)
+SOFTGRAIN_EVERY_MEMBER(GrainMaterials, each)
+
 template <class T>
 concept HasEveryMember = requires(const T& value) {
   every_member(value);

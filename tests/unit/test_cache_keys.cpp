@@ -318,6 +318,7 @@ TEST(CacheKeys, SetupPackingAndSampleAreInTheKeys) {
   with_packing([](MacroPacking& p) { p.bodies[0].x[1] += 1e-9; });
   with_packing([](MacroPacking& p) { p.bodies[1].r *= 1.001; });
   with_packing([](MacroPacking& p) { p.bodies[1].soft = false; });
+  with_packing([](MacroPacking& p) { p.bodies[0].material = 1; });
   with_packing([](MacroPacking& p) { p.springs[0].spring[2] = 0.0; });
   with_packing([](MacroPacking& p) { p.springs.clear(); });
   MacroPacking wider = twin.packing;

@@ -43,8 +43,6 @@ SOFTGRAIN_EVERY_MEMBER(CellMatter, card, share, solid_fraction, at_density)
 SOFTGRAIN_EVERY_MEMBER(PreparationProtocol, start_fraction, inertial_number, friction, restitution, coarse_share,
                        first_pressure, tolerance, max_passes)
 SOFTGRAIN_EVERY_MEMBER(RollingResistance, friction, stiffness, damping)
-SOFTGRAIN_EVERY_MEMBER(GrainMaterial, name, youngs_modulus, poisson_ratio, friction, density)
-SOFTGRAIN_EVERY_MEMBER(GrainMaterials, each)
 SOFTGRAIN_EVERY_MEMBER(AxisDrive, by_stress, value, as_at)
 SOFTGRAIN_EVERY_MEMBER(StageRecord, name, kind, way, modulus_stress, by_stress)
 SOFTGRAIN_EVERY_MEMBER(MacroStage, record, axis, shear, logarithmic, isotropic, steps, increments_per_step, tolerance)
