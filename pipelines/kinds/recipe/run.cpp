@@ -79,8 +79,16 @@ class RecipeRun {
   }
 
   void describe() {
-    for (const Constituent& c : scene_.constituents)
-      out().constituents.push_back({c.name, c.mass_share, c.density, c.volume_share});
+    const bool alike = spec().grain_materials.empty();
+    for (const Constituent& c : scene_.constituents) {
+      ConstituentSummary s{c.name, c.mass_share, c.density, c.volume_share};
+      if (!alike) {
+        s.youngs_modulus = c.youngs_modulus;
+        s.poisson_ratio = c.poisson_ratio;
+        s.friction = c.friction;
+      }
+      out().constituents.push_back(std::move(s));
+    }
     out().span = scene_.sizes.largest() / scene_.sizes.smallest();
   }
 
