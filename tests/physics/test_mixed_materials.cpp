@@ -25,6 +25,7 @@ MacroSpec mixed_spec(std::vector<GrainMaterial> materials) {
   spec.boundary = Boundary::periodic;
   spec.soft_share = 0.0;
   spec.grain_materials.each = std::move(materials);
+  spec.poisson_ratio = spec.grain_materials.each.front().poisson_ratio;
   spec.solid_sizes = Grading::list({1e-3});
   spec.solid_radius_max = 1e-3;
   spec.friction = 0.5;
