@@ -11,6 +11,7 @@
 #include "common/dynamics/verlet.h"
 #include "common/io/interrupt.h"
 #include "common/neighbours/verlet_list.h"
+#include "macrosim/grain_materials.h"
 #include "macrosim/placed_spheres.h"
 #include "macrosim/preparation.h"
 #include "macrosim/pressed_box.h"
@@ -105,8 +106,9 @@ void set_velocities(HardBodies& hard, double rate, bool bodies) {
 /// A stable step for bodies that touch under the pressure, and that meet as fast as walls move at first.
 double step_at(const HardBodies& hard, double pressure, double rate, const MacroSpec& spec) {
   const double speed = rate * hard.size()[0];
-  const double pressed = 4.0 * std::pow(pressure / spec.youngs_modulus, 2.0 / 3.0);
-  const double met = 2.0 * std::pow(spec.density * speed * speed / spec.youngs_modulus, 0.4);
+  const double modulus = lowest_modulus(spec);
+  const double pressed = 4.0 * std::pow(pressure / modulus, 2.0 / 3.0);
+  const double met = 2.0 * std::pow(highest_density(spec) * speed * speed / modulus, 0.4);
   const double damped = 1.0 + tsuji_alpha(spec.protocol.restitution);
   return 0.2 / damped * step_limit(hard.system, std::max(pressed, met)).natural_time;
 }

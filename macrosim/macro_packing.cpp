@@ -11,6 +11,7 @@
 #include "common/data/fields.h"
 #include "common/neighbours/spatial_order.h"
 #include "macrosim/box.h"
+#include "macrosim/grain_materials.h"
 #include "macrosim/preparation.h"
 
 namespace softgrain {
@@ -31,8 +32,8 @@ std::vector<MacroBody> draw_gradings(const MacroSpec& spec, double soft_share, R
   if (soft_share > 0.0) softs = std::max<std::int64_t>(softs, 1);
   if (soft_share < 1.0 && spec.bodies > 1) softs = std::min(softs, spec.bodies - 1);
   std::vector<MacroBody> bodies;
-  for (const double r : solid.draw(static_cast<std::size_t>(spec.bodies - softs), random))
-    bodies.push_back({{}, r, false});
+  for (const DrawnGrain& g : solid.draw_grains(static_cast<std::size_t>(spec.bodies - softs), random))
+    bodies.push_back({{}, g.radius, false, g.material});
   for (const double r : soft.draw(static_cast<std::size_t>(softs), random)) bodies.push_back({{}, r, true});
   return bodies;
 }
@@ -111,8 +112,10 @@ std::vector<BodySpring> springs_of_test(const MacroSpec& spec, const MacroPackin
   std::vector<BodySpring> out;
   for (const BodySpring& s : packing.springs) {
     const bool wall = s.j >= bodies;
-    const double friction = wall ? spec.wall_friction : spec.friction;
-    if (friction > 0.0 && solid(s.i) && (wall || solid(s.j))) out.push_back(s);
+    if (!solid(s.i) || !(wall || solid(s.j))) continue;
+    const auto material = [&](std::int32_t b) { return packing.bodies[static_cast<std::size_t>(b)].material; };
+    const double friction = wall ? spec.wall_friction : friction_between(spec, material(s.i), material(s.j));
+    if (friction > 0.0) out.push_back(s);
   }
   return out;
 }
@@ -188,6 +191,11 @@ void write_macro_packing(const h5::Group& group, const MacroPacking& packing) {
   group.write("box", corners);
   group.write("bodies", rows, {packing.bodies.size(), 4});
   group.write("soft", soft);
+  if (std::ranges::any_of(packing.bodies, [](const MacroBody& b) { return b.material != 0; })) {
+    std::vector<std::int64_t> material;
+    for (const MacroBody& b : packing.bodies) material.push_back(b.material);
+    group.write("material", material);
+  }
   write_springs(group, packing.springs);
   write_attributes(group, packing.cost);
 }
@@ -200,6 +208,12 @@ MacroPacking read_macro_packing(const h5::Group& group) {
   MacroPacking packing{{{corners[0], corners[1], corners[2]}}, {{corners[3], corners[4], corners[5]}}, {}};
   for (std::size_t k = 0; k < soft.size(); ++k)
     packing.bodies.push_back({{{rows[4 * k], rows[4 * k + 1], rows[4 * k + 2]}}, rows[4 * k + 3], soft[k] != 0});
+  if (group.has("material")) {
+    const auto material = group.integers("material");
+    if (material.size() != packing.bodies.size()) throw IoError("macro packing: arrays of wrong length");
+    for (std::size_t k = 0; k < material.size(); ++k)
+      packing.bodies[k].material = static_cast<std::int32_t>(material[k]);
+  }
   read_springs(group, packing);
   if (group.has_attribute("loop_passes")) read_attributes(group, packing.cost);
   return packing;

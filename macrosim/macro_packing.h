@@ -18,6 +18,7 @@ struct MacroBody {
   Vec3 x{};
   double r = 0.0;
   bool soft = false;
+  std::int32_t material = 0;  ///< of a solid grain: place in MacroSpec::grain_materials
 };
 
 /// The history of two bodies in touch, or of a body and a wall, as laws keep it.

@@ -9,12 +9,14 @@
 #include "common/core/random.h"
 #include "common/neighbours/verlet_list.h"
 #include "common/state/system_io.h"
+#include "macrosim/grain_materials.h"
 
 namespace softgrain {
 
 namespace {
 
-Material solid_material(const MacroSpec& spec, const char* name) {
+/// What walls and what is inside soft particles are made of.
+Material common_material(const MacroSpec& spec, const char* name) {
   return {name, spec.density, spec.youngs_modulus, spec.poisson_ratio, false};
 }
 
@@ -143,10 +145,11 @@ MacroSystem make_twin(const MacroSpec& spec, const MacroPacking& packing, const 
                       std::uint64_t seed, std::uint64_t sample, bool shelled) {
   if (contents.empty() && packing.soft_count() > 0)
     throw InputError("resolved twin: no packing to fill the soft particles with");
+  if (!spec.grain_materials.empty()) throw InputError("resolved twin: its grains are of one material");
   MacroSystem out;
   System3& s = out.system;
-  s.materials = {solid_material(spec, "grain"), solid_material(spec, "wall")};
-  if (solids_resist_rolling(spec)) s.materials.push_back(solid_material(spec, "solid"));
+  s.materials = {common_material(spec, "grain"), common_material(spec, "wall")};
+  if (solids_resist_rolling(spec)) s.materials.push_back(common_material(spec, "solid"));
   out.dashpots = {twin_laws(s.materials[0], spec, 1.0), twin_laws(s.materials[0], spec, spec.twin.restitution)};
   s.laws = out.dashpots->off;
   out.inner_grains = count_inner_grains(packing, contents);
@@ -192,18 +195,27 @@ MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, 
                             double inner_solid_fraction) {
   MacroSystem out;
   System3& s = out.system;
-  s.materials = {solid_material(spec, "solid"), solid_material(spec, "soft"), solid_material(spec, "wall")};
-  s.laws = LawSet(3);
-  s.laws.set(0, 0, solid_law(s.materials[0], spec.friction, 1.0, spec.rolling));
-  s.laws.set(0, 2, solid_law(s.materials[0], spec.wall_friction, 1.0, spec.rolling));
-  s.laws.set(1, 0, laws.soft_solid, true);
-  s.laws.set(0, 1, laws.solid_soft, true);
+  s.materials = {solid_material(spec, 0, "solid"), common_material(spec, "soft"), common_material(spec, "wall")};
+  std::vector<std::int32_t> number{0};
+  for (std::int32_t m = 1; m < count_of_materials(spec); ++m) {
+    number.push_back(static_cast<std::int32_t>(s.materials.size()));
+    s.materials.push_back(solid_material(spec, m, "solid"));
+  }
+  s.laws = LawSet(static_cast<std::int32_t>(s.materials.size()));
+  set_solid_laws(spec, number, 2, {spec.friction, spec.wall_friction, 1.0, spec.rolling}, s.laws);
+  const std::int32_t soft_solid = s.laws.add(laws.soft_solid);
+  const std::int32_t solid_soft = s.laws.add(laws.solid_soft);
+  for (const std::int32_t solid : number) {
+    s.laws.use(1, solid, soft_solid, true);
+    s.laws.use(solid, 1, solid_soft, true);
+  }
   s.laws.set(1, 2, laws.soft_wall);
   s.laws.set(1, 1, laws.soft_soft);
   for (const MacroBody& b : packing.bodies) {
     out.body.push_back(static_cast<std::int32_t>(out.body.size()));
     add_grain(s.particles,
-              solid_sphere(b.x, b.r, b.soft ? spec.density * inner_solid_fraction : spec.density, b.soft ? 1 : 0));
+              solid_sphere(b.x, b.r, b.soft ? spec.density * inner_solid_fraction : grain_density(spec, b.material),
+                           b.soft ? 1 : number.at(static_cast<std::size_t>(b.material))));
   }
   close_box(out, spec, packing, 2);
   load_springs(spec, packing, out);

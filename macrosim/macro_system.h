@@ -47,7 +47,8 @@ struct SoftLaws {
 /// The pair law: each contact by itself. The wall is a solid of friction `wall_friction`.
 SoftLaws pair_soft_laws(const CardLaw& soft_solid, const CardLaw& soft_soft, double wall_friction);
 
-/// Materials 0 solid grain, 1 soft particle, 2 wall. A soft particle has the mass of its content.
+/// Materials 0 solid grain, 1 soft particle, 2 wall; from 3 on the second and further MacroSpec::grain_materials. A
+/// soft particle has the mass of its content.
 MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, const SoftLaws& laws,
                             double inner_solid_fraction);
 

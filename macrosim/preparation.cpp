@@ -11,6 +11,7 @@
 #include "common/core/particles.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "common/io/interrupt.h"
+#include "macrosim/grain_materials.h"
 #include "macrosim/placed_spheres.h"
 
 namespace softgrain {
@@ -136,8 +137,8 @@ DampedOptions pressing_options(const MacroSpec& spec, bool last, double load, do
   options.force_floor = 1e-2 * load / bodies;
   // As little as a body can be held by: a share of the stiffness of its contacts where all bear alike.
   const double force = load / std::cbrt(bodies * bodies);
-  options.least_stiffness =
-      0.2 * std::cbrt(force * spec.youngs_modulus * spec.youngs_modulus * mean_radius) / mean_radius;
+  const double modulus = lowest_modulus(spec);
+  options.least_stiffness = 0.2 * std::cbrt(force * modulus * modulus * mean_radius) / mean_radius;
   return options;
 }
 
@@ -152,21 +153,28 @@ AnyLaw HardBodies::law(const MacroSpec& spec, double friction, double restitutio
 
 HardBodies::HardBodies(const MacroSpec& spec, const MacroPacking& packing, double friction, double restitution) {
   frictional_ = friction > 0.0;
-  system.materials = {hard_material(spec), hard_material(spec)};
-  system.laws = LawSet(2);
-  system.laws.set(0, 0, law(spec, friction, restitution));
-  system.laws.set(0, 1, law(spec, frictional_ ? preparation_wall_friction(spec) : 0.0, restitution));
+  const std::int32_t wall = count_of_materials(spec);
+  std::vector<std::int32_t> number;
+  for (std::int32_t m = 0; m < wall; ++m) {
+    number.push_back(m);
+    system.materials.push_back(solid_material(spec, m, "hard"));
+  }
+  system.materials.push_back(hard_material(spec));
+  system.laws = LawSet(wall + 1);
+  const double wall_friction = frictional_ ? preparation_wall_friction(spec) : 0.0;
+  set_solid_laws(spec, number, wall, {friction, wall_friction, restitution, spec.rolling}, system.laws);
   const bool periodic = spec.boundary == Boundary::periodic;
   const Vec3 corner = periodic ? packing.low : Vec3{};
   for (const MacroBody& b : packing.bodies) {
     NewBody<3> grain;
     grain.x = b.x - corner;
     grain.r = b.r;
-    grain.mass = spec.density * kSphereVolume * cube(b.r);
+    grain.mass = grain_density(spec, b.material) * kSphereVolume * cube(b.r);
+    grain.material = b.material;
     if (friction > 0.0) grain.inertia = 0.4 * grain.mass * b.r * b.r;
     add_grain(system.particles, grain);
   }
-  box = periodic ? add_periodic_cell(system, packing.size()) : add_box(system, packing.low, packing.high, 1);
+  box = periodic ? add_periodic_cell(system, packing.size()) : add_box(system, packing.low, packing.high, wall);
 }
 
 double HardBodies::pressure() {

@@ -100,7 +100,8 @@ inline double pressing_stress_tolerance(const MacroSpec& spec, bool last) {
 DampedOptions pressing_options(const MacroSpec& spec, bool last, double load, double bodies, double mean_radius);
 
 // All bodies of a macro packing as hard grains in their box: what preparations move and press. Materials 0 body, 1
-// wall. With `friction` among bodies, walls have preparation_wall_friction().
+// wall, or as many as MacroSpec::grain_materials and the wall behind them. With `friction` among bodies, of which pairs
+// of materials that have less take what they have, walls have preparation_wall_friction().
 
 struct HardBodies {
   System3 system;

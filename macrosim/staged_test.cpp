@@ -18,6 +18,7 @@ std::string hash_of(const MacroPacking& packing) {
     for (int a = 0; a < 3; ++a) add(body.x[a]);
     add(body.r);
     add(body.soft);
+    if (body.material != 0) add(body.material);
   }
   return short_hash(bytes);
 }

@@ -1,8 +1,10 @@
 // Elastic materials, and the range of Poisson's ratio: once for scenes, cards, files and tables.
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
+#include <algorithm>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace softgrain {
 
@@ -21,6 +23,32 @@ struct Material {
   [[nodiscard]] double tangential_compliance() const {
     return rigid ? 0.0 : (2.0 - poisson_ratio) * (1.0 + poisson_ratio) / (4.0 * youngs_modulus);
   }
+};
+
+/// Friction of a contact between grains of two materials: the smaller of both. It is the default of YADE
+/// (Ip2_FrictMat_FrictMat_FrictPhys), and a bound that holds whatever the surfaces are: the contact slides where its
+/// weaker side does. LAMMPS takes the geometric mean unless pair_coeff says otherwise.
+inline double pair_friction(double mu1, double mu2) { return std::min(mu1, mu2); }
+
+/// One of several materials that the solid grains of a packing are made of.
+struct GrainMaterial {
+  std::string name;
+  double youngs_modulus = 0.0;  ///< E [Pa]
+  double poisson_ratio = 0.0;   ///< nu
+  double friction = 0.0;        ///< mu against its like; pair_friction() of two
+  double density = 0.0;         ///< [kg/m^3]
+
+  friend bool operator==(const GrainMaterial&, const GrainMaterial&) = default;
+};
+
+/// What grains are made of, by SizePiece::material; empty: all grains are alike, and no piece names a material.
+struct GrainMaterials {
+  std::vector<GrainMaterial> each;
+
+  /// Every pair of materials has a law of its own, and a system has room for 64 of them.
+  static constexpr std::size_t kMost = 9;
+
+  [[nodiscard]] bool empty() const { return each.empty(); }
 };
 
 /// How the contacts of two spheres, or of a sphere and a wall, resist rolling (rolling_spring.h). All without

@@ -27,9 +27,10 @@ std::string ends_text(double rmin, double rmax) {
 }
 
 std::string piece_text(const SizePiece& p) {
-  if (p.low == p.high) return fmt::format("{{radius = {}, volume_share = {}}}", p.low, p.volume);
-  return fmt::format("{{radius_min = {}, radius_max = {}, exponent = {}, volume_share = {}}}", p.low, p.high,
-                     p.exponent, p.volume);
+  const std::string material = p.material == 0 ? "" : fmt::format(", material = {}", p.material);
+  if (p.low == p.high) return fmt::format("{{radius = {}, volume_share = {}{}}}", p.low, p.volume, material);
+  return fmt::format("{{radius_min = {}, radius_max = {}, exponent = {}, volume_share = {}{}}}", p.low, p.high,
+                     p.exponent, p.volume, material);
 }
 
 bool nearly(double a, double b) { return std::abs(a - b) <= 1e-9 * std::abs(b); }
@@ -197,9 +198,14 @@ double Grading::passing(double r) const {
   return volume_[k] + pieces_[k].volume * pieces_[k].passing(r, dimension_);
 }
 
+std::size_t Grading::piece_at(double u) const {
+  return static_cast<std::size_t>(std::upper_bound(number_.begin(), number_.end() - 1, u) - number_.begin());
+}
+
+std::int32_t Grading::material(double u) const { return pieces_[piece_at(u)].material; }
+
 double Grading::radius(double u) const {
-  const auto at = std::upper_bound(number_.begin(), number_.end() - 1, u);
-  const auto k = static_cast<std::size_t>(at - number_.begin());
+  const std::size_t k = piece_at(u);
   const double before = k == 0 ? 0.0 : number_[k - 1];
   return pieces_[k].radius(std::clamp((u - before) / (number_[k] - before), 0.0, 1.0));
 }
@@ -211,12 +217,20 @@ double Grading::mean_volume() const {
 }
 
 std::vector<double> Grading::draw(std::size_t n, RandomStream& random) const {
-  const double place = random.uniform();
   std::vector<double> radii;
-  for (std::size_t k = 0; k < n; ++k)
-    radii.push_back(radius((static_cast<double>(k) + place) / static_cast<double>(n)));
-  std::sort(radii.begin(), radii.end());  // classes may overlap
+  for (const DrawnGrain& g : draw_grains(n, random)) radii.push_back(g.radius);
   return radii;
+}
+
+std::vector<DrawnGrain> Grading::draw_grains(std::size_t n, RandomStream& random) const {
+  const double place = random.uniform();
+  std::vector<DrawnGrain> grains;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double u = (static_cast<double>(k) + place) / static_cast<double>(n);
+    grains.push_back({radius(u), material(u)});
+  }
+  std::ranges::stable_sort(grains, {}, &DrawnGrain::radius);  // classes may overlap
+  return grains;
 }
 
 double Grading::largest_difference(const std::vector<double>& radii) const {
@@ -248,12 +262,13 @@ double Grading::obtained_passing(const std::vector<double>& radii, double r) con
 }
 
 bool Grading::same_shape(double unit, const Grading& other, double other_unit) const {
-  return dimension_ == other.dimension_ &&
-         std::equal(pieces_.begin(), pieces_.end(), other.pieces_.begin(), other.pieces_.end(),
-                    [&](const SizePiece& a, const SizePiece& b) {
-                      return nearly(a.low / unit, b.low / other_unit) && nearly(a.high / unit, b.high / other_unit) &&
-                             nearly(a.volume, b.volume) && (a.low == a.high || nearly(a.exponent, b.exponent));
-                    });
+  return dimension_ == other.dimension_ && std::equal(pieces_.begin(), pieces_.end(), other.pieces_.begin(),
+                                                      other.pieces_.end(), [&](const SizePiece& a, const SizePiece& b) {
+                                                        return nearly(a.low / unit, b.low / other_unit) &&
+                                                               nearly(a.high / unit, b.high / other_unit) &&
+                                                               nearly(a.volume, b.volume) && a.material == b.material &&
+                                                               (a.low == a.high || nearly(a.exponent, b.exponent));
+                                                      });
 }
 
 std::vector<SizePiece> pieces_between(const Grading& grading, double low, double high) {
@@ -266,7 +281,7 @@ std::vector<SizePiece> pieces_between(const Grading& grading, double low, double
     const double from = std::max(low, p.low);
     const double to = std::min(high, p.high);
     if (!(from < to)) continue;
-    out.push_back({from, to, p.exponent, p.volume * (p.passing(to, kSpheres) - p.passing(from, kSpheres))});
+    out.push_back({from, to, p.exponent, p.volume * (p.passing(to, kSpheres) - p.passing(from, kSpheres)), p.material});
   }
   std::erase_if(out, [](const SizePiece& p) { return !(p.volume > 0.0); });
   return out;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,14 +27,21 @@ inline constexpr auto enum_names<GradingForm> = enum_name_list<GradingForm>({{Gr
 struct SizePiece {
   double low = 0.0;
   double high = 0.0;
-  double exponent = 4.0;  ///< 4: the volume of spheres is even over the logarithm of the size
-  double volume = 1.0;    ///< share of the volume of all grains
+  double exponent = 4.0;      ///< 4: the volume of spheres is even over the logarithm of the size
+  double volume = 1.0;        ///< share of the volume of all grains
+  std::int32_t material = 0;  ///< what its grains are made of, place in GrainMaterials
 
   [[nodiscard]] double radius(double u) const;  ///< below it are u of its grains, 0 <= u <= 1
   /// The mean of r^power over its grains.
   [[nodiscard]] double mean_power(int power) const;
   /// Share of the sum of r^power in grains below r.
   [[nodiscard]] double passing(double r, int power) const;
+};
+
+/// A grain that is drawn from a distribution.
+struct DrawnGrain {
+  double radius = 0.0;  ///< [m]
+  std::int32_t material = 0;
 };
 
 /// A distribution by volume ("passing" of a sieve analysis), from which the one by number follows. In the plane volumes
@@ -71,6 +79,8 @@ class Grading {
   [[nodiscard]] double passing(double r) const;
   /// Radius below which u of all grains are, by number, 0 <= u <= 1; where classes overlap, one class after another.
   [[nodiscard]] double radius(double u) const;
+  /// What a grain of radius(u) is made of.
+  [[nodiscard]] std::int32_t material(double u) const;
   [[nodiscard]] int dimension() const { return dimension_; }
   /// r^3, of disks r^2.
   [[nodiscard]] double volume(double r) const { return dimension_ == 2 ? r * r : r * r * r; }
@@ -79,6 +89,8 @@ class Grading {
   /// `n` radii, one from each of n equal shares of the number at the same random place in each: without bias, and with
   /// less scatter of the volume than independent ones. Ascending. A list of n radii gives these.
   [[nodiscard]] std::vector<double> draw(std::size_t n, RandomStream& random) const;
+  /// The same grains with what they are made of: of pieces that overlap, each has its share of the number.
+  [[nodiscard]] std::vector<DrawnGrain> draw_grains(std::size_t n, RandomStream& random) const;
   /// Largest difference between the passing of radii and the one asked for, beside each grain. None can be below half
   /// the volume share of the largest grain, and one that is drawn is not above that share.
   [[nodiscard]] double largest_difference(const std::vector<double>& radii) const;
@@ -93,6 +105,9 @@ class Grading {
 
  private:
   Grading(GradingForm form, std::string text, std::vector<SizePiece> pieces, int dimension);
+
+  /// Place of the piece with radius(u).
+  [[nodiscard]] std::size_t piece_at(double u) const;
 
   GradingForm form_ = GradingForm::list;
   int dimension_ = 3;

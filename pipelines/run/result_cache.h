@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "common/core/enum_names.h"
+#include "common/core/material.h"
 #include "common/core/vec.h"
 #include "common/io/hdf5_file.h"
 #include "common/packing/grading.h"
@@ -74,6 +75,9 @@ class SharedResults {
   std::function<void(const std::string&)> say_;
 };
 
+SOFTGRAIN_EVERY_MEMBER(GrainMaterial, name, youngs_modulus, poisson_ratio, friction, density)
+SOFTGRAIN_EVERY_MEMBER(GrainMaterials, each)
+
 template <class T>
 concept HasEveryMember = requires(const T& value) {
   every_member(value);
@@ -90,6 +94,8 @@ class KeyText {
   KeyText& add(const std::string& value);
   KeyText& add(const char* value) { return add(std::string(value)); }
   KeyText& add(const Grading& value) { return add(value.text()); }
+  /// Nothing where all grains are alike: keys are what they were when grains were always so.
+  KeyText& add(const GrainMaterials& value) { return value.empty() ? *this : add(value.each); }
 
   template <class T>
   requires std::is_arithmetic_v<T> KeyText& add(T value) {

@@ -193,6 +193,58 @@ sizes = { form = "fuller", exponent = 0.5, radius_min = "1.5 mm", radius_max = "
 )";
 }
 
+inline std::string recipe_materials() {
+  return R"(kind = "recipe"
+[material]
+E = 5e9
+[grains]
+count = 150
+[levels]
+ratio = 1.6
+mixtures = [0.25, 0.5, 0.75]
+[packing]
+preparation = "fast"
+[check]
+grains = 300
+[[constituent]]
+name = "a"
+mass = 3.0
+E = 9e9
+nu = 0.2
+sizes = { form = "power-law", exponent = 3.5, radius_min = "2 mm", radius_max = "4 mm" }
+[[constituent]]
+name = "b"
+mass = 2.0
+mu = 0.4
+sizes = { form = "fuller", exponent = 0.5, radius_min = "1.5 mm", radius_max = "3 mm" }
+)";
+}
+
+inline std::string material_constituents() {
+  return R"(kind = "material"
+samples = 1
+[grains]
+count = 60
+[packing]
+preparation = "fast"
+[test]
+strain = 0.02
+steps = 4
+[[constituent]]
+name = "a"
+mass_share = 0.6
+E = 9e5
+mu = 0.5
+sizes = { form = "power-law", exponent = 3.5, radius_min = "2 mm", radius_max = "4 mm" }
+[[constituent]]
+name = "b"
+mass_share = 0.4
+nu = 0.2
+density = 3000.0
+sizes = { form = "fuller", exponent = 0.5, radius_min = "1.5 mm", radius_max = "3 mm" }
+)";
+}
+
 inline std::string recipe_stages() {
   const std::string scene = staged_recipe(R"([[stage]]
 kind = "oedometric"
@@ -364,6 +416,8 @@ inline std::vector<KindScene> keyed_scenes() {
   add("macro-table", macro_table());
   add("models", models_scene());
   add("recipe-constituents", recipe_constituents());
+  add("recipe-materials", recipe_materials());
+  add("material-constituents", material_constituents());
   add("recipe-stages", recipe_stages());
   add("particles-drawn", drawn_particles());
   add("grain-box-triaxial", grain_box_triaxial());

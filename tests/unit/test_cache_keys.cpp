@@ -135,6 +135,7 @@ MacroSpec full_spec() {
   stage.record.by_stress = std::array{false, false, true};
   stage.axis[2] = {false, 0.1, -1};
   spec.stages = {stage};
+  spec.grain_materials.each = {{"stone", 5e9, 0.2, 0.4, 2600.0}};
   return spec;
 }
 
@@ -171,6 +172,7 @@ MacroSpec small_spec(Preparation preparation, Boundary boundary = Boundary::wall
   spec.boundary = boundary;
   spec.preparation = preparation;
   spec.protocol = protocol_of(preparation, spec.friction);
+  spec.grain_materials.each = {{"stone", spec.youngs_modulus, spec.poisson_ratio, spec.friction, spec.density}};
   return spec;
 }
 
@@ -244,6 +246,7 @@ SmallTwin small_twin() {
   inside.polydispersity = 3.0;
   MacroSpec spec = out.setup.spec;
   spec.cells.reset();
+  spec.grain_materials.each.clear();
   out.macro = make_shelled_system(spec, out.packing, {generate_shell_packing(inside, 1, 0)}, 1, 0);
   return out;
 }
@@ -315,6 +318,7 @@ TEST(CacheKeys, SetupPackingAndSampleAreInTheKeys) {
   with_packing([](MacroPacking& p) { p.bodies[0].x[1] += 1e-9; });
   with_packing([](MacroPacking& p) { p.bodies[1].r *= 1.001; });
   with_packing([](MacroPacking& p) { p.bodies[1].soft = false; });
+  with_packing([](MacroPacking& p) { p.bodies[0].material = 1; });
   with_packing([](MacroPacking& p) { p.springs[0].spring[2] = 0.0; });
   with_packing([](MacroPacking& p) { p.springs.clear(); });
   MacroPacking wider = twin.packing;

@@ -150,7 +150,7 @@ TEST(RecipeScene, SaysAllThatIsWrongWithConstituentsAtOnce) {
 [[constituent]]
 name = "sand"
 mass_share = 0.6
-E = 5e9
+mu_r = 0.1
 sizes = { form = "power-law", exponent = 3.5, radius_min = "3 mm", radius_max = "1 mm" }
 [[constituent]]
 name = "sand"
@@ -160,7 +160,7 @@ sizes = { form = "power-law", exponent = 3.5, radius_min = "0.3 mm", radius_max 
 )",
                                    "count = 900\nratio = 3");
   for (const char* part :
-       {"goes into [material]: contacts between constituents of different stiffness", "must be above radius_min",
+       {"goes into [material]: all grains have one resistance to rolling", "must be above radius_min",
         "is used twice", "nearest known key is 'density'", "goes without [[constituent]]"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }

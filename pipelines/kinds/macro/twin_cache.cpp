@@ -77,6 +77,7 @@ std::string test_key(const MacroSetup& setup, const MacroPacking& packing, std::
     bytes.add(b.x);
     bytes.add(b.r);
     bytes.add(b.soft);
+    if (b.material != 0) bytes.add(b.material);
   }
   add_springs(bytes, packing);
   KeyText key("test", schema_of(setup.spec), bytes.hash(), without_laws(setup.spec), setup.law_increments);

@@ -52,6 +52,6 @@ SOFTGRAIN_EVERY_MEMBER(MacroSpec, boundary, construction, bodies, preparation, p
                        soft_sizes, cells, packing_text, solid_fill, youngs_modulus, poisson_ratio, friction,
                        wall_friction, rolling, density, start_pressure, test, splits, stages, modulus_stress,
                        strain_end, preload, preload_steps, steps, increments_per_step, tolerance, force_floor,
-                       max_passes, twin, kt_secant)
+                       max_passes, twin, kt_secant, grain_materials)
 
 }  // namespace softgrain

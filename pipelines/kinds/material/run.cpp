@@ -148,8 +148,13 @@ void require_engine(const MaterialScene& scene, const std::optional<LammpsEngine
   for (const MaterialVariant& v : scene.variants)
     if (v.setup.spec.preparation == Preparation::lammps && !lammps)
       throw InputError("key packing.preparation = \"lammps\" needs --engine lammps");
-  if (lammps)
-    for (const MaterialVariant& v : scene.variants) refuse_sliding(v.setup.spec);
+  if (!lammps) return;
+  for (const MaterialVariant& v : scene.variants) {
+    refuse_sliding(v.setup.spec);
+    if (!v.setup.spec.grain_materials.empty())
+      throw InputError(
+          "--engine lammps: its grains have one E, nu and mu; [[constituent]] with their own are run without --engine");
+  }
 }
 
 }  // namespace
@@ -433,6 +438,9 @@ ExitStatus run_material(const Scene& scene, const CommonOptions& options) {
   if (lammps && lammps->write_only) return write_only(material, run);
   const auto [results, failures] = run_variants(material, run, {.lammps = lammps});
   MaterialSummary summary = summarise(material, results, run).summary;
+  const MacroSpec& spec = material.variants.front().setup.spec;
+  if (const std::string text = materials_text(spec.grain_materials, spec.youngs_modulus); !text.empty())
+    summary.head.remarks.push_back(text);
   reject_failures(failures, summary.head);
   if (lammps) {
     const MaterialVariant& first = *results.front().variant;
@@ -441,6 +449,14 @@ ExitStatus run_material(const Scene& scene, const CommonOptions& options) {
   }
   write_text_atomic(run.path("material.csv"), as_csv(points_of(results)));
   return run.finish(json_of(summary), console_summary(summary));
+}
+
+void check_material(const Scene& scene, const CommonOptions&, Findings& out) {
+  const MaterialScene material = read_material_scene(scene);
+  const MacroSpec& spec = material.variants.front().setup.spec;
+  if (const std::string text = materials_text(spec.grain_materials, spec.youngs_modulus); !text.empty())
+    out.add("E", spec.youngs_modulus, text);
+  check_variants(material, out);
 }
 
 /// As SceneKind::starter.
@@ -464,8 +480,7 @@ SceneKind material_kind() {
   return {.name = "material",
           .command = "run",
           .run = run_material,
-          .check = [](const Scene& scene, const CommonOptions&,
-                      Findings& out) { check_variants(read_material_scene(scene), out); },
+          .check = check_material,
           .read = [](const Scene& scene) { (void)read_material_scene(scene); },
           .results = material_results(),
           .takes_engine = true,

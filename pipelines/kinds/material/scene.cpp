@@ -99,14 +99,32 @@ void read_finer_preparation(const SceneTable& t, MacroSetup& setup) {
   if (!setup.said.contains("preparation_tolerance")) setup.spec.protocol.tolerance = kPreparationTolerance;
 }
 
+void require_own_preparation(const SceneTable& t, const MacroSpec& spec) {
+  if (spec.preparation == Preparation::lammps && !spec.grain_materials.empty())
+    t.add_error("preparation",
+                "\"lammps\" compacts grains of one E, nu and mu: constituents with their own go without");
+}
+
 }  // namespace
 
-void read_material_tables(const SceneTable& root, MacroSetup& setup) {
+void read_material_tables(const SceneTable& root, MacroSetup& setup, std::vector<Constituent>* constituents) {
   MacroSpec& spec = setup.spec;
   read_matter(root.table_or_empty({"material", "elasticity, friction and density of the grains"}), spec);
-  read_grains(root.table({"grains", "sizes of all grains of the material, and their number in each packing"}), spec);
+  const SceneTable grains =
+      root.table({"grains", "sizes of all grains of the material, and their number in each packing"});
+  read_grains(grains, spec);
+  if (constituents != nullptr) {
+    *constituents = read_constituents(root, spec);
+    refuse_idle_material(root);
+    if (!constituents->empty())
+      grains.refuse({"sizes", "exponent", "radius_max", "ratio"},
+                    "goes without [[constituent]], which have sizes of their own");
+    if (!root.has_errors()) take_materials(root, *constituents, spec);
+  }
   spec.protocol = protocol_of(spec.preparation, spec.friction);
-  read_finer_preparation(root.table_or_empty({"packing", "preparation of the packings"}), setup);
+  const SceneTable packing = root.table_or_empty({"packing", "preparation of the packings"});
+  read_finer_preparation(packing, setup);
+  require_own_preparation(packing, spec);
   read_test(root.table_or_empty({"test", "test of the prepared packings"}), spec);
 }
 
@@ -242,9 +260,15 @@ class Loadings {
 MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const MacroSetup& base, bool valid) {
   MaterialVariant v{read_variant_name(t), base};
   MacroSpec& spec = v.setup.spec;
+  if (!root.tables("constituent").empty())
+    t.refuse({"sizes", "exponent", "radius_max", "ratio"},
+             "goes without [[constituent]], which have sizes of their own");
+  if (!spec.grain_materials.empty())
+    t.refuse({"E", "nu", "mu", "density"}, "every [[constituent]] has its own, in all variants");
   read_matter(t, spec);
   read_grains(t, spec);
   read_finer_preparation(t, v.setup);
+  require_own_preparation(t, spec);
   read_test(t, spec);
   read_part_stages(root, t, spec);
   v.setup.samples = t.count(kSamplesKey, 1, 10000, v.setup.samples);
@@ -286,13 +310,15 @@ void refuse_idle_span(const SceneTable& equation, const MaterialScene& scene) {
 
 }  // namespace
 
-MaterialScene read_material(const SceneTable& root) {
+MaterialScene read_material(const SceneTable& root, bool mixed) {
   MaterialScene out;
   out.title = root.text(kTitleKey, "");
   out.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
   MacroSetup base = material_defaults();
-  read_material_tables(root, base);
+  std::vector<Constituent> constituents;
+  read_material_tables(root, base, mixed ? &constituents : nullptr);
   const SceneTable grains = root.table("grains");
+  if (!constituents.empty() && !root.has_errors()) take_sizes(base.spec, mixed_sizes(constituents));
   read_splits(grains, base.spec);
   read_stages(root, root.table_or_empty("test"), base.spec);
   base.samples = root.count(kSamplesKey, 1, 10000, base.samples);
@@ -340,7 +366,7 @@ MaterialScene read_material(const SceneTable& root) {
 MaterialScene read_material_scene(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     (void)root.choice(kKindKey, {"material"});
-    return read_material(root);
+    return read_material(root, true);
   });
 }
 

@@ -7,6 +7,7 @@
 
 #include "common/data/macro_result.h"
 #include "pipelines/kinds/macro/scene.h"
+#include "pipelines/kinds/material/constituents.h"
 #include "pipelines/kinds/material/equation.h"
 #include "pipelines/results/kind_results.h"
 #include "pipelines/run/findings.h"
@@ -32,9 +33,9 @@ struct MaterialScene {
 /// What the tables of a material mean where they say nothing.
 MacroSetup material_defaults();
 
-/// [material], [grains] (which must be there), [packing] and [test], stages apart, over what `setup` has. Throws
-/// InputError.
-void read_material_tables(const SceneTable& root, MacroSetup& setup);
+/// [material], [grains] (which must be there), [packing] and [test], stages apart, over what `setup` has; with
+/// `constituents` [[constituent]] too, whose sizes the caller takes. Throws InputError.
+void read_material_tables(const SceneTable& root, MacroSetup& setup, std::vector<Constituent>* constituents = nullptr);
 
 /// Sizes of the solid grains, whichever way the spec says them.
 Grading sizes_of(const MacroSpec& spec);
@@ -46,9 +47,9 @@ std::optional<double> exponent_of(const MacroSpec& spec);
 /// Refuses samples that do not fit into memory, at `count` of this table. Throws InputError.
 void require_material_memory(const SceneTable& grains, const MacroSetup& setup);
 
-/// All tables but those of other kinds that hold materials too, which read theirs beside it. Throws InputError,
-/// IoError.
-MaterialScene read_material(const SceneTable& root);
+/// All tables but those of other kinds that hold materials too, which read theirs beside it. `mixed`: whether
+/// [[constituent]] are among them. Throws InputError, IoError.
+MaterialScene read_material(const SceneTable& root, bool mixed = false);
 
 /// Reads the whole scene. Throws InputError, IoError.
 MaterialScene read_material_scene(const Scene& scene);

@@ -74,6 +74,9 @@ void check_recipe(const RecipeScene& recipe, Findings& out) {
   for (std::size_t k = 0; k < recipe.levels.size(); ++k)
     out.lines += fmt::format("  level {}: {}, {:.3g} % of the solid volume\n", k + 1, level_text(recipe.levels[k]),
                              100.0 * recipe.levels[k].share);
+  const MacroSpec whole = test_of_whole(recipe.material.variants.front().setup.spec, recipe.youngs_modulus);
+  if (const std::string text = materials_text(whole.grain_materials, whole.youngs_modulus); !text.empty())
+    out.add("E", whole.youngs_modulus, text);
   Findings variants;  // a dozen lines for every packing: their number is enough here
   check_variants(recipe.material, variants, false);
   for (const std::string& raised : recipe.raised) out.lines += "  " + raised + "\n";
@@ -87,7 +90,7 @@ void check_recipe(const RecipeScene& recipe, Findings& out) {
     out.add("checked_levels", recipe.checked_levels,
             fmt::format("the {} coarsest levels are checked with all their grains, {} a sample", recipe.checked_levels,
                         recipe.check.grains));
-  out.lines += "  " + stress_line(recipe.material.variants.front().setup.spec) + "\n";
+  out.lines += "  " + stress_line(whole) + "\n";
   judge_mixtures(recipe, out);
   if (recipe.material.variants.front().setup.samples < 2)
     out.warn(recipe.checked && recipe.check.samples > 1

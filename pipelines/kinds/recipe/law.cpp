@@ -54,6 +54,7 @@ CellCard among_all_fines(const RecipeScene& scene, const CellCard& coarsest, con
   Estimate& many = card.excess_many;
   many = {many.value * factor, many.standard_error * factor, many.low * factor, many.high * factor};
   card.density = grain_density(scene);
+  card.youngs_modulus = scene.youngs_modulus;
   card.fines_ratio = scene.levels[1].high / scene.sizes.smallest();
   card.fines_sizes = fmt::format("{} levels of a recipe, put together", scene.levels.size() - 1);
   return card;
@@ -262,11 +263,14 @@ void write_material_card(const RecipeScene& scene, const WholeLaw& law, const st
       out,
       "\n[measured]\nE = {}  # [Pa]\ndensity = {}  # [kg/m^3], mean over the solid volume\n"
       "nu = {}\nmu = {}\n{}preparation = {}\nstart_pressure = {}\nsamples = {}\n",
-      real(spec.youngs_modulus), real(grain_density(scene)), real(spec.poisson_ratio), real(spec.friction),
+      real(scene.youngs_modulus), real(grain_density(scene)), real(spec.poisson_ratio), real(spec.friction),
       spec.rolling.friction > 0.0
           ? fmt::format("mu_r = {}\nkr_ratio = {}\n", real(spec.rolling.friction), real(spec.rolling.stiffness))
           : "",
       quoted(to_string(spec.preparation)), real(spec.start_pressure), scene.material.variants.front().setup.samples);
+  for (const GrainMaterial& m : spec.grain_materials.each)
+    fmt::format_to(out, "\n[[grain_material]]\nname = {}\nE = {}  # [Pa]\nnu = {}\nmu = {}\n", quoted(m.name),
+                   real(m.youngs_modulus), real(m.poisson_ratio), real(m.friction));
   for (const RecipeLevel& level : scene.levels)
     fmt::format_to(out, "\n[[level]]\nradius_min = {}  # m\nradius_max = {}\nvolume_share = {}\n", real(level.low),
                    real(level.high), real(level.share));

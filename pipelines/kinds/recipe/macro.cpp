@@ -12,6 +12,7 @@
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/material_models/models.h"
+#include "pipelines/kinds/recipe/scene_parts.h"
 #include "pipelines/law/named_laws.h"
 #include "pipelines/run/result_cache.h"
 
@@ -21,10 +22,11 @@ namespace {
 
 constexpr std::int64_t kSteps = 16;
 
-/// The coarsest level at its own size, with the cells' law between.
+/// The coarsest level at its own size, with the cells' law between: no contacts, whose materials would differ.
 MacroSetup setup_of(const RecipeScene& scene, const CellCard& card, double strain) {
   MacroSetup setup = scene.material.variants.front().setup;
   MacroSpec& spec = setup.spec;
+  spec = test_of_whole(std::move(spec), scene.youngs_modulus);
   take_sizes(spec, Grading::classes(scene.levels[0].pieces));
   spec.bodies = scene.macro.grains;
   spec.splits.clear();

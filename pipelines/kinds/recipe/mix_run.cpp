@@ -10,6 +10,7 @@
 #include "common/core/text.h"
 #include "common/io/scene.h"
 #include "macrosim/body_contacts.h"
+#include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/material/equation.h"
 
 namespace softgrain {
@@ -93,6 +94,10 @@ void require_alike(const MixRun& a, const MixRun& b) {
   if (a.scene.levels.size() != b.scene.levels.size())
     throw NotPaired(fmt::format("A has {} levels, B {}; the same [levels] cut_diameters for both make them alike",
                                 a.scene.levels.size(), b.scene.levels.size()));
+  if (a.scene.youngs_modulus != b.scene.youngs_modulus)
+    throw NotPaired(
+        fmt::format("stresses of A are over {}, those of B over {}: the mixes of their materials have other means of E",
+                    pressure_text(a.scene.youngs_modulus), pressure_text(b.scene.youngs_modulus)));
 }
 
 std::map<std::string, std::string> shared_packings(const MixRun& a, const MixRun& b) {

@@ -27,10 +27,19 @@ std::string range_of(double low, double high, int digits = 3) {
 }
 
 std::string constituent_table(const RecipeOutcome& r) {
-  HtmlTable table({"constituent", "share of the mass [%]", "density [kg/m³]", "share of the solid volume [%]"}, 1);
-  for (const ConstituentSummary& c : r.constituents)
-    table.row({c.name, format_number(100.0 * c.mass_share, 3), format_number(c.density),
-               format_number(100.0 * c.volume_share, 3)});
+  std::vector<std::string> heads{"constituent", "share of the mass [%]", "density [kg/m³]",
+                                 "share of the solid volume [%]"};
+  const bool differ = std::ranges::any_of(r.constituents, [](const auto& c) { return c.youngs_modulus.has_value(); });
+  if (differ) heads.insert(heads.end(), {"E [MPa]", "nu", "mu"});
+  HtmlTable table(std::move(heads), 1);
+  for (const ConstituentSummary& c : r.constituents) {
+    std::vector<std::string> row{c.name, format_number(100.0 * c.mass_share, 3), format_number(c.density),
+                                 format_number(100.0 * c.volume_share, 3)};
+    if (differ)
+      row.insert(row.end(), {format_number(1e-6 * c.youngs_modulus.value_or(0.0)),
+                             format_number(c.poisson_ratio.value_or(0.0)), format_number(c.friction.value_or(0.0))});
+    table.row(row);
+  }
   return table.empty() ? "" : table.html();
 }
 

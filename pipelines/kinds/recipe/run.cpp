@@ -16,6 +16,7 @@
 #include "pipelines/kinds/material_law/scene.h"
 #include "pipelines/kinds/recipe/compressible_model.h"
 #include "pipelines/kinds/recipe/law.h"
+#include "pipelines/kinds/recipe/scene_parts.h"
 #include "pipelines/kinds/recipe/stages.h"
 #include "pipelines/run/typed_kind.h"
 
@@ -35,6 +36,10 @@ class RecipeRun {
     MaterialOutcome measured = summarise(scene_.material, results_, run_);
     summary_.material = std::move(measured.summary);
     for (const std::string& raised : scene_.raised) head().remarks.push_back(raised);
+    if (const GrainMaterials materials = spec().grain_materials; !materials.empty()) {
+      summary_.material.youngs_modulus = scene_.youngs_modulus;
+      head().remarks.push_back(materials_text(materials, scene_.youngs_modulus));
+    }
     const bool complete = take_failures(measured_variants.failures);
     // Of dozens of packings the one that holds most of the curve.
     std::erase_if(head().sizes, [](const SizesSummary& sizes) { return !sizes.of.starts_with("check"); });
@@ -74,8 +79,16 @@ class RecipeRun {
   }
 
   void describe() {
-    for (const Constituent& c : scene_.constituents)
-      out().constituents.push_back({c.name, c.mass_share, c.density, c.volume_share});
+    const bool alike = spec().grain_materials.empty();
+    for (const Constituent& c : scene_.constituents) {
+      ConstituentSummary s{c.name, c.mass_share, c.density, c.volume_share};
+      if (!alike) {
+        s.youngs_modulus = c.youngs_modulus;
+        s.poisson_ratio = c.poisson_ratio;
+        s.friction = c.friction;
+      }
+      out().constituents.push_back(std::move(s));
+    }
     out().span = scene_.sizes.largest() / scene_.sizes.smallest();
   }
 
@@ -97,8 +110,11 @@ class RecipeRun {
     load(forms, *states, widen);
   }
 
-  [[nodiscard]] const MacroSpec& spec() const { return scene_.material.variants.front().setup.spec; }
-  [[nodiscard]] bool staged() const { return spec().test == MacroTest::stages; }
+  /// Material and test of the whole.
+  [[nodiscard]] MacroSpec spec() const {
+    return test_of_whole(scene_.material.variants.front().setup.spec, scene_.youngs_modulus);
+  }
+  [[nodiscard]] bool staged() const { return scene_.material.variants.front().setup.spec.test == MacroTest::stages; }
 
   /// Where all levels were packed together, what they did stands beside it.
   void press_by_stages(const StateFit& states, const Estimate& onset) {
@@ -219,7 +235,7 @@ class RecipeRun {
 
   void load(const LevelForms& forms, const StateFit& states, double widen) {
     const double end = strain();
-    out().curves.push_back(staged() ? curve_of_stages(*out().staged, spec().youngs_modulus) : curve_of(law_, end, 16));
+    out().curves.push_back(staged() ? curve_of_stages(*out().staged, scene_.youngs_modulus) : curve_of(law_, end, 16));
     if (scene_.checked && scene_.checked_levels == scene_.levels.size())
       out().curves.push_back(mean_curve("all grains", results_[*scene_.checked].curves));
     const MaterialLaw fitted = fit_coarsest(scene_, results_, states, run_.seed);
@@ -266,7 +282,7 @@ class RecipeRun {
   }
 
   void add_moduli() {
-    const double modulus = spec().youngs_modulus;
+    const double modulus = scene_.youngs_modulus;
     std::array<double, 2> interval = spec().modulus_stress;
     if (staged()) interval = {out().staged->stages.front().stress_from, out().staged->stages.front().stress_to};
     std::vector<RecipeCurve> curves = out().curves;
@@ -319,7 +335,7 @@ class RecipeRun {
   [[nodiscard]] TextTable table() const {
     TextTable t{{"curve", "strain", "axial/E", "lateral/E", "axial_low/E", "axial_high/E"}, {}};
     if (staged()) t.header = {"curve", "strain", "axial [Pa]", "lateral [Pa]", "axial_low [Pa]", "axial_high [Pa]"};
-    const double unit = staged() ? spec().youngs_modulus : 1.0;
+    const double unit = staged() ? scene_.youngs_modulus : 1.0;
     for (const RecipeCurve& c : summary_.recipe.curves)
       for (std::size_t k = 0; k < c.strain.size(); ++k)
         t.rows.push_back({c.name, fmt::format("{:.6g}", c.strain[k]), fmt::format("{:.8g}", unit * c.axial[k]),

@@ -8,6 +8,7 @@
 
 #include "common/packing/grading.h"
 #include "common/packing/grading_scene.h"
+#include "macrosim/grain_materials.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/material/run.h"
 #include "pipelines/kinds/recipe/run.h"
@@ -87,9 +88,20 @@ void require_levels(const SceneTable& t, const RecipeScene& scene, std::int64_t 
     }
 }
 
+/// Stresses that a test goes to or that are read from it, times a factor.
+void scale_stresses(MacroSpec& spec, double factor) {
+  for (double& stress : spec.modulus_stress) stress *= factor;
+  for (MacroStage& stage : spec.stages) {
+    for (AxisDrive& axis : stage.axis)
+      if (axis.to_stress()) axis.value *= factor;
+    for (double& stress : stage.record.modulus_stress) stress *= factor;
+  }
+}
+
 MaterialVariant variant_of(const std::string& name, const MacroSetup& base, const Grading& sizes) {
   MaterialVariant v{name, base};
   take_sizes(v.setup.spec, sizes);
+  take_own_reference(v.setup.spec, sizes);
   return v;
 }
 
@@ -213,6 +225,20 @@ MacroSetup recipe_defaults() {
 
 }  // namespace
 
+void take_own_reference(MacroSpec& spec, const Grading& sizes) {
+  if (spec.grain_materials.empty()) return;
+  const double before = spec.youngs_modulus;
+  take_reference(spec, sizes);
+  scale_stresses(spec, spec.youngs_modulus / before);
+}
+
+MacroSpec test_of_whole(MacroSpec spec, double youngs_modulus) {
+  if (spec.youngs_modulus == youngs_modulus) return spec;
+  scale_stresses(spec, youngs_modulus / spec.youngs_modulus);
+  spec.youngs_modulus = youngs_modulus;
+  return spec;
+}
+
 std::string level_text(const RecipeLevel& level) {
   return fmt::format("diameters {:.3g} to {:.3g} mm", 2e3 * level.low, 2e3 * level.high);
 }
@@ -235,23 +261,22 @@ RecipeScene read_recipe_scene(const Scene& scene) {
     out.material.title = root.text(kTitleKey, "");
     out.material.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
     MacroSetup base = recipe_defaults();
-    read_material_tables(root, base);
+    read_material_tables(root, base, &out.constituents);
+    out.youngs_modulus = base.spec.youngs_modulus;
     const SceneTable grains = root.table("grains");
     if (base.spec.test != MacroTest::oedometric)
       root.table("test").add_error("test", "levels are measured in oedometric compression (and one of them in shear)");
     read_recipe_stages(root, base.spec);
     base.samples = root.count({"samples", "samples of each packing"}, 1, 10000, base.samples);
     base.kept_states = read_kept_states(root, 0);
-    out.constituents = read_constituents(root, base.spec.density);
-    refuse_idle_density(root);
-    if (!out.constituents.empty())
-      grains.refuse({"sizes", "exponent", "radius_max", "ratio"},
-                    "goes without [[constituent]], which have sizes of their own");
     const double shear =
         read_law(root.table_or_empty({"law", "fits of the equation of state and of the cell law"}), out);
     read_rest(root, out);
     if (root.has("shells") && base.spec.rolling.friction > 0.0)
       root.add_error("shells", "goes without mu_r: soft particles are measured with grains that roll freely");
+    if (root.has("shells") && !base.spec.grain_materials.empty())
+      root.add_error("shells",
+                     "goes without E, nu and mu of [[constituent]]: soft particles hold grains of one material");
     const SceneTable levels = root.table_or_empty(
         {"levels", "cuts of the size distribution into levels, and the mixtures of neighbouring levels"});
     read_mixtures(levels, out);

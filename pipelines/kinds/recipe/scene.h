@@ -7,6 +7,7 @@
 
 #include "common/data/multi_contact_measurements.h"
 #include "common/packing/grading.h"
+#include "pipelines/kinds/material/constituents.h"
 #include "pipelines/kinds/material_law/scene.h"
 #include "pipelines/run/scene_kind.h"
 
@@ -40,15 +41,6 @@ Grading joined(const std::vector<RecipeLevel>& levels, std::size_t first, std::s
 
 /// Mean solid volume of a grain [m^3].
 double mean_grain_volume(const std::vector<SizePiece>& pieces);
-
-/// One [[constituent]]: powder, sand, gravel.
-struct Constituent {
-  std::string name;
-  double mass_share = 0.0;    ///< share of the mass of all constituents
-  double density = 0.0;       ///< density of its grains [kg/m^3]
-  double volume_share = 0.0;  ///< share of the solid volume of all constituents
-  std::optional<Grading> sizes;
-};
 
 /// The coarsest levels with all their grains, as they are in the whole: what laws of it are held against.
 struct RecipeCheck {
@@ -93,6 +85,10 @@ struct RecipeScene {
   RecipeMacro macro;
   RecipeShells shells;
   std::int64_t cells = 100;  ///< sites of the cells that friction is fitted with
+  /// E of the whole, which its stresses are over: of [material], or with grains of several materials their mean over
+  /// the solid volume. That of a packing is the mean of its own grains, and it is loaded to stresses over E as the
+  /// whole.
+  double youngs_modulus = 0.0;
 };
 
 /// Reads the whole scene. Throws InputError, IoError.

@@ -9,14 +9,12 @@
 
 namespace softgrain {
 
-/// All [[constituent]]; empty without any. `density`: of those that do not give their own [kg/m^3].
-std::vector<Constituent> read_constituents(const SceneTable& root, double density);
+/// Makes E and density of a packing the means of its own grains, and multiplies the stresses of its test with the
+/// change of E: packings of stiff grains and of soft ones are compared at equal stresses over E.
+void take_own_reference(MacroSpec& spec, const Grading& sizes);
 
-/// Refuses the density of the material where every constituent gives its own.
-void refuse_idle_density(const SceneTable& root);
-
-/// Sizes of all constituents together, by solid volume.
-Grading mixed_sizes(const std::vector<Constituent>& constituents);
+/// The test of a packing as it is for the whole, of this E [Pa].
+MacroSpec test_of_whole(MacroSpec spec, double youngs_modulus);
 
 /// Gives every packing room for the images of its largest grains: numbers that nobody asked for are raised. Those of
 /// the scene are refused where grains cannot even be placed, and doubted where they may have no room when they are

@@ -71,6 +71,14 @@ std::vector<double> mean_over(const std::vector<const MacroCurve*>& curves,
   return out;
 }
 
+/// A packing was loaded to stresses over the mean E of its own grains: those of the whole are this factor higher.
+void take_scale(double factor, StatePath& path, std::vector<StageRecord>& stages) {
+  for (auto* stresses : {&path.axial, &path.lateral})
+    for (double& stress : *stresses) stress *= factor;
+  for (StageRecord& stage : stages)
+    for (double& stress : stage.modulus_stress) stress *= factor;
+}
+
 }  // namespace
 
 StatePaths paths_of(const RecipeScene& scene, const std::vector<VariantResult>& results, const StateFit& states) {
@@ -97,6 +105,8 @@ StatePaths paths_of(const RecipeScene& scene, const std::vector<VariantResult>& 
         curves, [](const MacroCurve& c) -> auto& { return c.stress_axial; });
     path.lateral = mean_over(
         curves, [](const MacroCurve& c) -> auto& { return c.stress_lateral; });
+    if (const double own = variant.setup.spec.youngs_modulus; own != scene.youngs_modulus)
+      take_scale(scene.youngs_modulus / own, path, out.stages);
     out.packings.push_back(std::move(path));
   }
   return out;

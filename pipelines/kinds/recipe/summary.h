@@ -14,6 +14,9 @@ struct ConstituentSummary {
   double mass_share = 0.0;
   double density = 0.0;
   double volume_share = 0.0;
+  std::optional<double> youngs_modulus{};  ///< E of its grains [Pa]; empty, as the next two: all grains are alike
+  std::optional<double> poisson_ratio{};
+  std::optional<double> friction{};
 };
 
 void fields(auto&& visit, Of<ConstituentSummary> auto& s) {
@@ -21,6 +24,9 @@ void fields(auto&& visit, Of<ConstituentSummary> auto& s) {
   visit("mass_share", s.mass_share);
   visit("density", s.density);
   visit("volume_share", s.volume_share);
+  visit("E", s.youngs_modulus, kLeftOut);
+  visit("nu", s.poisson_ratio, kLeftOut);
+  visit("mu", s.friction, kLeftOut);
 }
 
 /// Estimates by both forms, see LevelForms.
