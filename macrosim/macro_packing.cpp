@@ -190,6 +190,7 @@ void write_macro_packing(const h5::Group& group, const MacroPacking& packing) {
   group.attribute("loop_passes", packing.cost.loop_passes);
   group.attribute("contact_evaluations", packing.cost.contact_evaluations);
   group.attribute("seconds", packing.cost.seconds);
+  write_density_search(group, packing.density);
 }
 
 MacroPacking read_macro_packing(const h5::Group& group) {
@@ -203,6 +204,7 @@ MacroPacking read_macro_packing(const h5::Group& group) {
   read_springs(group, packing);
   if (group.has_attribute("loop_passes"))
     packing.cost = {group.integer("loop_passes"), group.integer("contact_evaluations"), group.number("seconds")};
+  packing.density = read_density_search(group);
   return packing;
 }
 

@@ -267,7 +267,27 @@ constexpr Count kCounts[] = {{"sample", &MacroCurve::sample},
                              {"soft", &MacroCurve::soft},
                              {"grains", &MacroCurve::grains}};
 
+constexpr const char* kDensityTarget = "density_target";
+constexpr const char* kDensityTolerance = "density_tolerance";
+constexpr const char* kDensityFriction = "density_compaction_mu";
+constexpr const char* kDensityTries = "density_tries";
+
 }  // namespace
+
+void write_density_search(const h5::Group& group, const std::optional<DensitySearch>& search) {
+  if (!search) return;
+  group.attribute(kDensityTarget, search->target);
+  group.attribute(kDensityTolerance, search->tolerance);
+  group.attribute(kDensityFriction, search->friction);
+  group.attribute(kDensityTries, search->tries);
+}
+
+std::optional<DensitySearch> read_density_search(const h5::Group& group) {
+  if (!group.has_attribute(kDensityTarget)) return std::nullopt;
+  return DensitySearch{read_attribute(group, kDensityTarget, {0.0, 1.0}),
+                       read_attribute(group, kDensityTolerance, kNotNegative),
+                       read_attribute(group, kDensityFriction, kNotNegative), read_count(group, kDensityTries)};
+}
 
 std::string identity_text(const LawIdentity& law) {
   if (!law.form && law.hash.empty()) return "not recorded";
@@ -330,6 +350,7 @@ void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
   group.attribute("preparation_loop_passes", curve.preparation.loop_passes);
   group.attribute("preparation_contact_evaluations", curve.preparation.contact_evaluations);
   group.attribute("preparation_seconds", curve.preparation.seconds);
+  write_density_search(group, curve.density);
   write_origin(group, curve);
   for (const Column& c : kColumns) write_quantity(group, curve, c);
   for (const Column& c : kOptionalColumns) write_if_any(group, curve, c);
@@ -362,6 +383,7 @@ MacroCurve read_macro_curve(const h5::Group& group) {
     curve.preparation = {read_count(group, "preparation_loop_passes"),
                          read_count(group, "preparation_contact_evaluations"),
                          read_attribute(group, "preparation_seconds", kNotNegative)};
+  curve.density = read_density_search(group);
   read_origin(group, curve);
   const std::size_t points = group.doubles(kColumns[0].name).size();
   for (const Column& c : kColumns) read_column(group, curve, c, points);

@@ -46,9 +46,9 @@ std::optional<double> exponent_of(const MacroSpec& spec);
 /// Refuses samples that do not fit into memory, at `count` of this table. Throws InputError.
 void require_material_memory(const SceneTable& grains, const MacroSetup& setup);
 
-/// All tables but those of other kinds that hold materials too, which read theirs beside it. Throws InputError,
-/// IoError.
-MaterialScene read_material(const SceneTable& root);
+/// All tables but those of other kinds that hold materials too, which read theirs beside it. `densities`: whether
+/// packings may have a target density. Throws InputError, IoError.
+MaterialScene read_material(const SceneTable& root, bool densities = true);
 
 /// Reads the whole scene. Throws InputError, IoError.
 MaterialScene read_material_scene(const Scene& scene);

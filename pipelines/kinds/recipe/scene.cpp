@@ -236,6 +236,9 @@ RecipeScene read_recipe_scene(const Scene& scene) {
     out.material.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
     MacroSetup base = recipe_defaults();
     read_material_tables(root, base);
+    root.table_or_empty("packing").refuse(kDensityKeys,
+                                          "the packings that are measured differ in density, by their sizes: give "
+                                          "preparation or compaction_mu; a target goes with kind = \"material\"");
     const SceneTable grains = root.table("grains");
     if (base.spec.test != MacroTest::oedometric)
       root.table("test").add_error("test", "levels are measured in oedometric compression (and one of them in shear)");
