@@ -25,12 +25,19 @@ struct DensityBracket {
   DensityTry low, high;
 
   [[nodiscard]] double width() const { return high.friction - low.friction; }
+  [[nodiscard]] double inside(double share) const { return low.friction + share * width(); }
   [[nodiscard]] bool crosses() const { return (low.off > 0.0) != (high.off > 0.0); }
-  [[nodiscard]] double nearest() const { return std::min(std::abs(low.off), std::abs(high.off)); }
 };
 
-/// Frictions that differ by less than this share of the largest give other packings only where these jump.
-constexpr double kNarrowest = 1e-4;
+/// A jump: the solid fraction falls so many times faster with friction than from end to end. Packings of many particles
+/// are three times as steep at most.
+constexpr double kJump = 10.0;
+/// Neighbours that differ by less than this share of the largest friction are not parted further.
+constexpr double kNarrowest = 1e-6;
+/// Tries of a search between neighbours, at most: enough for the smallest tolerance where nothing jumps.
+constexpr std::size_t kMostBracketed = 16;
+/// Frictions around which the target is looked for where packings jump, over the largest friction.
+constexpr double kLeastSpread = 0.01;
 
 class DensitySearcher {
  public:
@@ -51,22 +58,29 @@ class DensitySearcher {
     return std::abs(one.off) <= tolerance_;
   }
 
-  /// Between neighbours on both sides of the target, the widest first: where packings jump there are several. When all
-  /// of these are as narrow as makes sense, beside what came nearest.
+  /// Between the widest neighbours on both sides of the target that are no jump, by regula falsi and in the middle in
+  /// turn. Where packings jump, in turn within the widest jump, and at frictions around the one where a line through
+  /// the nearest tries meets the target: beside a jump there may be packings of any density between.
   [[nodiscard]] double next() const {
-    std::optional<DensityBracket> widest;
-    std::optional<DensityBracket> beside;
-    for (std::size_t k = 0; k + 1 < tries_.size(); ++k) {
-      const DensityBracket b{tries_[k], tries_[k + 1]};
-      if (b.width() < kNarrowest * largest_) continue;
-      if (b.crosses() && (!widest || b.width() > widest->width())) widest = b;
-      if (!beside || b.nearest() < beside->nearest()) beside = b;
+    const double slope = kJump * (densest().off - loosest().off) / largest_;
+    const auto widest = [&](bool jumps) {
+      std::optional<DensityBracket> out;
+      for (std::size_t k = 0; k + 1 < tries_.size(); ++k) {
+        const DensityBracket b{tries_[k], tries_[k + 1]};
+        if (!b.crosses() || b.width() < kNarrowest * largest_) continue;
+        if (jumps != (b.low.off - b.high.off > slope * b.width())) continue;
+        if (!out || b.width() > out->width()) out = b;
+      }
+      return out;
+    };
+    const bool even = tries_.size() % 2 == 0;
+    if (const auto smooth = widest(false); smooth && tries_.size() < kMostBracketed) {
+      constexpr double kEdge = 0.1;
+      const double falsi = smooth->low.off / (smooth->low.off - smooth->high.off);
+      return smooth->inside(even ? std::clamp(falsi, kEdge, 1.0 - kEdge) : 0.5);
     }
-    if (!widest) return beside ? 0.5 * (beside->low.friction + beside->high.friction) : 0.0;
-    constexpr double kEdge = 0.1;
-    const double falsi = widest->low.off / (widest->low.off - widest->high.off);
-    const double at = tries_.size() % 2 == 0 ? std::clamp(falsi, kEdge, 1.0 - kEdge) : 0.5;
-    return widest->low.friction + at * widest->width();
+    if (const auto jump = widest(true); jump && even) return jump->inside(0.5);
+    return scattered();
   }
 
   [[nodiscard]] bool can_go_on() const {
@@ -86,6 +100,26 @@ class DensitySearcher {
   [[nodiscard]] double fraction(const DensityTry& one) const { return target_ + one.off; }
 
  private:
+  /// Each try anew within the frictions over which the solid fraction changes by a few tolerances, none twice.
+  [[nodiscard]] double scattered() const {
+    constexpr std::size_t kNear = 6;
+    constexpr double kGolden = 0.6180339887498949;
+    std::vector<DensityTry> near = tries_;
+    std::ranges::stable_sort(near, {}, [](const DensityTry& t) { return std::abs(t.off); });
+    near.resize(std::min(near.size(), kNear));
+    double friction = 0.0;
+    double off = 0.0;
+    for (const DensityTry& t : near) {
+      friction += t.friction / static_cast<double>(near.size());
+      off += t.off / static_cast<double>(near.size());
+    }
+    const double slope = (densest().off - loosest().off) / largest_;
+    const double place = static_cast<double>(tries_.size()) * kGolden;
+    const double spread = std::max(4.0 * tolerance_ / slope, kLeastSpread * largest_);
+    const double at = friction + off / slope + spread * (2.0 * (place - std::floor(place)) - 1.0);
+    return std::clamp(at, 1e-6 * place * largest_, (1.0 - 1e-6 * place) * largest_);
+  }
+
   double target_, tolerance_, largest_;
   const std::function<MacroPacking(double)>& prepare_;
   std::vector<DensityTry> tries_;  ///< by friction

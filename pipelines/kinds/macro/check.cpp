@@ -284,6 +284,13 @@ void tell_preparation(const MacroSetup& setup, Findings& out) {
       "all relax with mu = {:g} under {:g} E{}, to {:g} of the mean contact force", p.friction, spec.start_pressure,
       p.first_pressure > 1.0 ? fmt::format(" (from {:g} times that)", p.first_pressure) : "", p.tolerance);
   out.add("preparation", to_string(spec.preparation), how);
+  if (!setup.density) return;
+  const DensityTarget& target = *setup.density;
+  out.add("target_density",
+          {{"solid_fraction", target.solid_fraction(spec.density)}, {"solid_fraction_tolerance", target.tolerance}},
+          fmt::format("target {}, met by a friction while packed between 0 and {:g}: 1 to {} preparations of each "
+                      "sample, usually about {}",
+                      target.text(spec.density), p.friction, kMostDensityTries, kUsualDensityTries));
 }
 
 void warn_of_scene(const MacroSetup& setup, const BodyCounts& count, Findings& out) {

@@ -324,6 +324,7 @@ std::string console_summary(const MaterialSummary& s) {
       text += fmt::format(", solid fraction {} at the start",
                           with_error(*v.solid_fraction_start, {.value = {4, true}, .error = {4, true}}));
     text += "\n";
+    if (v.runs.density) text += "  " + density_text(*v.runs.density) + "\n";
     for (const StageMeans& m : v.runs.stages) {
       if (m.axial_end && m.ratio_end)
         text += fmt::format("  {}: axial stress {:.4g} E, lateral {:.4g} E, q/p {:.3f}\n", m.record.name,
