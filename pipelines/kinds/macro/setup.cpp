@@ -12,7 +12,6 @@
 #include "common/io/text_file.h"
 #include "common/packing/grading_scene.h"
 #include "macrosim/preparation.h"
-#include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/macro/stages.h"
 
 namespace softgrain {
