@@ -33,8 +33,10 @@ class MacroPackings : public ::testing::Test {
                       "kind = \"macro\"\nlaw = \"law.toml\"\n[macro]\nsteps = 2\nresolved = false\n" + keys);
   }
   [[nodiscard]] ProgramOutcome macro(const std::string& name, const std::string& more = "") const {
-    return run_the_program("macrosim '" + file("scene.toml") + "' --quiet --threads 1 --out '" + file(name) + "' " +
-                           more);
+    ProgramOutcome outcome =
+        run_the_program("macrosim '" + file("scene.toml") + "' --quiet --threads 1 --out '" + file(name) + "' " + more);
+    outcome.output = unwrapped(outcome.output);
+    return outcome;
   }
   [[nodiscard]] MacroCurve curve(const std::string& name) const { return load_macro(file(name) + "/macro.h5").at(0); }
   [[nodiscard]] nlohmann::json summary(const std::string& name) const {
