@@ -179,13 +179,15 @@ bool all_made(const MacroContent& content) {
   return content.contents > 0 && static_cast<std::int64_t>(content.grains.size()) >= content.contents;
 }
 
-/// What the law of a table is off by. One from a library was fitted to nothing: its error is that of the laws there.
+/// What the law of a table is off by. One from a library was fitted to nothing: the library says its error.
 std::string error_text(const LawTableEntry& entry, const MultiContactLaw& law) {
   if (std::isfinite(law.error_cross)) return "off by " + cross_text(law);
   const double off = form_discrepancy(law);
   if (entry.source == TableSource::measured || !(off > 0.0) || !std::isfinite(off)) return "its error is not known";
-  return fmt::format("off by about {:.2g} %, as the laws of the library's materials on what their fits did not see",
-                     100.0 * off);
+  return fmt::format(
+      "off by about {:.2g} % by the library (laws of its materials, or an own table, on what their fits "
+      "did not see)",
+      100.0 * off);
 }
 
 /// Some contents stand for all: a mean solid fraction outside the table is no refusal yet.

@@ -453,6 +453,7 @@ std::vector<Property> properties_of_packings(const MaterialVariant& v) {
           {"first_pressure", number(p.first_pressure)},
           {"preparation_tolerance", number(p.tolerance)},
           {"preparation_passes", std::to_string(p.max_passes)},
+          {"target solid fraction", v.setup.density ? number(v.setup.density->solid_fraction(s.density)) : "none"},
           {"sizes of", whole_sizes(s)}};
 }
 
