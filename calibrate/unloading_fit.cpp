@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "calibrate/curve_samples.h"
 #include "calibrate/least_squares.h"
@@ -189,14 +190,17 @@ BetweenSamples jackknife(const std::vector<const ForceCurve*>& samples, double t
   return {out, ""};
 }
 
-/// The residual is the share of a depth below the threshold, whose error takes it along.
+/// The residual is the share of a depth below the threshold, whose error takes it along: its interval that of the
+/// threshold, Student's where that is.
 void add_threshold_error(const Estimate& delta, double deepest, Estimate& residual) {
   if (!std::isfinite(delta.standard_error)) return;
-  const double shift = residual_slope(residual.value, deepest, delta.value) * delta.standard_error;
-  residual.standard_error = std::hypot(residual.standard_error, shift);
-  residual.low = std::max(0.0, residual.value - std::hypot(residual.value - residual.low, kNormal95 * shift));
-  residual.high =
-      std::min(kLargestResidual, residual.value + std::hypot(residual.high - residual.value, kNormal95 * shift));
+  const double slope = residual_slope(residual.value, deepest, delta.value);
+  residual.standard_error = std::hypot(residual.standard_error, slope * delta.standard_error);
+  double below = std::abs(slope) * (delta.value - delta.low);
+  double above = std::abs(slope) * (delta.high - delta.value);
+  if (slope < 0.0) std::swap(below, above);
+  residual.low = std::max(0.0, residual.value - std::hypot(residual.value - residual.low, below));
+  residual.high = std::min(kLargestResidual, residual.value + std::hypot(residual.high - residual.value, above));
 }
 
 }  // namespace

@@ -198,6 +198,7 @@ void write_macro_packing(const h5::Group& group, const MacroPacking& packing) {
   }
   write_springs(group, packing.springs);
   write_attributes(group, packing.cost);
+  write_density_search(group, packing.density);
 }
 
 MacroPacking read_macro_packing(const h5::Group& group) {
@@ -216,6 +217,7 @@ MacroPacking read_macro_packing(const h5::Group& group) {
   }
   read_springs(group, packing);
   if (group.has_attribute("loop_passes")) read_attributes(group, packing.cost);
+  packing.density = read_density_search(group);
   return packing;
 }
 

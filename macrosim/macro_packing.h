@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/core/cost.h"
 #include "common/core/vec.h"
+#include "common/data/macro_result.h"
 #include "common/io/hdf5_file.h"
 #include "macrosim/macro_spec.h"
 
@@ -33,8 +35,9 @@ struct MacroPacking {
   Vec3 low{};  ///< corners of the box [m]
   Vec3 high{};
   std::vector<MacroBody> bodies;
-  Cost cost{};                        ///< cost of the preparation
-  std::vector<BodySpring> springs{};  ///< histories of a preparation with friction, sorted by i, then j
+  Cost cost{};                             ///< cost of the preparation
+  std::vector<BodySpring> springs{};       ///< histories of a preparation with friction, sorted by i, then j
+  std::optional<DensitySearch> density{};  ///< how it came to a density that was asked for
 
   [[nodiscard]] Vec3 size() const { return high - low; }
   [[nodiscard]] double body_volume() const;     ///< volume of solid grains and shells [m^3]

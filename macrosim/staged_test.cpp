@@ -82,6 +82,7 @@ MacroCurve blank_curve(const MacroSpec& spec, const MacroPacking& packing, const
   curve.soft_volume_share = packing.soft_volume_share();
   curve.solid_fraction = packing.solid_fraction();
   curve.preparation = packing.cost;
+  curve.density = packing.density;
   return curve;
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -149,7 +151,7 @@ AnyLaw read_linear(Reader& r) {
 /// The branch of a law that unloads along one of its own.
 UnloadingBranch read_branch(Reader& r, double loading_exponent) {
   const UnloadingBranch branch{r.not_negative("residual"), r.positive("unloading_exponent")};
-  if (branch.residual > kLargestResidual) r.fail("residual", "must be at most " + std::to_string(kLargestResidual));
+  if (branch.residual > kLargestResidual) r.fail("residual", fmt::format("must be at most {:g}", kLargestResidual));
   if (branch.exponent < least_unloading_exponent(branch.residual, loading_exponent))
     r.fail("unloading_exponent", "is too small: cycles would give back more than they took");
   return branch;

@@ -2,7 +2,10 @@
 #include "common/core/text.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
+#include <utility>
 
 namespace softgrain {
 
@@ -34,6 +37,17 @@ std::string rounded_text(double value, const NumberForm& form, const char* undef
 std::string percent_text(double share, const NumberForm& form, const char* undefined) {
   if (undefined != nullptr && !std::isfinite(share)) return undefined;
   return rounded_text(100.0 * share, form) + " %";
+}
+
+std::string pressure_text(double stress, int digits) {
+  constexpr std::array<std::pair<double, const char*>, 3> kPrefixes{{{1e9, "GPa"}, {1e6, "MPa"}, {1e3, "kPa"}}};
+  const auto* const at = std::ranges::find_if(kPrefixes, [&](const auto& p) { return std::abs(stress) >= p.first; });
+  const bool none = at == kPrefixes.end();
+  // Rounded first: "120 kPa" with two digits, not "1.2e+02 kPa".
+  const double value =
+      std::strtod(fmt::format("{:.{}e}", none ? stress : stress / at->first, digits - 1).c_str(), nullptr);
+  const bool plain = std::abs(value) < 1e6 && std::abs(value) >= 1e-4;
+  return fmt::format("{:.{}g} {}", value, plain ? std::max(digits, 6) : digits, none ? "Pa" : at->second);
 }
 
 std::optional<double> if_finite(double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; }

@@ -55,6 +55,9 @@ std::string rounded_text(double value, const NumberForm& form = {}, const char* 
 /// "12.5 %" of the share 0.125. With `undefined`, this text stands for a share that is not finite.
 std::string percent_text(double share, const NumberForm& form = {1, true}, const char* undefined = nullptr);
 
+/// "50 kPa", "-1 MPa": a stress in Pa as messages give it.
+std::string pressure_text(double stress, int digits = 6);
+
 /// The number if it is finite.
 std::optional<double> if_finite(double value);
 

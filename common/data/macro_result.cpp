@@ -263,6 +263,24 @@ void read_origin(const h5::Group& group, MacroCurve& curve) {
 
 }  // namespace
 
+void fields(auto&& visit, Of<DensitySearch> auto& s) {
+  visit("density_target", s.target, Limits{0.0, 1.0});
+  visit("density_tolerance", s.tolerance, kNotNegative);
+  visit("density_compaction_mu", s.friction, kNotNegative);
+  visit("density_tries", s.tries, kNotNegative);
+}
+
+void write_density_search(const h5::Group& group, const std::optional<DensitySearch>& search) {
+  if (search) write_attributes(group, *search);
+}
+
+std::optional<DensitySearch> read_density_search(const h5::Group& group) {
+  if (!group.has_attribute("density_target")) return std::nullopt;
+  DensitySearch search;
+  read_attributes(group, search);
+  return search;
+}
+
 std::string identity_text(const LawIdentity& law) {
   if (!law.form && law.hash.empty()) return "not recorded";
   const auto told = [](const std::optional<double>& x) { return x ? fmt::format("{:g}", *x) : "(not known)"; };
@@ -309,6 +327,7 @@ std::vector<std::vector<double>> read_rows(const h5::Group& group, const char* n
 void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
   write_attributes(group, curve);
   write_stage_records(group, curve.stages);
+  write_density_search(group, curve.density);
   write_origin(group, curve);
   for (const Column& c : kColumns) write_quantity(group, curve, c);
   for (const Column& c : kOptionalColumns) write_if_any(group, curve, c);
@@ -327,6 +346,7 @@ MacroCurve read_macro_curve(const h5::Group& group) {
   read_attributes(group, curve);
   curve.engine = current_name(curve.engine);
   curve.stages = read_stage_records(group);
+  curve.density = read_density_search(group);
   read_origin(group, curve);
   const std::size_t points = group.doubles(kColumns[0].name).size();
   for (const Column& c : kColumns) read_column(group, curve, c, points);

@@ -169,6 +169,21 @@ inline constexpr std::array<const char*, 6> kTensorComponents{"xx", "yy", "zz", 
 /// A symmetric tensor per point, by component.
 using TensorColumns = std::array<std::vector<double>, 6>;
 
+/// How the preparation of a sample came to the solid fraction that was asked for: by its friction.
+struct DensitySearch {
+  double target = 0.0;     ///< solid fraction asked for
+  double tolerance = 0.0;  ///< largest difference from it
+  double friction = 0.0;   ///< friction between particles with which it was met
+  std::int64_t tries = 0;  ///< preparations that the search took
+
+  friend bool operator==(const DensitySearch&, const DensitySearch&) = default;
+};
+
+/// As attributes of a group; nothing where there was no search.
+void write_density_search(const h5::Group& group, const std::optional<DensitySearch>& search);
+/// Throws IoError.
+std::optional<DensitySearch> read_density_search(const h5::Group& group);
+
 /// One macro run of one sample. Stresses are compressive positive [Pa], on walls or, in a periodic cell, from the sum
 /// over contacts; strain is nominal, from the start of the test, of tests in stages that of z.
 struct MacroCurve {
@@ -229,6 +244,7 @@ struct MacroCurve {
   std::string warning;  ///< what may make it wrong for its purpose; empty: nothing
   Cost cost;
   Cost preparation;  ///< cost of the state that the curve starts from, which other engines may share
+  std::optional<DensitySearch> density{};  ///< how that state came to a density that was asked for
 
   [[nodiscard]] std::optional<Twin> twin() const { return parse_enum<Twin>(engine); }  ///< empty: made by a law
 };

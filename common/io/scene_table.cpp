@@ -76,7 +76,8 @@ std::size_t SceneTable::Impl::line_of(const toml::node& node) const {
 
 std::string SceneTable::Impl::where(const std::string& key, const toml::node& node) const {
   const std::size_t at = line_of(node);
-  return document->name + (at == 0 ? " (--set " + dotted(key) + ")" : ":" + std::to_string(at));
+  return document->name +
+         (at == 0 ? " (--set " + (path.empty() ? key : path + "." + key) + ")" : ":" + std::to_string(at));
 }
 
 SceneError SceneTable::Impl::error_at(const std::string& key, const toml::node* node,
@@ -203,6 +204,7 @@ std::vector<SceneTable> SceneTable::tables(const Key& key) const {
       if (!element.is_table()) impl_->throw_error(key.name, element, problem);
       made.push_back(impl_->make_child(key.name, element.as_table(), true));
       made.back()->path += "." + std::to_string(made.size() - 1);
+      if (made.back()->line == 0) made.back()->place = impl_->document->name + " (--set " + made.back()->path + ")";
     }
     return true;
   };

@@ -216,7 +216,8 @@ AnyLaw law_of_card(const std::string& path, const std::string& kind, const CardC
   constexpr double kRounding = 1e-9;
   if (!(branch.residual >= 0.0 && branch.residual <= kLargestResidual) ||
       branch.exponent < least_unloading_exponent(branch.residual, law.normal.b) * (1.0 - kRounding))
-    throw InputError(where + ": unloading needs a residual from 0 to " + std::to_string(kLargestResidual) +
+    throw InputError(where + ": unloading needs a residual from 0 to " +
+                     (std::ostringstream() << kLargestResidual).str() +
                      " and an exponent with which no cycle gains energy");
   return SoftUnloading{
       law, {branch.residual, std::max(branch.exponent, least_unloading_exponent(branch.residual, law.normal.b))}};

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
-#include <utility>
 
 #include "common/core/text.h"
 #include "common/core/vec.h"
@@ -237,17 +235,6 @@ const char* stress_of(Modulus modulus) {
   if (modulus == Modulus::bulk) return "mean stress";
   if (modulus == Modulus::undrained) return "deviator";
   return modulus == Modulus::shear ? "shear stress" : "axial stress";
-}
-
-std::string pressure_text(double stress, int digits) {
-  constexpr std::array<std::pair<double, const char*>, 3> kPrefixes{{{1e9, "GPa"}, {1e6, "MPa"}, {1e3, "kPa"}}};
-  const auto* const at = std::ranges::find_if(kPrefixes, [&](const auto& p) { return std::abs(stress) >= p.first; });
-  const bool none = at == kPrefixes.end();
-  // Rounded first: "120 kPa" with two digits, not "1.2e+02 kPa".
-  const double value =
-      std::strtod(fmt::format("{:.{}e}", none ? stress : stress / at->first, digits - 1).c_str(), nullptr);
-  const bool plain = std::abs(value) < 1e6 && std::abs(value) >= 1e-4;
-  return fmt::format("{:.{}g} {}", value, plain ? std::max(digits, 6) : digits, none ? "Pa" : at->second);
 }
 
 std::string modulus_interval(const StageMeans& stage) {

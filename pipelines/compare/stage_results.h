@@ -102,9 +102,6 @@ struct StageMeans {
   std::optional<MeanError> friction_end;
 };
 
-/// "50 kPa", "-1 MPa": a stress in Pa as messages give it.
-std::string pressure_text(double stress, int digits = 6);
-
 /// Stresses between which the modulus of a stage is taken, in words without numbers where they are its own: "2 MPa to 5
 /// MPa", "upper half of the stress", "first half of the largest stress", "whole stage".
 std::string modulus_interval(const StageMeans& stage);

@@ -122,7 +122,9 @@ LawDraws table_draws(const LawSources& sources, const NamedLaws& named, const Ma
   out.origin =
       fmt::format("{} {}", count, measured ? "refits to packings drawn with replacement" : "draws of a library");
   out.discrepancy = form_discrepancy(best);
-  out.discrepancy_origin = "configurations that the fit did not see";
+  out.discrepancy_origin =
+      measured ? "configurations that the fit did not see"
+               : "the library: laws of its materials, or an own table, on configurations that their fits did not see";
   const LogForces log_forces(multi_contact_probes(best));
   out.multi_contact_forces = [=](const std::vector<double>& numbers, const std::vector<PressedNeighbours>& states) {
     const MultiContactModel model = multi_contact_model(law_of_numbers(best, numbers));

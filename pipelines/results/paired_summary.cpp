@@ -7,7 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
-#include "pipelines/compare/stage_results.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 
@@ -23,7 +23,8 @@ std::string line_of(const PairedNumber& n) {
   std::string text =
       fmt::format("  {}: {} - {}: difference {}", n.name + (n.unit.empty() || pascal ? "" : " [" + n.unit + "]"),
                   number(n.a, 5), number(n.b, 5), number(n.difference, 3));
-  if (!std::isfinite(n.error)) return text + " (no error: too few samples)\n";
+  if (!std::isfinite(n.error))
+    return text + fmt::format(" (no error: {})\n", n.unknown.empty() ? "too few samples" : n.unknown);
   text += fmt::format(" +- {} (95 %: {} to {})", number(n.error, 2), number(n.low, 3), number(n.high, 3));
   if (n.pairs > 0 && std::isfinite(n.unpaired_error) && n.error > 0.0)
     text +=

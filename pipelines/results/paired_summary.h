@@ -27,6 +27,7 @@ struct PairedNumber {
   double error_b = kNaN;         ///< standard error of b by itself
   double unpaired_error = kNaN;  ///< standard error of the difference if both were independent
   std::int64_t pairs = 0;        ///< samples or packings that are the same in both; 0: not paired
+  std::string unknown{};         ///< why the difference has no error; empty: too few samples, or it has one
 
   /// Error of the difference over the mean error of one value; NaN where one is not known.
   [[nodiscard]] double over_one() const;
@@ -44,6 +45,7 @@ void fields(auto&& visit, Of<PairedNumber> auto& n) {
   visit("standard_error_b", n.error_b);
   visit("unpaired_standard_error", n.unpaired_error);
   visit("pairs", n.pairs);
+  visit("no_error", n.unknown, kLeftOut);
 }
 
 struct PairedSummary {

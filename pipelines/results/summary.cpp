@@ -8,6 +8,7 @@
 
 #include "common/core/error.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 #include "common/data/law_words.h"
 #include "microsim/protocol.h"
 #include "pipelines/compare/compare_measurements.h"
@@ -153,8 +154,35 @@ EngineSummary summary_of(const std::vector<MacroCurve>& curves, const std::strin
   }
   out.usable = usable && out.samples > 0;
   if (out.samples > 0) out.soft_volume_share /= static_cast<double>(out.samples);
+  out.density = density_of(curves, engine);
   out.stages = stage_means(curves, engine);
   return out;
+}
+
+std::optional<DensitySummary> density_of(const std::vector<MacroCurve>& curves, const std::string& engine) {
+  std::optional<DensitySummary> out;
+  for (const MacroCurve& c : curves) {
+    if (c.engine != engine || !c.density) continue;
+    if (!out) out = {c.density->target, c.density->tolerance, {}};
+    out->samples.push_back(
+        {c.sample, c.solid_fraction, c.solid_fraction - c.density->target, c.density->friction, c.density->tries});
+  }
+  return out;
+}
+
+std::string density_text(const DensitySummary& density) {
+  const auto range = [&](auto member, const NumberForm& form) {
+    const auto [low, high] = std::ranges::minmax(density.samples, {}, member);
+    const std::string first = rounded_text(static_cast<double>(low.*member), form);
+    const std::string last = rounded_text(static_cast<double>(high.*member), form);
+    return first == last ? first : first + " to " + last;
+  };
+  const std::size_t n = density.samples.size();
+  return fmt::format(
+      "target solid fraction {:g} +- {:g}: {} of {} sample{}, with compaction_mu {}, found in {} "
+      "preparations{}",
+      density.target, density.tolerance, range(&DensitySample::solid_fraction, {5, true}), n, n == 1 ? "" : "s",
+      range(&DensitySample::friction, {4}), range(&DensitySample::tries, {4}), n == 1 ? "" : " of each");
 }
 
 namespace {
@@ -257,6 +285,8 @@ std::vector<std::string> macro_warnings(const std::vector<MacroCurve>& curves) {
 
 std::vector<std::string> macro_remarks(const std::vector<MacroCurve>& curves) {
   std::vector<std::string> out = run_notes(curves, "macro run ");
+  if (!curves.empty())
+    if (const auto density = density_of(curves, curves.front().engine)) out.push_back(density_text(*density));
   if (!use_pair_law(curves)) return out;
   out.emplace_back(
       "a solid grain of finite radius meets a soft particle by the law measured against a plane; mu of the grains "

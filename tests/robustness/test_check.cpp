@@ -49,6 +49,14 @@ class Check : public ::testing::Test {
   test::TemporaryDirectory directory_;
 };
 
+TEST_F(Check, TheErrorOfALawFromTheLibraryIsThatOfTheLibrary) {
+  const test::ProgramOutcome outcome = run_the_program("check '" + kRoot + "/pipelines/press_test_library.toml'");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  const std::string said = test::unwrapped(outcome.output);
+  EXPECT_NE(said.find("% by the library (laws of its materials"), std::string::npos) << said;
+  EXPECT_EQ(said.find("nothing to leave out"), std::string::npos) << said;
+}
+
 TEST_F(Check, AMacroSceneThatLammpsPreparesSaysWhatItNeeds) {
   const std::string scene = macro(kCard, "bodies = 1000000\npreparation = \"lammps\"\nstrain = 0.1\n");
   ::setenv("SOFTGRAIN_LAMMPS", "/nowhere/softgrain-lammps", 1);

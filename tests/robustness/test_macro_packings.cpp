@@ -1,9 +1,13 @@
 // Starting states of macro scenes that are kept between runs, given as files, or cannot be had.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <regex>
 
+#include "common/core/limits.h"
 #include "common/data/macro_result.h"
 #include "common/io/text_file.h"
 #include "tests/support/program.h"
@@ -29,8 +33,10 @@ class MacroPackings : public ::testing::Test {
                       "kind = \"macro\"\nlaw = \"law.toml\"\n[macro]\nsteps = 2\nresolved = false\n" + keys);
   }
   [[nodiscard]] ProgramOutcome macro(const std::string& name, const std::string& more = "") const {
-    return run_the_program("macrosim '" + file("scene.toml") + "' --quiet --threads 1 --out '" + file(name) + "' " +
-                           more);
+    ProgramOutcome outcome =
+        run_the_program("macrosim '" + file("scene.toml") + "' --quiet --threads 1 --out '" + file(name) + "' " + more);
+    outcome.output = unwrapped(outcome.output);
+    return outcome;
   }
   [[nodiscard]] MacroCurve curve(const std::string& name) const { return load_macro(file(name) + "/macro.h5").at(0); }
   [[nodiscard]] nlohmann::json summary(const std::string& name) const {
@@ -167,6 +173,77 @@ TEST_F(MacroPackings, PartsOfAPreparationThatHaveNoEffectAreRefused) {
 TEST_F(MacroPackings, CheckSaysHowBodiesArePrepared) {
   const ProgramOutcome said = run_the_program("check '" + file("scene.toml") + "' --set macro.preparation=fast");
   expect(said, 0, {"preparation fast", "inertial number 0.1", "mu = "});
+}
+
+/// The solid fractions that a message says are reached.
+std::array<double, 2> reach_of(const std::string& output) {
+  std::smatch found;
+  const std::regex words("solid fractions\\s+from\\s+([0-9.]+)\\s+with[^)]*?to\\s+([0-9.]+)\\s+without");
+  if (!std::regex_search(output, found, words)) return {kNaN, kNaN};
+  return {std::stod(found[1]), std::stod(found[2])};
+}
+
+TEST_F(MacroPackings, ATargetDensityIsMetOrItsReachIsSaid) {
+  scene("bodies = 80\npreparation = \"fast\"\nmu = 0.5\nwall_mu = 0.5\nsamples = 2\n");
+  const ProgramOutcome none = macro("none", "--set macro.solid_fraction=0.9");
+  expect(none, 3, {"solid_fraction = 0.9", "cannot be reached", "sample"});
+  const auto [loose, dense] = reach_of(none.output);
+  ASSERT_LT(loose, dense - 0.02) << none.output;
+  const double target = 0.5 * (loose + dense);
+  const std::string wanted =
+      fmt::format("--set macro.solid_fraction={} --set macro.solid_fraction_tolerance=0.004 ", target);
+  const std::string cache = "--packing-cache '" + file("cache") + "' ";
+  expect(macro("run", wanted + cache), 0, {"target solid fraction", "compaction_mu", "preparations"});
+  const nlohmann::json density = summary("run")["macro"]["target_density"];
+  ASSERT_EQ(density["samples"].size(), 2U);
+  std::int64_t tries = 0;
+  for (const nlohmann::json& s : density["samples"]) {
+    EXPECT_NEAR(s["solid_fraction"].get<double>(), target, 0.004);
+    EXPECT_NEAR(s["difference"].get<double>(), s["solid_fraction"].get<double>() - target, 1e-12);
+    EXPECT_GE(s["compaction_mu"].get<double>(), 0.0);
+    EXPECT_LE(s["compaction_mu"].get<double>(), 0.5);
+    tries += s["tries"].get<std::int64_t>();
+  }
+  EXPECT_NEAR(curve("run").solid_fraction, target, 0.004);
+  EXPECT_EQ(kept(), tries + 2) << "every try, and what met the target";
+  // From the cache, and the same as a void ratio.
+  expect(macro("again", wanted + cache), 0, {});
+  EXPECT_EQ(kept(), tries + 2);
+  EXPECT_EQ(curve("again").stress_axial, curve("run").stress_axial);
+  EXPECT_EQ(curve("again").density, curve("run").density);
+  // Another target takes the ends of the search from there, and the bits do not depend on the cache or on threads.
+  const std::string other =
+      fmt::format("--set macro.void_ratio={} --set macro.solid_fraction_tolerance=0.004 --threads 2 ",
+                  1.0 / (target + 0.004) - 1.0);
+  expect(macro("cached", other + cache), 0, {"target solid fraction"});
+  expect(macro("fresh", other), 0, {});
+  EXPECT_EQ(curve("cached").stress_axial, curve("fresh").stress_axial);
+  EXPECT_EQ(curve("cached").density, curve("fresh").density);
+  EXPECT_NE(curve("cached").density, curve("run").density);
+}
+
+TEST_F(MacroPackings, ATargetDensityNeedsFrictionAndOneMeasure) {
+  scene("bodies = 80\n");
+  expect(macro("run", "--set macro.solid_fraction=0.6"), 2,
+         {"solid_fraction", "preparation = \"fast\"", "compaction_mu"});
+  const std::string fast = "--set macro.preparation=fast ";
+  expect(macro("run", fast + "--set macro.solid_fraction=1.2"), 2, {"solid_fraction", "below 1"});
+  expect(macro("run", fast + "--set macro.solid_fraction=0.6 --set macro.void_ratio=0.6"), 2, {"give one of the two"});
+  expect(macro("run", fast + "--set macro.dry_density=5000"), 2, {"dry_density", "below the density of the grains"});
+  expect(macro("run", fast + "--set macro.solid_fraction_tolerance=0.01"), 2, {"goes with a target"});
+  expect(macro("run", fast + "--set macro.solid_fracton=0.6"), 2, {"nearest known key is 'solid_fraction'"});
+  expect(macro("run", "--set macro.preparation=lammps --engine lammps --write-only --set macro.solid_fraction=0.6"), 2,
+         {"solid_fraction", "by this program"});
+  write_text_atomic(file("bodies.csv"), kBodies);
+  scene("packing = \"bodies.csv\"\nsolid_fraction = 0.6\n");
+  expect(macro("run"), 2, {"solid_fraction", "goes without packing"});
+}
+
+TEST_F(MacroPackings, CheckSaysWhatATargetDensityCosts) {
+  scene("bodies = 80\npreparation = \"fast\"\nsolid_fraction = 0.9\n");
+  const ProgramOutcome said = run_the_program("check '" + file("scene.toml") + "'");
+  expect(said, 0,
+         {"target solid_fraction = 0.9 +- 0.002", "preparations of each sample", "bodies reach", "out of reach"});
 }
 
 }  // namespace

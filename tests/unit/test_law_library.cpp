@@ -350,6 +350,7 @@ TEST(LawLibrary, TheTableIsReadAndDrawn) {
   const LawDraws draws = law_draws(sources, law, spec, 0.0, 64);
   EXPECT_EQ(draws.draws.size(), 64U);
   EXPECT_GT(draws.discrepancy, 0.0);
+  expect_in(draws.discrepancy_origin, "the library: laws of its materials");
   std::vector<double> forces;
   for (const auto& d : draws.draws) forces.push_back(d[1]);
   const double deviation = mean_error(forces).deviation;

@@ -1,6 +1,7 @@
 // What a change of the mix does: shares that move, packings that are in both, paired and independent errors.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/core/error.h"
@@ -221,6 +222,34 @@ TEST(RecipeDifference, PackingsOfBothCancel) {
   const OnsetDifference none = onset_difference(a, a);
   EXPECT_EQ(none.estimate.value, 0.0);
   EXPECT_EQ(none.estimate.standard_error, 0.0);
+}
+
+/// A number that a few replicates do not have keeps its error; without many of them there is none, and it says so.
+TEST(RecipeDifference, NumbersThatManyReplicatesDoNotHaveHaveNoError) {
+  const MixRun a = synthetic_run("0.6", "0.4", 1);
+  const MixRun b = synthetic_run("0.65", "0.35", 2);
+  const PairedOnsets onsets(a, b);
+  const OnsetPair whole = onsets.joined(0, a.scene.levels.size());
+  std::vector<double> drawn;
+  for (const std::vector<double>& way : whole.a.replicates) drawn.insert(drawn.end(), way.begin(), way.end());
+  std::ranges::sort(drawn);
+  const auto up_to = [&](double share) -> NumberOf {
+    const double most = drawn[static_cast<std::size_t>(share * static_cast<double>(drawn.size() - 1))];
+    return [most, values = whole.a.value](double onset, double, double) {
+      return onset <= most || std::ranges::find(values, onset) != values.end() ? onset : kNaN;
+    };
+  };
+  EXPECT_EQ(onsets.undefined_share(whole, onset_itself, onset_itself), 0.0);
+  EXPECT_LT(onsets.undefined_share(whole, up_to(0.98), onset_itself), kMostUndefined);
+  EXPECT_TRUE(std::isfinite(onsets.difference(0.1, whole, up_to(0.98), onset_itself, {}).standard_error));
+  EXPECT_GT(onsets.undefined_share(whole, up_to(0.7), onset_itself), kMostUndefined);
+  EXPECT_TRUE(std::isinf(onsets.difference(0.1, whole, up_to(0.7), onset_itself, {}).standard_error));
+  PairedNumber n = unpaired_number("x", "", {1.0, 0.1, 0.0, 0.0}, {1.0, 0.1, 0.0, 0.0});
+  n.error = kInfinity;
+  n.unknown = "30 % of the replicates do not go through these stresses";
+  PairedSummary s;
+  s.numbers.push_back(n);
+  EXPECT_NE(paired_text(s).find("(no error: 30 % of the replicates"), std::string::npos) << paired_text(s);
 }
 
 TEST(RecipeDifference, OfSinglePackingsHasNoError) {

@@ -276,6 +276,19 @@ TEST(Scene, OverridesAreNamedInMessages) {
             "scene.toml (--set packing.raddius): unknown key 'raddius' in [packing]; nearest known key is 'radius'");
 }
 
+/// What a message names is what --set takes: elements of arrays by their number.
+TEST(Scene, OverridesOfElementsAreNamedWithTheirNumber) {
+  const Scene scene = parse(kText, {"contact.1.mu=-1", "contact.1.muu=2"});
+  const std::vector<SceneTable> contacts = scene.root().tables("contact");
+  EXPECT_EQ(message_of([&] { (void)contacts[1].number("mu", Unit::none, Range::not_negative()); }),
+            "scene.toml (--set contact.1.mu): mu = -1: must be at least 0");
+  EXPECT_NE(message_of([&] { scene.root().finish(); }).find("scene.toml (--set contact.1.muu): unknown key 'muu'"),
+            std::string::npos);
+  const Scene replaced = parse(kText, {"contact.1={mu=1}"});
+  const SceneTable element = replaced.root().tables("contact")[1];
+  EXPECT_EQ(element.where("pair"), "scene.toml (--set contact.1)");
+}
+
 TEST(Scene, BadOverridesAreRefused) {
   for (const char* setting : {"packing.beta", "=3", "packing..beta=3", "packing.=3", "packing.beta.x=3",
                               "contact.7.mu=1", "contact.x.mu=1", "packing.sizes=[1, 2", "packing.beta={a=}"})

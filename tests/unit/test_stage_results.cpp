@@ -37,18 +37,6 @@ struct Elastic {
   }
 };
 
-TEST(PressureText, TakesThePrefixThatFits) {
-  EXPECT_EQ(pressure_text(1e6), "1 MPa");
-  EXPECT_EQ(pressure_text(-1.5e6), "-1.5 MPa");
-  EXPECT_EQ(pressure_text(7e10), "70 GPa");
-  EXPECT_EQ(pressure_text(5e4), "50 kPa");
-  EXPECT_EQ(pressure_text(20.0), "20 Pa");
-  EXPECT_EQ(pressure_text(123456.0, 3), "123 kPa");
-  EXPECT_EQ(pressure_text(123456.0, 2), "120 kPa");
-  EXPECT_EQ(pressure_text(999600.0, 3), "1000 kPa");
-  EXPECT_EQ(pressure_text(0.0), "0 Pa");
-}
-
 TEST(StageResults, UndrainedAndSlidingStages) {
   Elastic e;
   e.curve.engine = "law";

@@ -102,6 +102,18 @@ TEST(EstimateWithError, TellsFixedNumbersFromUnknownErrors) {
   EXPECT_EQ(estimate_with_error({0.7333, 0.1912, 0.0, 1.0}, {write, " ± ", ""}), "0.733 ± 0.19");
 }
 
+TEST(PressureText, TakesThePrefixThatFits) {
+  EXPECT_EQ(pressure_text(1e6), "1 MPa");
+  EXPECT_EQ(pressure_text(-1.5e6), "-1.5 MPa");
+  EXPECT_EQ(pressure_text(7e10), "70 GPa");
+  EXPECT_EQ(pressure_text(5e4), "50 kPa");
+  EXPECT_EQ(pressure_text(20.0), "20 Pa");
+  EXPECT_EQ(pressure_text(123456.0, 3), "123 kPa");
+  EXPECT_EQ(pressure_text(123456.0, 2), "120 kPa");
+  EXPECT_EQ(pressure_text(999600.0, 3), "1000 kPa");
+  EXPECT_EQ(pressure_text(0.0), "0 Pa");
+}
+
 TEST(DigitsToDiffer, StopsAtTheFirstDifference) {
   EXPECT_EQ(digits_to_differ(132.9, 132.9001, 4, 12), 7);
   EXPECT_EQ(digits_to_differ(1.0, 2.0, 3, 9), 3);

@@ -340,6 +340,27 @@ TEST(UnloadingFit, IntervalsOfThreeRepeatsHoldTheTruth) {
   EXPECT_LT(width, 0.2);
 }
 
+/// The interval of the threshold goes into that of the residual as it is, wide where few samples gave it: as far as
+/// residual_slope() says, on the side to which the residual moves.
+TEST(UnloadingFit, TakesTheIntervalOfTheThreshold) {
+  const std::vector<ForceCurve> samples = made(1, 0.0, 0.0, {0.1, 2.8}).samples;
+  constexpr double kDelta = 0.065;
+  constexpr double kError = 0.001;
+  const Estimate normal{kDelta, kError, kDelta - kNormal95 * kError, kDelta + kNormal95 * kError};
+  const Estimate three{kDelta, kError, kDelta - 4.303 * kError, kDelta + 2.0 * 4.303 * kError};
+  const UnloadingFit narrow = fit_unloading(samples, normal, 2.799);
+  const UnloadingFit wide = fit_unloading(samples, three, 2.799);
+  ASSERT_TRUE(narrow.law && wide.law);
+  const Estimate& a = narrow.law->residual;
+  const Estimate& b = wide.law->residual;
+  EXPECT_EQ(a.standard_error, b.standard_error);
+  const double slope = residual_slope(a.value, 0.3, kDelta);
+  EXPECT_NEAR(a.high - a.value, std::abs(slope) * kNormal95 * kError, 1e-5);
+  const double above = slope < 0.0 ? 4.303 : 2.0 * 4.303;
+  EXPECT_NEAR(b.high - b.value, std::abs(slope) * above * kError, 1e-5);
+  EXPECT_NEAR(b.value - b.low, std::abs(slope) * (3.0 * 4.303 - above) * kError, 1e-5);
+}
+
 /// Three repeats of one law that differ by a factor: the interval of the force is Student's of three.
 TEST(UnloadingFit, RepeatsGiveErrorsBetweenThem) {
   ForceCurves curves = made(3, 0.0005, 0.0, {0.1, 2.8});

@@ -19,6 +19,7 @@
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/soft_particle/check.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
+#include "pipelines/law/law_draws.h"
 #include "pipelines/law/law_values.h"
 #include "pipelines/results/summary.h"
 #include "pipelines/run/findings.h"
@@ -178,6 +179,17 @@ bool all_made(const MacroContent& content) {
   return content.contents > 0 && static_cast<std::int64_t>(content.grains.size()) >= content.contents;
 }
 
+/// What the law of a table is off by. One from a library was fitted to nothing: the library says its error.
+std::string error_text(const LawTableEntry& entry, const MultiContactLaw& law) {
+  if (std::isfinite(law.error_cross)) return "off by " + cross_text(law);
+  const double off = form_discrepancy(law);
+  if (entry.source == TableSource::measured || !(off > 0.0) || !std::isfinite(off)) return "its error is not known";
+  return fmt::format(
+      "off by about {:.2g} % by the library (laws of its materials, or an own table, on what their fits "
+      "did not see)",
+      100.0 * off);
+}
+
 /// Some contents stand for all: a mean solid fraction outside the table is no refusal yet.
 void check_table_law(const LawTable& table, const LawSources& given, WantedForm form, const MacroSpec& spec,
                      const MacroContent& content, Findings& out) {
@@ -191,8 +203,8 @@ void check_table_law(const LawTable& table, const LawSources& given, WantedForm 
   json facts = json_of(named.identity);
   facts["error_cross"] = law.error_cross;
   out.add_once("law", facts,
-               fmt::format("law: {}{}; off by {}", identity_text(named.identity),
-                           entry.main ? ", the main entry of the table" : "", cross_text(law)));
+               fmt::format("law: {}{}; {}", identity_text(named.identity),
+                           entry.main ? ", the main entry of the table" : "", error_text(entry, law)));
   const bool of_content = !laws.solid_fraction && contents_fraction > 0.0;
   if (!remark.empty())
     out.warn(!of_content
@@ -284,6 +296,13 @@ void tell_preparation(const MacroSetup& setup, Findings& out) {
       "all relax with mu = {:g} under {:g} E{}, to {:g} of the mean contact force", p.friction, spec.start_pressure,
       p.first_pressure > 1.0 ? fmt::format(" (from {:g} times that)", p.first_pressure) : "", p.tolerance);
   out.add("preparation", to_string(spec.preparation), how);
+  if (!setup.density) return;
+  const DensityTarget& target = *setup.density;
+  out.add("target_density",
+          {{"solid_fraction", target.solid_fraction(spec.density)}, {"solid_fraction_tolerance", target.tolerance}},
+          fmt::format("target {}, met by a friction while packed between 0 and {:g}: 1 to {} preparations of each "
+                      "sample, usually about {}",
+                      target.text(spec.density), p.friction, kMostDensityTries, kUsualDensityTries));
 }
 
 void warn_of_scene(const MacroSetup& setup, const BodyCounts& count, Findings& out) {

@@ -109,6 +109,26 @@ PreparationTrial try_preparation(const MacroSpec& spec, std::uint64_t seed) {
   return out;
 }
 
+/// Core seconds of the preparations of a search for a density, and whether the bodies of the trial reach it.
+double spend_on_density(const MacroSetup& setup, MacroSpec spec, std::uint64_t seed, const PreparationTrial& loose,
+                        Findings& out) {
+  constexpr double kMargin = 0.01;  // of samples with a few hundred bodies
+  const DensityTarget& target = *setup.density;
+  spec.protocol.friction = 0.0;
+  const PreparationTrial dense = try_preparation(spec, seed);
+  if (loose.packing && dense.packing) {
+    const double fraction = target.solid_fraction(spec.density);
+    const double low = loose.packing->solid_fraction();
+    const double high = dense.packing->solid_fraction();
+    out.facts["target_density_reach"] = {low, high};
+    const std::string reach = fmt::format("{} bodies reach {:.4f} to {:.4f}", spec.bodies, low, high);
+    out.lines += fmt::format("  {}\n", reach);
+    if (fraction < low - kMargin || fraction > high + kMargin)
+      out.warn(fmt::format("{} may be out of reach: {}", target.text(spec.density), reach));
+  }
+  return 0.5 * kUsualDensityTries * (loose.seconds + dense.seconds);
+}
+
 double try_law(const MacroSpec& spec, const MacroPacking& packing, const NamedLaws& law, double solid_fraction) {
   CompressionState state;
   state.macro = make_law_system(spec, packing, law.laws, solid_fraction > 0.0 ? solid_fraction : 1.0);
@@ -183,8 +203,10 @@ void spend_on_macro(const MacroSetup& setup, const MacroContent& content, const 
       trial = try_preparation(spec, seed);
     }
     const double larger = static_cast<double>(setup.spec.bodies) / static_cast<double>(spec.bodies);
+    const bool counted = !setup.given && !content.prepared;
+    const double preparing = counted && setup.density ? spend_on_density(setup, spec, seed, trial, out) : trial.seconds;
     // Passes of a preparation grow like N^0.33: 1,500, 2,600, 4,500, 6,000 of 60, 250, 1,000, 4,000 bodies.
-    if (!setup.given && !content.prepared) out.spend("preparation", samples * std::pow(larger, 1.33) * trial.seconds);
+    if (counted) out.spend("preparation", samples * std::pow(larger, 1.33) * preparing);
     // A test takes about as long as its preparation where that was too long for a trial.
     if (!trial.packing) out.spend(tests, runs * std::pow(larger, 1.33) * trial.seconds);
     if (!trial.packing) return spend_on_twins(setup, content, out);

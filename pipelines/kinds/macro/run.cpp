@@ -47,6 +47,7 @@ std::string stage_line(const std::string& engine, const StageMeans& s) {
 
 std::string console_summary(const LawIdentity& law, const std::vector<MacroCurve>& curves) {
   std::string text = "law: " + identity_text(law) + "\n";
+  if (const auto density = density_of(curves, curves.front().engine)) text += density_text(*density) + "\n";
   for (const MacroCurve& c : curves)
     text += fmt::format("{} sample {}: axial stress {:.5g} Pa at strain {:.3f}, lateral ratio {}, {:.1f} s{}\n",
                         c.engine, c.sample, c.stress_axial.back(), c.strain.back(), lateral_ratio(c), c.cost.seconds,

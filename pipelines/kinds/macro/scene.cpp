@@ -102,6 +102,7 @@ void read_cells(const SceneTable& root, const SceneTable& macro, const CellCard&
   macro.refuse({"band_estimator"}, "cells run every draw");
   setup.band_estimator = BandEstimator::draws;
   macro.refuse({"force_floor"}, "cells have no contact forces: their residual is over the mean load of a face");
+  macro.refuse(kDensityKeys, "is said of the mixture: [fines] solid_fraction, with start = \"density\"");
   CellMatter matter = read_fines(root);
   matter.card = card;
   if (setup.given && matter.solid_fraction > 0.0)

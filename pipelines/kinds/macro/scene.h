@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <set>
@@ -10,6 +11,7 @@
 
 #include "common/data/macro_result.h"
 #include "common/io/scene.h"
+#include "macrosim/density_search.h"
 #include "macrosim/macro_packing.h"
 #include "pipelines/law/named_laws.h"
 #include "pipelines/results/kind_results.h"
@@ -37,8 +39,9 @@ struct MacroSetup {
   BandEstimator band_estimator = BandEstimator::components;
   std::int64_t law_increments = 1;  ///< increments of runs with laws for one increment of a twin
   std::int64_t noise_samples = 0;   ///< number of samples that every engine runs a second time: see slightly_changed()
-  std::vector<std::string> assumed{};  ///< "nu = 0.3": of grains, where the law does not say them
-  double start_stress = 0.0;           ///< start pressure where a table says it as a pressure [Pa]; 0: over E
+  std::vector<std::string> assumed{};      ///< "nu = 0.3": of grains, where the law does not say them
+  double start_stress = 0.0;               ///< start pressure where a table says it as a pressure [Pa]; 0: over E
+  std::optional<DensityTarget> density{};  ///< what prepared packings have to reach
   std::set<std::string> said{};  ///< keys of the preparation that a table gave: others follow from mu and its name
 };
 
@@ -55,6 +58,12 @@ MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base);
 /// Parts of [macro] that other kinds of scene share. The first needs spec.friction: what no table said follows from it
 /// and from the name of the preparation, what one said stays. Throw InputError.
 void read_preparation(const SceneTable& t, MacroSetup& setup);
+/// `solid_fraction`, `void_ratio` or `dry_density`, which the preparation has to reach, over what `setup` has.
+void read_density(const SceneTable& t, MacroSetup& setup);
+/// Requires that the preparation of a setup with a target has friction to search, and that grains fit the target.
+void require_density(const SceneTable& t, const MacroSetup& setup);
+/// Keys of a target.
+inline constexpr std::array kDensityKeys{"solid_fraction", "void_ratio", "dry_density", "solid_fraction_tolerance"};
 /// Refuses the keys of a preparation by this program where LAMMPS prepares.
 void refuse_protocol_keys(const SceneTable& t);
 void read_test(const SceneTable& t, MacroSpec& spec);

@@ -12,7 +12,6 @@
 #include "common/io/text_file.h"
 #include "common/packing/grading_scene.h"
 #include "macrosim/preparation.h"
-#include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/macro/stages.h"
 
 namespace softgrain {
@@ -110,6 +109,49 @@ void read_preparation(const SceneTable& t, MacroSetup& setup) {
   t.refuse({"start_fraction"}, "construction \"voids\" begins at solid_fill");
 }
 
+void read_density(const SceneTable& t, MacroSetup& setup) {
+  const Key fraction{
+      "solid_fraction",
+      "target: solid fraction of all particles (soft ones by their shells) at `start_pressure`; each "
+      "sample is prepared again and again, with `compaction_mu` between 0 and its value, until it is met",
+      "no target"};
+  const Key ratio{"void_ratio", "the target as a void ratio", "no target"};
+  const Key dry{"dry_density", "the target as mass of the grains per volume", "no target"};
+  std::vector<std::string> given;
+  const auto take = [&](DensityMeasure measure, const Key& key, Unit unit, const Range& range) {
+    const double value = t.number(key, unit, range, 0.0);
+    if (!t.has(key.name)) return;
+    given.push_back(key.name);
+    if (given.size() > 1) t.add_error(key.name, "the target is given as " + given.front() + ": give one of the two");
+    if (!setup.density) setup.density.emplace();
+    setup.density->measure = measure;
+    setup.density->value = value;
+  };
+  take(DensityMeasure::solid_fraction, fraction, Unit::none, Range{0.0, 1.0, true, true});
+  take(DensityMeasure::void_ratio, ratio, Unit::none, Range::positive());
+  take(DensityMeasure::dry_density, dry, Unit::density, Range::positive());
+  const Key key{"solid_fraction_tolerance", "largest difference from the target, in solid fraction"};
+  const double fallback = setup.density ? setup.density->tolerance : DensityTarget{}.tolerance;
+  const double tolerance = t.number(key, Unit::none, Range::closed(1e-5, 0.05), fallback);
+  if (setup.density)
+    setup.density->tolerance = tolerance;
+  else if (t.has(key.name))
+    t.add_error(key.name, "goes with a target: solid_fraction, void_ratio or dry_density");
+}
+
+void require_density(const SceneTable& t, const MacroSetup& setup) {
+  if (!setup.density) return;
+  const std::string key = to_string(setup.density->measure);
+  if (setup.spec.preparation == Preparation::lammps)
+    return t.add_error(key, "goes with a preparation by this program, which searches the friction that meets it");
+  if (!(setup.spec.protocol.friction > 0.0))
+    return t.add_error(key,
+                       "is met by the friction during the preparation, which has none: give preparation = "
+                       "\"fast\", \"slow\", \"poured\" or \"rodded\" and mu above 0, or compaction_mu above 0");
+  if (setup.density->measure == DensityMeasure::dry_density && !(setup.density->value < setup.spec.density))
+    t.add_error(key, fmt::format("must be below the density of the grains, {:g} kg/m^3", setup.spec.density));
+}
+
 namespace {
 
 /// Keys of a power law take the place of a distribution that a common [macro] gave.
@@ -191,6 +233,7 @@ void read_bodies(const SceneTable& t, MacroSetup& setup) {
   if (spec.boundary == Boundary::periodic) t.refuse({"wall_mu"}, "a periodic cell has no walls");
   read_rolling_resistance(t, spec.friction, spec.rolling);
   read_preparation(t, setup);
+  read_density(t, setup);
 }
 
 }  // namespace
@@ -253,7 +296,11 @@ constexpr std::array kMakingBodies{"bodies",
                                    "coarse_share",
                                    "first_pressure",
                                    "preparation_tolerance",
-                                   "preparation_passes"};
+                                   "preparation_passes",
+                                   "solid_fraction",
+                                   "void_ratio",
+                                   "dry_density",
+                                   "solid_fraction_tolerance"};
 
 /// `packing`: places, radii and kinds of all bodies from a file; what would make them otherwise has no place beside it,
 /// nor below a common one. The file is read for the boundary of the table that names it.
@@ -277,6 +324,7 @@ void read_given(const SceneTable& t, MacroSetup& setup) {
     spec.packing_text = read_text(file);
     spec.construction = Construction::mixed;
     spec.preparation = Preparation::frictionless;
+    setup.density.reset();
     spec.bodies = static_cast<std::int64_t>(p.bodies.size());
     spec.soft_share = p.soft_volume_share();
     spec.solid_sizes.reset();
@@ -402,6 +450,7 @@ MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
                    TangentialSlope::secant;
   setup.samples = macro.count({"samples", "independent random boxes"}, 1, 10000, setup.samples);
   read_given(macro, setup);
+  require_density(macro, setup);
   setup.bands = macro.count(
       {"bands",
        "number of draws (laws with parameters drawn from their scatter) for the error bars, 8 or more; 0: no bars"},

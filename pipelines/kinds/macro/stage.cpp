@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <optional>
 
@@ -257,15 +258,48 @@ RunOutcome run_one(const Stage& stage, std::int64_t sample, const Engine& engine
         return go();
       });
   if (!ran) TaskProgress(progress).reach(1.0);
+  out.curve.density = packing.density;  // a kept twin may be of another target that the same packing met
   return out;
+}
+
+/// Raised whenever a search would come to another packing.
+constexpr int kDensitySchema = 1;
+
+/// The share of a search that is done when this one of its tries has come so far; it is not known how many there are.
+double density_progress(std::int64_t tries, double share) {
+  return 1.0 - std::exp(-2.0 * (static_cast<double>(tries - 1) + share) / kUsualDensityTries);
+}
+
+/// Prepared to the density that the setup asks for. Every try is a packing of that friction, and kept as such: a run
+/// that goes on, and a later one with another target, take the tries that they share from there.
+MacroPacking packing_of_density(const MacroSetup& setup, const Run& run, std::int64_t sample, const std::string& task,
+                                const PreparationWatch& watch) {
+  const MacroSpec& spec = setup.spec;
+  const DensityTarget& target = *setup.density;
+  const auto number = static_cast<std::uint64_t>(sample);
+  const KeyText goal("density", kDensitySchema, target.solid_fraction(spec.density), target.tolerance);
+  return kept_packing(packing_key(spec, run.seed, number) + goal.text(), task, run, [&] {
+    std::int64_t tries = 0;
+    return pack_to_density(target, spec.density, spec.protocol.friction, sample, [&](double friction) {
+      MacroSpec tried = spec;
+      tried.protocol.friction = friction;
+      ++tries;
+      return kept_packing(packing_key(tried, run.seed, number), fmt::format("{}-try-{}", task, tries), run, [&] {
+        return make_packing(tried, run.seed, number, [&](double share) {
+          if (watch) watch(density_progress(tries, share));
+        });
+      });
+    });
+  });
 }
 
 MacroPacking sample_packing(const MacroSetup& setup, const Run& run, std::int64_t sample, const std::string& file_name,
                             const PreparationWatch& watch) {
   if (setup.given) return *setup.given;
   const auto number = static_cast<std::uint64_t>(sample);
-  return kept_packing(packing_key(setup.spec, run.seed, number),
-                      file_name.substr(0, file_name.rfind('.')) + "-" + std::to_string(sample), run,
+  const std::string task = file_name.substr(0, file_name.rfind('.')) + "-" + std::to_string(sample);
+  if (setup.density) return packing_of_density(setup, run, sample, task, watch);
+  return kept_packing(packing_key(setup.spec, run.seed, number), task, run,
                       [&] { return make_packing(setup.spec, run.seed, number, watch); });
 }
 

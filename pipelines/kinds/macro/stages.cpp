@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "common/core/text.h"
 #include "macrosim/test_protocol.h"
-#include "pipelines/compare/stage_results.h"
 
 namespace softgrain {
 

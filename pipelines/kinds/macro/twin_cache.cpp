@@ -63,7 +63,7 @@ int schema_of(const MacroSpec& spec) { return any_slides(stages_of(spec)) ? kSli
 KeyText& add_setup(KeyText& key, const MacroSetup& setup, std::int64_t sample) {
   // Every member: one more does not compile until it is named here, and part of the key or known to change nothing.
   const auto& [spec, samples, twins, given, kept_states, bands, estimator, law_increments, noise_samples, assumed,
-               start_stress, said] = setup;
+               start_stress, density, said] = setup;
   return key.add(sample < noise_samples).add(sample == 0 ? kept_states : 0);
 }
 

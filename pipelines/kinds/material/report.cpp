@@ -326,6 +326,7 @@ std::vector<HeadLine> lines_of(const RunData& run) {
         format_count(v.grains), format_number(1e-6 * modulus), v.friction,
         v.rolling_friction ? fmt::format(", mu_r = {:g}", *v.rolling_friction) : "", format_number(v.size_ratio, 3),
         format_with_error(v.solid_fraction_start->mean, v.solid_fraction_start->error));
+    if (v.runs.density) text += "; " + density_text(*v.runs.density);
     if (last.axial_end)
       text += fmt::format(", axial stress {} E at the end of {}",
                           format_with_error(last.axial_end->mean / modulus, last.axial_end->error / modulus),

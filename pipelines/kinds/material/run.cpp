@@ -51,6 +51,8 @@ Packings packings_of(const MaterialVariant& v, const Run& run) {
     auto packings = std::make_shared<const std::vector<MacroPacking>>(prepare_packings(v.setup, run, file));
     if (v.setup.spec.preparation != Preparation::lammps) save_packings(*packings, run, file);
     return packings;
+  } catch (const DensityNotReached&) {  // says what to do
+    throw;
   } catch (const UnusableResult& e) {
     throw UnusableResult(std::string(e.what()) +
                          "; more preparation_passes, a larger preparation_tolerance or another seed may do");
@@ -108,7 +110,10 @@ VariantResult run_variant(const MaterialScene& scene, const MaterialVariant& v,
   const std::string states = file_of(v.name, "states_material");
   r.curves = lammps ? run_engines(runs, {}, run, states, outcomes_of_lammps(scene, v, *lammps, run, packings))
                     : kept_tests(runs, run, [&] { return run_engines(runs, {no_soft_laws()}, run, states); });
-  for (MacroCurve& c : r.curves) c.law = {};
+  for (std::size_t k = 0; k < r.curves.size(); ++k) {
+    r.curves[k].law = {};
+    r.curves[k].density = packings[k].density;  // a kept test may be of another target that the same packing met
+  }
   save_macro(r.curves, run.path(r.file), run.provenance);
   return r;
 }
@@ -324,6 +329,7 @@ std::string console_summary(const MaterialSummary& s) {
       text += fmt::format(", solid fraction {} at the start",
                           with_error(*v.solid_fraction_start, {.value = {4, true}, .error = {4, true}}));
     text += "\n";
+    if (v.runs.density) text += "  " + density_text(*v.runs.density) + "\n";
     for (const StageMeans& m : v.runs.stages) {
       if (m.axial_end && m.ratio_end)
         text += fmt::format("  {}: axial stress {:.4g} E, lateral {:.4g} E, q/p {:.3f}\n", m.record.name,

@@ -256,8 +256,18 @@ class Loadings {
   std::vector<std::string> names_;
 };
 
+void read_target(const SceneTable& t, MacroSetup& setup, bool densities) {
+  if (densities)
+    read_density(t, setup);
+  else
+    t.refuse(kDensityKeys,
+             "models are prepared as the material is, by its preparation and compaction_mu: a target "
+             "goes with kind = \"material\", which says the compaction_mu that meets it");
+}
+
 /// Keys of all tables of the scene, in one.
-MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const MacroSetup& base, bool valid) {
+MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const MacroSetup& base, bool valid,
+                             bool densities) {
   MaterialVariant v{read_variant_name(t), base};
   MacroSpec& spec = v.setup.spec;
   if (!root.tables("constituent").empty())
@@ -269,6 +279,8 @@ MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const 
   read_grains(t, spec);
   read_finer_preparation(t, v.setup);
   require_own_preparation(t, spec);
+  read_target(t, v.setup, densities);
+  require_density(t, v.setup);
   read_test(t, spec);
   read_part_stages(root, t, spec);
   v.setup.samples = t.count(kSamplesKey, 1, 10000, v.setup.samples);
@@ -310,15 +322,17 @@ void refuse_idle_span(const SceneTable& equation, const MaterialScene& scene) {
 
 }  // namespace
 
-MaterialScene read_material(const SceneTable& root, bool mixed) {
+MaterialScene read_material(const SceneTable& root, bool alone) {
   MaterialScene out;
   out.title = root.text(kTitleKey, "");
   out.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
   MacroSetup base = material_defaults();
   std::vector<Constituent> constituents;
-  read_material_tables(root, base, mixed ? &constituents : nullptr);
+  read_material_tables(root, base, alone ? &constituents : nullptr);
   const SceneTable grains = root.table("grains");
   if (!constituents.empty() && !root.has_errors()) take_sizes(base.spec, mixed_sizes(constituents));
+  const SceneTable packing = root.table_or_empty("packing");
+  read_target(packing, base, alone);
   read_splits(grains, base.spec);
   read_stages(root, root.table_or_empty("test"), base.spec);
   base.samples = root.count(kSamplesKey, 1, 10000, base.samples);
@@ -341,7 +355,7 @@ MaterialScene read_material(const SceneTable& root, bool mixed) {
                    "table names, and `[[variant.stage]]` for its stages"});
   std::vector<std::vector<std::size_t>> under;
   for (const SceneTable& t : variants) {
-    const MaterialVariant v = read_variant(root, t, base, valid);
+    const MaterialVariant v = read_variant(root, t, base, valid, alone);
     if (!names.insert(v.name).second) t.add_error("name", "is used twice");
     const std::size_t first = out.variants.size();
     under.push_back(loadings.of_variant(t));
@@ -349,6 +363,7 @@ MaterialScene read_material(const SceneTable& root, bool mixed) {
     if (!root.has_errors()) require_room(t, out, first);
   }
   if (variants.empty()) {
+    require_density(packing, base);
     if (!root.has_errors()) require_material_memory(grains, base);
     add({kMaterialEngine, base}, loadings.all(), true);
     if (!root.has_errors()) require_room(grains, out, 0);
@@ -464,6 +479,7 @@ std::vector<Property> properties_of_packings(const MaterialVariant& v) {
           {"first_pressure", number(p.first_pressure)},
           {"preparation_tolerance", number(p.tolerance)},
           {"preparation_passes", std::to_string(p.max_passes)},
+          {"target solid fraction", v.setup.density ? number(v.setup.density->solid_fraction(s.density)) : "none"},
           {"sizes of", whole_sizes(s)}};
 }
 

@@ -47,9 +47,9 @@ std::optional<double> exponent_of(const MacroSpec& spec);
 /// Refuses samples that do not fit into memory, at `count` of this table. Throws InputError.
 void require_material_memory(const SceneTable& grains, const MacroSetup& setup);
 
-/// All tables but those of other kinds that hold materials too, which read theirs beside it. `mixed`: whether
-/// [[constituent]] are among them. Throws InputError, IoError.
-MaterialScene read_material(const SceneTable& root, bool mixed = false);
+/// All tables but those of other kinds that hold materials too, which read theirs beside it. `alone`: whether it is a
+/// material and nothing else, which may have [[constituent]] and a target density. Throws InputError, IoError.
+MaterialScene read_material(const SceneTable& root, bool alone);
 
 /// Reads the whole scene. Throws InputError, IoError.
 MaterialScene read_material_scene(const Scene& scene);

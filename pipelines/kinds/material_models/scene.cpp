@@ -105,7 +105,7 @@ MaterialModelsScene read_material_models_scene(const Scene& scene) {
   return scene.read([&](const SceneTable& root) {
     (void)root.choice(kKindKey, {"material-models"});
     MaterialModelsScene out;
-    out.material = read_material(root);
+    out.material = read_material(root, false);
     if (root.has("blind"))
       out.blind =
           root.texts({"blind", "names of variants that the laws were not measured on; they have tables of their own"});

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/text.h"
 #include "macrosim/test_protocol.h"
-#include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/material/run.h"
 #include "pipelines/kinds/material_law/fines_in_cells.h"
 #include "pipelines/kinds/recipe/run.h"

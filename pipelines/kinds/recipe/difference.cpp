@@ -85,7 +85,12 @@ class RecipePair {
 
 PairedNumber RecipePair::number(const std::string& name, const Estimate& a, const Estimate& b, const OnsetPair& pair,
                                 const NumberOf& of_a, const NumberOf& of_b, const std::vector<ErrorPart>& more) const {
-  return number_of(name, a, b, onsets_.difference(a.value - b.value, pair, of_a, of_b, more), onsets_.same());
+  PairedNumber out =
+      number_of(name, a, b, onsets_.difference(a.value - b.value, pair, of_a, of_b, more), onsets_.same());
+  if (std::isfinite(out.error)) return out;
+  if (const double share = onsets_.undefined_share(pair, of_a, of_b); share > kMostUndefined)
+    out.unknown = fmt::format("{:.0f} % of the replicates do not go through these stresses", 100.0 * share);
+  return out;
 }
 
 /// Whether one packing stands for the lateral stress of both.

@@ -23,6 +23,12 @@ double missed_by(const MixRun& run) {
   return check->measured.value > check->predicted.onset.high ? check->outside : -check->outside;
 }
 
+double share_not_finite(const std::vector<double>& values) {
+  if (values.empty()) return 0.0;
+  const auto finite = std::ranges::count_if(values, [](double v) { return std::isfinite(v); });
+  return 1.0 - static_cast<double>(finite) / static_cast<double>(values.size());
+}
+
 OnsetWays measured_ways(const StateFit& fit, const StateGroup& group) {
   OnsetWays out;
   out.value.fill(group.onset.value);
@@ -98,20 +104,33 @@ double PairedOnsets::value(const OnsetPair& pair, bool of_a, const NumberOf& num
   return number((of_a ? pair.a : pair.b).value[kJoinedWays - 1], fit.modulus.value, fit.exponent.value);
 }
 
+std::vector<double> PairedOnsets::replicates_of(const OnsetPair& pair, const NumberOf& of_a, const NumberOf& of_b,
+                                                std::size_t way) const {
+  const auto drawn = [way](const StateFit& fit, const NumberOf& number, const OnsetWays& ways, std::size_t r) {
+    return number(ways.replicates[way][r], std::exp(fit.replicates[r][0]), fit.replicates[r][1]);
+  };
+  std::vector<double> out;
+  for (std::size_t r = 0; r < pair.a.replicates[way].size(); ++r)
+    out.push_back(drawn(fits_.a, of_a, pair.a, r) - drawn(fits_.b, of_b, pair.b, r));
+  return out;
+}
+
+double PairedOnsets::undefined_share(const OnsetPair& pair, const NumberOf& of_a, const NumberOf& of_b) const {
+  double most = 0.0;
+  for (std::size_t w = 0; w < kJoinedWays; ++w)
+    most = std::max(most, share_not_finite(replicates_of(pair, of_a, of_b, w)));
+  return most;
+}
+
 Estimate PairedOnsets::difference(double difference, const OnsetPair& pair, const NumberOf& of_a, const NumberOf& of_b,
                                   const std::vector<ErrorPart>& more) const {
   const auto at = [](const StateFit& fit, const NumberOf& number, double onset) {
     return number(onset, fit.modulus.value, fit.exponent.value);
   };
-  const auto drawn = [](const StateFit& fit, const NumberOf& number, const OnsetWays& ways, std::size_t w,
-                        std::size_t r) {
-    return number(ways.replicates[w][r], std::exp(fit.replicates[r][0]), fit.replicates[r][1]);
-  };
   Estimate out{difference, 0.0, difference, difference};
   for (std::size_t w = 0; w < kJoinedWays; ++w) {
-    std::vector<double> scatter;
-    for (std::size_t r = 0; r < pair.a.replicates[w].size(); ++r)
-      scatter.push_back(drawn(fits_.a, of_a, pair.a, w, r) - drawn(fits_.b, of_b, pair.b, w, r));
+    const std::vector<double> scatter = replicates_of(pair, of_a, of_b, w);
+    if (share_not_finite(scatter) > kMostUndefined) return {difference, kInfinity, -kInfinity, kInfinity};
     const double b = at(fits_.b, of_b, pair.b.value[w]);
     std::vector<ErrorPart> parts = more;
     parts.push_back({finite_mean(scatter).deviation, fits_.degrees});

@@ -35,6 +35,9 @@ struct OnsetPair {
   double widen = 0.0;          ///< by how much the checks of both miss their intervals differently
 };
 
+/// A scatter is not known when more of its replicates than this share have no number: what is left is a choice of them.
+inline constexpr double kMostUndefined = 0.1;
+
 /// Onsets of all levels of two recipes with the same numbers of levels. What the error of a difference consists of:
 /// - scatter of packings: replicates_together(), those that are in both count once;
 /// - rods: how far packings lie off them changes from mix to mix, by neighbour_slope() of these distances times
@@ -54,9 +57,13 @@ class PairedOnsets {
   /// What the value of a mix gives.
   [[nodiscard]] double value(const OnsetPair& pair, bool of_a, const NumberOf& number) const;
   /// `difference`, of the values of the runs, with an error: the interval holds that about itself and those about the
-  /// differences by levels and by rods. Each adds scatter, model and `more` in squares (with_error_parts).
+  /// differences by levels and by rods. Each adds scatter, model and `more` in squares (with_error_parts). Without an
+  /// error where more than kMostUndefined of the replicates have no number.
   [[nodiscard]] Estimate difference(double difference, const OnsetPair& pair, const NumberOf& of_a,
                                     const NumberOf& of_b, const std::vector<ErrorPart>& more) const;
+
+  /// Share of the replicates of a difference for which a number is not defined, in the way that has most of them.
+  [[nodiscard]] double undefined_share(const OnsetPair& pair, const NumberOf& of_a, const NumberOf& of_b) const;
 
   /// Share of the solid volume of these levels that has another size in the other mix.
   [[nodiscard]] double moved(std::size_t first, std::size_t count) const;
@@ -68,6 +75,9 @@ class PairedOnsets {
   [[nodiscard]] const PairedFits& fits() const { return fits_; }
 
  private:
+  /// Differences of a number, replicate by replicate, in one of the ways; NaN where it is not defined.
+  [[nodiscard]] std::vector<double> replicates_of(const OnsetPair& pair, const NumberOf& of_a, const NumberOf& of_b,
+                                                  std::size_t way) const;
   [[nodiscard]] OnsetWays ways_of(const LevelForms& forms, double share_of_rods, std::size_t first,
                                   std::size_t count) const;
   [[nodiscard]] double widen() const;

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/data/law_words.h"
 #include "common/io/text_file.h"
-#include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/material_law/scene.h"
 #include "pipelines/kinds/recipe/compressible_model.h"

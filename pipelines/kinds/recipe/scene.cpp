@@ -263,6 +263,9 @@ RecipeScene read_recipe_scene(const Scene& scene) {
     MacroSetup base = recipe_defaults();
     read_material_tables(root, base, &out.constituents);
     out.youngs_modulus = base.spec.youngs_modulus;
+    root.table_or_empty("packing").refuse(kDensityKeys,
+                                          "the packings that are measured differ in density, by their sizes: give "
+                                          "preparation or compaction_mu; a target goes with kind = \"material\"");
     const SceneTable grains = root.table("grains");
     if (base.spec.test != MacroTest::oedometric)
       root.table("test").add_error("test", "levels are measured in oedometric compression (and one of them in shear)");

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "common/core/text.h"
 #include "macrosim/test_protocol.h"
-#include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/recipe/stages.h"
 
