@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/data/fields.h"
 #include "common/data/law_card.h"
 #include "common/data/multi_contact_measurements.h"
 
@@ -141,6 +142,17 @@ struct PriorNumber {
   double own_weight = 0.0;
 };
 
+void fields(auto&& visit, Of<PriorNumber> auto& n) {
+  visit("name", n.name);
+  visit("own", n.own);
+  visit("own_error", n.own_error);
+  visit("library", n.library);
+  visit("library_error", n.library_error);
+  visit("value", n.value);
+  visit("error", n.error);
+  visit("own_weight", n.own_weight);
+}
+
 /// How the prediction of a library came into the law of an entry.
 struct LawPrior {
   std::string library;      ///< file of the library
@@ -148,6 +160,13 @@ struct LawPrior {
   double own_factor = 1.0;  ///< by which errors of own packings are widened for what the form does not give back
   std::vector<PriorNumber> numbers;
 };
+
+void fields(auto&& visit, Of<LawPrior> auto& p) {
+  visit("library", p.library);
+  visit("distance", p.distance);
+  visit("own_factor", p.own_factor);
+  visit("numbers", p.numbers);
+}
 
 /// All laws of one kind of packing.
 struct LawTableEntry {
