@@ -9,7 +9,6 @@
 #include "common/core/error.h"
 #include "common/core/text.h"
 #include "common/data/multi_contact_replicates.h"
-#include "pipelines/law/law_library_numbers.h"
 
 namespace softgrain {
 
@@ -37,13 +36,20 @@ LawLibrary library_at(const SceneTable& t, const SceneTable& root, const std::st
   }
 }
 
+/// The library asked for a soft particle. Throws InputError where it does not reach it.
+LibraryAnswer ask_for(const LawLibrary& library, const SoftParticleSpec& spec, double solid_fraction) {
+  if (const std::string other = other_shell_text(library, spec); !other.empty())
+    throw InputError("law library: it holds no such soft particles: " + other);
+  return ask_library(library, {spec.friction, spec.exponent, spec.polydispersity, solid_fraction});
+}
+
 /// Own packings of an entry and the library. Throws InputError where the library does not reach them.
 LawTableEntry combined_with(const LawLibrary& library, const LawTableEntry& own, CorrectedAnswer& both) {
   constexpr int kDraws = 64;  // as many as a macro scene may want
   const MultiContactLaw* law = own.find(LawForm::isotropic);
   if (law == nullptr || !(has_numbers(law->status) || law->status == LawStatus::inaccurate))
     throw InputError("the packings gave no isotropic law" + (law == nullptr ? std::string() : ": " + law->reason));
-  both = corrected(library, ask_library(library, library_point_of(own)), own);
+  both = corrected(library, ask_for(library, own.spec, own.solid_fraction), own);
   return combined_entry(both, own, std::max(kDraws, static_cast<int>(law->replicates.size())));
 }
 
@@ -71,8 +77,8 @@ std::string contradiction_warning(const CorrectedAnswer& both) {
 
 }  // namespace
 
-std::optional<LawLibrary> read_law_prior(const SceneTable& root, const SoftParticleSpec& spec,
-                                         const SceneTable& calibrate, const MultiContactFitOptions& fit) {
+std::optional<LawLibrary> read_law_prior(const SceneTable& root, const SceneTable& calibrate,
+                                         const MultiContactFitOptions& fit) {
   if (!root.has("prior")) return std::nullopt;
   const SceneTable t = root.table({"prior", "library whose prediction the packings of the scene correct"});
   LawLibrary out = library_at(t, root,
@@ -80,8 +86,6 @@ std::optional<LawLibrary> read_law_prior(const SceneTable& root, const SoftParti
                                       "library of law tables: `shipped` is that of the program; else its file, or its "
                                       "folder (path relative to the scene)"},
                                      kShippedLibrary));
-  if (const std::string other = other_shell_text(out, spec); !root.has_errors() && !other.empty())
-    t.add_error("library", "holds no soft particles of this shell: " + other);
   if (fit.best && *fit.best != LawForm::isotropic)
     calibrate.add_error("best", "a library holds isotropic laws alone: \"isotropic\", or leave [prior] out");
   if (fit.replicates < static_cast<int>(kEnoughReplicates))
@@ -94,8 +98,7 @@ void check_law_prior(const std::optional<LawLibrary>& prior, const SoftParticleS
                      Findings& out) {
   if (!prior) return;
   try {
-    const LibraryAnswer answer =
-        ask_library(*prior, {spec.friction, spec.exponent, spec.polydispersity, solid_fraction});
+    const LibraryAnswer answer = ask_for(*prior, spec, solid_fraction);
     out.add("prior", {{"library", prior->path}, {"distance", answer.distance}},
             fmt::format("the packings correct a library of {} materials; {}", prior->materials.size(),
                         nearest_text(*prior, answer)));

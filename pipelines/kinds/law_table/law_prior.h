@@ -13,8 +13,8 @@
 namespace softgrain {
 
 /// Reads [prior]; empty: the scene has none. `calibrate`: the table of `fit`, which must suit. Throws InputError.
-std::optional<LawLibrary> read_law_prior(const SceneTable& root, const SoftParticleSpec& spec,
-                                         const SceneTable& calibrate, const MultiContactFitOptions& fit);
+std::optional<LawLibrary> read_law_prior(const SceneTable& root, const SceneTable& calibrate,
+                                         const MultiContactFitOptions& fit);
 
 /// Says how near the library is to a packing of this solid fraction, and warns where it does not reach it.
 void check_law_prior(const std::optional<LawLibrary>& prior, const SoftParticleSpec& spec, double solid_fraction,

@@ -68,7 +68,7 @@ LawTableSetup read_law_table(const Scene& scene) {
         t.add_error("packings", "fewer than calibrate.min_packings: there would be no fit");
     }
     require_law_of_multi_contact(root, out.multi_contact, calibrate, out.fit);
-    out.prior = read_law_prior(root, out.multi_contact.spec, calibrate, out.fit);
+    out.prior = read_law_prior(root, calibrate, out.fit);
     return out;
   });
 }

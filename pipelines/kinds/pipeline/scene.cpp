@@ -27,7 +27,7 @@ MeasuredTable read_measured_table(const SceneTable& root) {
   require_law_of_multi_contact(root, out.multi_contact, calibrate, out.fit);
   if (out.fit.best == LawForm::pair)
     calibrate.add_error("best", "the pair law is measured anyway: \"isotropic\" or \"directional\"");
-  out.prior = read_law_prior(root, out.multi_contact.spec, calibrate, out.fit);
+  out.prior = read_law_prior(root, calibrate, out.fit);
   return out;
 }
 
