@@ -21,6 +21,7 @@
 #include "pipelines/law/law_draws.h"
 #include "pipelines/law/law_library.h"
 #include "pipelines/law/law_library_numbers.h"
+#include "tests/support/every_kind.h"
 #include "tests/support/synthetic_library.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/tiny_law_table.h"
@@ -334,16 +335,18 @@ TEST(LawLibraryOwn, ScenesReadTheLibrary) {
       << "a folder";
   const auto refused = [&](const std::string& more) { return refusal_of([&] { (void)read(more); }); };
   expect_said(refused("[calibrate]\nmin_packings = 2\n[prior]\nlibrary = \"none.toml\"\n"), "there is no such file");
-  expect_said(refused("[calibrate]\nmin_packings = 2\n[prior]\nlibrary = \"scene.toml\"\n"), "scene.toml");
+  write_text_atomic(directory.path() + "/other.toml", "title = \"a note\"\n");
+  expect_said(refused("[calibrate]\nmin_packings = 2\n[prior]\nlibrary = \"other.toml\"\n"),
+              "is no library of law tables");
   expect_said(refused("[calibrate]\nmin_packings = 2\nbest = \"pair\"\n" + here), "a library holds isotropic laws");
   expect_said(refused("[calibrate]\nmin_packings = 2\nreplicates = 5\n" + here), "[prior] needs 10 at least");
-  expect_said(refused("[calibrate]\nmin_packings = 2\n[prior]\nlibary = \".\"\n"), "libary");
+  expect_said(refused("[calibrate]\nmin_packings = 2\n" + here + "libary = \".\"\n"), "libary");
 }
 
 TEST(LawLibraryOwn, APipelineNeedsPackingsOfManyNeighbours) {
-  const std::string text = "kind = \"pipeline\"\n[prior]\nlibrary = \"shipped\"\n[macro]\nbodies = 20\n";
+  const std::string text = test::starter_scene("pipeline") + "[prior]\nlibrary = \"shipped\"\n";
   expect_said(refusal_of([&] { (void)read_pipeline_setup(Scene::parse(text, "scene.toml")); }),
-              "goes with [[configuration]]");
+              "goes with [[configuration]]: packings measured with many neighbours correct a library");
 }
 
 }  // namespace
