@@ -180,10 +180,22 @@ double noise(const MultiContactStates& c) {
   return all > 0.0 ? std::sqrt(error / all) : 0.0;
 }
 
-void judge(MultiContactLaw& law, const FormFit& fit, const std::vector<MultiContactStates>& states,
-           double discrepancy) {
+/// Means over the configurations of the fit, and over those left out of it.
+void set_mean_errors(MultiContactLaw& law) {
   double sums[2] = {0.0, 0.0};
   int counts[2] = {0, 0};
+  for (const ConfigurationError& e : law.errors) {
+    if (e.use == MultiContactUse::repeated || e.use == MultiContactUse::apart) continue;
+    const bool out = e.use == MultiContactUse::predicted;
+    sums[out ? 1 : 0] += e.error;
+    ++counts[out ? 1 : 0];
+  }
+  if (counts[0] > 0) law.error_fitted = sums[0] / counts[0];
+  if (counts[1] > 0) law.error_held_out = sums[1] / counts[1];
+}
+
+void judge(MultiContactLaw& law, const FormFit& fit, const std::vector<MultiContactStates>& states,
+           double discrepancy) {
   for (const MultiContactStates& c : states) {
     if (c.states.empty() || loading_states(c).empty() || !(c.largest_force() > 0.0)) continue;
     ConfigurationError e{c.configuration->name,   c.use,    multi_contact_error(fit.model, c),
@@ -194,13 +206,8 @@ void judge(MultiContactLaw& law, const FormFit& fit, const std::vector<MultiCont
     if (c.use != MultiContactUse::repeated && foreign) e.use = MultiContactUse::apart;
     if (e.use == MultiContactUse::predicted) e.offset = form_offset(fit.model, c, discrepancy);
     law.errors.push_back(e);
-    if (e.use == MultiContactUse::repeated || e.use == MultiContactUse::apart) continue;
-    const bool out = c.use == MultiContactUse::predicted;
-    sums[out ? 1 : 0] += e.error;
-    ++counts[out ? 1 : 0];
   }
-  if (counts[0] > 0) law.error_fitted = sums[0] / counts[0];
-  if (counts[1] > 0) law.error_held_out = sums[1] / counts[1];
+  set_mean_errors(law);
 }
 
 /// Leave one loading of planes, and around free shells of any neighbours, out of those that may be fitted, fit the
@@ -352,6 +359,21 @@ void describe_range(const std::vector<MultiContactStates>& states, const MultiCo
 }
 
 }  // namespace
+
+void judge_again(MultiContactLaw& law, const MultiContactMeasurements& measured, double discrepancy) {
+  const MultiContactMeasurements data = mean_over_orientations(measured);
+  const MultiContactModel model = multi_contact_model(law);
+  for (const MultiContactStates& c : average_states(data)) {
+    if (c.states.empty() || loading_states(c).empty()) continue;
+    for (ConfigurationError& e : law.errors) {
+      if (e.name != c.configuration->name) continue;
+      e.error = multi_contact_error(model, c);
+      e.end_ratio = end_ratio(model, c);
+      if (e.offset) e.offset = form_offset(model, c, discrepancy);
+    }
+  }
+  set_mean_errors(law);
+}
 
 LawTableEntry fit_multi_contact_laws(const MultiContactMeasurements& measured, const MultiContactFitOptions& options) {
   const MultiContactMeasurements data = mean_over_orientations(measured);

@@ -30,6 +30,10 @@ struct MultiContactFitOptions {
 /// is no configuration with one plane, or too few packings.
 LawTableEntry fit_multi_contact_laws(const MultiContactMeasurements& data, const MultiContactFitOptions& options = {});
 
+/// Says again how far off a law is on the configurations of its MultiContactLaw::errors that were measured, after its
+/// numbers have been changed; errors of other configurations stay. `discrepancy`: as in MultiContactFitOptions.
+void judge_again(MultiContactLaw& law, const MultiContactMeasurements& measured, double discrepancy);
+
 // One form of law fitted to averaged states, and fitted again to packings drawn with replacement.
 
 /// The configurations that a fit takes.

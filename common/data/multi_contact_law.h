@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/data/fields.h"
 #include "common/data/law_card.h"
 #include "common/data/multi_contact_measurements.h"
 
@@ -116,6 +117,7 @@ struct SlideLaw {
 enum class TableSource {
   measured,   ///< packings
   library,    ///< a library of law tables, for a material that was not measured
+  combined,   ///< packings and a library together, LawTableEntry::prior
   press_test  ///< a library, by a press test: what is inside the soft particle is not known, LawTableEntry::spec lacks
               ///< it
 };
@@ -123,7 +125,48 @@ enum class TableSource {
 template <>
 inline constexpr auto enum_names<TableSource> = enum_name_list<TableSource>({{TableSource::measured, "measured"},
                                                                              {TableSource::library, "library"},
+                                                                             {TableSource::combined,
+                                                                              "packings and library"},
                                                                              {TableSource::press_test, "press test"}});
+
+/// What own packings and a library say of one number of a law, and both together. NaN: not measured, or not known.
+struct PriorNumber {
+  std::string name;  ///< as in a library of law tables
+  double own = std::numeric_limits<double>::quiet_NaN();
+  double own_error = std::numeric_limits<double>::quiet_NaN();
+  double library = std::numeric_limits<double>::quiet_NaN();
+  double library_error = std::numeric_limits<double>::quiet_NaN();
+  double value = 0.0;
+  double error = 0.0;
+  /// Share of the library's variance that own packings remove: for independent numbers their weight in the mean.
+  double own_weight = 0.0;
+};
+
+void fields(auto&& visit, Of<PriorNumber> auto& n) {
+  visit("name", n.name);
+  visit("own", n.own);
+  visit("own_error", n.own_error);
+  visit("library", n.library);
+  visit("library_error", n.library_error);
+  visit("value", n.value);
+  visit("error", n.error);
+  visit("own_weight", n.own_weight);
+}
+
+/// How the prediction of a library came into the law of an entry.
+struct LawPrior {
+  std::string library;      ///< file of the library
+  double distance = 0.0;    ///< to the nearest measured material, LibraryAnswer::distance
+  double own_factor = 1.0;  ///< by which errors of own packings are widened for what the form does not give back
+  std::vector<PriorNumber> numbers;
+};
+
+void fields(auto&& visit, Of<LawPrior> auto& p) {
+  visit("library", p.library);
+  visit("distance", p.distance);
+  visit("own_factor", p.own_factor);
+  visit("numbers", p.numbers);
+}
 
 /// All laws of one kind of packing.
 struct LawTableEntry {
@@ -145,8 +188,9 @@ struct LawTableEntry {
   Estimate unloading;  ///< s of the unloading branch of planes
   bool unloading_measured = true;
   std::vector<MultiContactLaw> laws;
-  LawForm best = LawForm::pair;  ///< the form that was asked for, or that cross-validation prefers among good ones;
-                                 ///< what is held out has no say
+  std::optional<LawPrior> prior{};  ///< of source `combined`
+  LawForm best = LawForm::pair;     ///< the form that was asked for, or that cross-validation prefers among good ones;
+                                    ///< what is held out has no say
 
   [[nodiscard]] const MultiContactLaw* find(LawForm form) const;
 

@@ -83,6 +83,24 @@ void write_law(Out out, const MultiContactLaw& law) {
   }
 }
 
+/// One number a line, without what is not known.
+void write_prior(Out out, const LawPrior& prior) {
+  fmt::format_to(out,
+                 "\n[entry.prior]  # the isotropic law: own packings and a library together, as normal distributions\n"
+                 "library = {}\ndistance = {}  # to the nearest measured material, 1: the range of one variable\n"
+                 "own_factor = {}  # own errors are widened by it: the form is off by more than packings scatter\n"
+                 "number = [\n",
+                 quoted(prior.library), real(prior.distance), real(prior.own_factor));
+  for (const PriorNumber& n : prior.numbers) {
+    fmt::format_to(out, "  {{ name = {}", quoted(n.name));
+    if (std::isfinite(n.own)) fmt::format_to(out, ", own = {:.7g}, own_error = {:.7g}", n.own, n.own_error);
+    if (std::isfinite(n.library))
+      fmt::format_to(out, ", library = {:.7g}, library_error = {:.7g}", n.library, n.library_error);
+    fmt::format_to(out, ", value = {:.7g}, error = {:.7g}, own_weight = {:.4g} }},\n", n.value, n.error, n.own_weight);
+  }
+  fmt::format_to(out, "]\n");
+}
+
 void write_entry(Out out, const LawTableEntry& e) {
   fmt::format_to(out, "\n[[entry]]\nsolid_fraction = {}\nsolid_fraction_error = {}\npackings = {}\n",
                  real(e.solid_fraction), real(e.solid_fraction_error), e.packings);
@@ -116,6 +134,7 @@ void write_entry(Out out, const LawTableEntry& e) {
       fmt::format_to(out, "unloading = {}  # s of the unloading branch\n", estimate_text(law.unloading));
   }
   fmt::format_to(out, "\n[entry.measurement]\n{}", spec_text(e.spec));
+  if (e.prior) write_prior(out, *e.prior);
   for (const MultiContactLaw& law : e.laws) write_law(out, law);
 }
 
@@ -184,6 +203,28 @@ MultiContactLaw read_law(const SceneTable& t) {
   return law;
 }
 
+LawPrior read_prior(const SceneTable& t) {
+  LawPrior out;
+  out.library = t.text("library");
+  out.distance = t.number("distance", Unit::none, Range::not_negative());
+  out.own_factor = t.number("own_factor", Unit::none, Range{1.0, kInfinity, false, true});
+  for (const SceneTable& n : t.tables("number")) {
+    PriorNumber one;
+    one.name = n.text("name");
+    const auto known = [&](const char* value, const char* error, double& to, double& to_error) {
+      if (!n.has(value)) return;
+      to = n.number(value, Unit::none);
+      to_error = n.number(error, Unit::none, Range::not_negative());
+    };
+    known("own", "own_error", one.own, one.own_error);
+    known("library", "library_error", one.library, one.library_error);
+    known("value", "error", one.value, one.error);
+    one.own_weight = n.number("own_weight", Unit::none, Range::closed(0.0, 1.0));
+    out.numbers.push_back(std::move(one));
+  }
+  return out;
+}
+
 LawTableEntry read_entry(const SceneTable& t) {
   LawTableEntry e;
   e.solid_fraction = t.number("solid_fraction", Unit::none, Range{0.0, 1.0, true, false});
@@ -217,6 +258,7 @@ LawTableEntry read_entry(const SceneTable& t) {
   e.unloading_measured = t.flag("unloading_measured", std::isfinite(e.unloading.standard_error));
   e.source = t.choice<TableSource>("source", TableSource::measured);
   e.spec = read_spec_text(t.table("measurement"), e.source == TableSource::press_test);
+  if (t.has("prior")) e.prior = read_prior(t.table("prior"));
   for (const SceneTable& law : t.tables("law")) e.laws.push_back(read_law(law));
   if (e.find(e.best) == nullptr) t.throw_error("best", "is no form that the entry has");
   return e;

@@ -143,18 +143,29 @@ LibraryMatter matter_of(const LawOptions& o) {
   return out;
 }
 
-/// Corrected by own packings, where there are some.
-LibraryAnswer answer_of(const LawOptions& o, const LawLibrary& library, std::vector<std::string>& remarks) {
+/// What the library says of a material, corrected by own packings where there are some.
+struct MaterialLaw {
+  LibraryAnswer answer;
+  LawTable table;
+};
+
+MaterialLaw material_law(const LawOptions& o, const LawLibrary& library, const LibraryMatter& matter,
+                         std::vector<std::string>& remarks) {
   const LibraryPoint at{given(o, "--mu", o.friction, 0.0, 10.0), given(o, "--exponent", o.exponent, 0.0, 50.0),
                         given(o, "--ratio", o.ratio, 1.0, 1e6),
                         given(o, "--solid-fraction", o.solid_fraction, 0.0, 1.0)};
   LibraryAnswer answer = ask_library(library, at);
   remarks.push_back(nearest_text(library, answer));
-  if (o.own.empty()) return answer;
+  const auto draws = static_cast<int>(o.draws);
+  if (o.own.empty()) return {answer, table_of(library, answer, matter, draws)};
   FittedLaw own = load_law(o.own);
   if (own.table() == nullptr) throw InputError("law get: --own " + o.own + " is no law table");
   read_refits(own);
-  return corrected(library, answer, own_entry(library, at, *own.table(), "law get: --own " + o.own), remarks);
+  CorrectedAnswer both = corrected(library, answer, own_entry(library, at, *own.table(), "law get: --own " + o.own));
+  remarks.push_back(both.remark);
+  if (const std::string text = contradictions_text(both); !text.empty()) remarks.push_back(text);
+  LawTable table = table_of(both, matter, draws);
+  return {std::move(both.answer), std::move(table)};
 }
 
 /// The law of all neighbours that goes with a press test, and what was said of it.
@@ -233,9 +244,10 @@ ExitStatus get_law(const LawOptions& o) {
     table = std::move(law.table);
     remarks = std::move(law.remarks);
   } else {
-    answer = answer_of(o, library, remarks);
+    MaterialLaw law = material_law(o, library, matter, remarks);
+    answer = std::move(law.answer);
+    table = std::move(law.table);
     if (const std::string means = means_text(answer); !means.empty()) remarks.push_back(means);
-    table = table_of(library, answer, matter, static_cast<int>(o.draws));
   }
   if (!o.out.empty()) save_law_table(table, o.out, provenance_of(o));
   if (o.json)

@@ -119,8 +119,10 @@ LawDraws table_draws(const LawSources& sources, const NamedLaws& named, const Ma
       out.draws.back()[k] = out.numbers[k] + factor * (out.draws.back()[k] - out.numbers[k]);
   }
   const bool measured = entry.source == TableSource::measured;
-  out.origin =
-      fmt::format("{} {}", count, measured ? "refits to packings drawn with replacement" : "draws of a library");
+  const char* from = measured                                ? "refits to packings drawn with replacement"
+                     : entry.source == TableSource::combined ? "draws of packings and a library together"
+                                                             : "draws of a library";
+  out.origin = fmt::format("{} {}", count, from);
   out.discrepancy = form_discrepancy(best);
   out.discrepancy_origin =
       measured ? "configurations that the fit did not see"

@@ -111,6 +111,7 @@ json law_json(const LawTable& table) {
     one["slides"] = {
         {"plane", slide_json(e.slide_plane)}, {"solid", slide_json(e.slide_solid)}, {"soft", slide_json(e.slide_soft)}};
     one["laws"] = json::array();
+    if (e.prior) one["prior"] = json_of(*e.prior);
     for (const MultiContactLaw& law : e.laws) one["laws"].push_back(multi_contact_json(law));
     out["entries"].push_back(std::move(one));
   }

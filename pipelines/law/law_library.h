@@ -123,6 +123,15 @@ struct LibraryNumber {
   double deviation = 0.0;  ///< of interpolation and measured errors, widened by LibraryCheck::factor
 };
 
+/// What a law was measured on, and how far: of an answer that of the nearest material, and of own packings.
+struct LibraryRange {
+  int packings = 0;
+  double volume_max = 0.0;  ///< this and the others as in LibraryMaterial
+  double overlap_max = 0.0;
+  double grain_overlap_max = 0.0;
+  std::vector<double> partner_overlap_max{};
+};
+
 struct LibraryAnswer {
   LibraryPoint at;  ///< NaN where a press test does not tell
   std::vector<LibraryNumber> numbers;
@@ -131,6 +140,7 @@ struct LibraryAnswer {
   std::size_t nearest = 0;            ///< measured material that is nearest
   double distance = 0.0;              ///< to it: root of the sum of squares over the variables, each over its range
   double solid_fraction_error = 0.0;  ///< standard error of at.solid_fraction, which a press test leaves open
+  LibraryRange range{};
 };
 
 /// By Gaussian processes, one for each number, or mean and scatter, as LawLibrary::checks decide. Throws InputError
@@ -156,17 +166,45 @@ struct LibraryMatter {
 /// The answer as a law table of one entry whose refits are `draws` normal draws, for error bars of macro runs.
 LawTable table_of(const LawLibrary& library, const LibraryAnswer& answer, const LibraryMatter& matter, int draws = 64);
 
+/// In what a soft particle differs from those of a library in ways that no material of it covers: sizes of another law,
+/// another shell; empty: in nothing.
+std::string other_shell_text(const LawLibrary& library, const SoftParticleSpec& spec);
+
 /// The entry of a measured table whose solid fraction is nearest to that of a material of the library. Throws
 /// InputError, with all differences, where the entry is of another material or shell, or its solid fraction is more
 /// than kReachOfPackings away; `source` names the table.
 const LawTableEntry& own_entry(const LawLibrary& library, const LibraryPoint& at, const LawTable& own,
                                const std::string& source);
 
-/// The answer corrected by own packings, see own_entry(), both weighted by their covariances; the error of the form is
-/// that of the own table, where it has configurations that its fit did not see. `remarks`: which packings
-/// they are, and what differs by more than three deviations.
-LibraryAnswer corrected(const LawLibrary& library, const LibraryAnswer& prior, const LawTableEntry& own,
-                        std::vector<std::string>& remarks);
+/// What own packings and a library say together.
+struct CorrectedAnswer {
+  LawLibrary library;    ///< the same with the neighbours that own packings alone have; answers are not asked of it
+  LibraryAnswer answer;  ///< of `library`
+  LawPrior prior;        ///< both answers and the weights, number by number
+  std::vector<std::string> contradicted;  ///< numbers that differ by more than three deviations, and by how many
+  std::string remark;                     ///< which packings they are
+};
+
+/// The answer corrected by own packings, see own_entry(): mean and covariance of the product of two normal
+/// distributions. The covariance of own numbers is that of their refits times own_error_factor() squared, that of the
+/// library its widened deviations with the mean correlations. A neighbour that the library does not have keeps what was
+/// measured. The error of the form is that of the own table, where it has configurations that its fit did not see.
+/// Throws InputError for a table without refits.
+CorrectedAnswer corrected(const LawLibrary& library, const LibraryAnswer& prior, const LawTableEntry& own);
+
+/// By how much refits to other packings understate the errors of a law for what its form does not give back: what it is
+/// off by when a configuration is left out, over the noise of the means; at least 1 (scale factor of Birge 1932).
+double own_error_factor(const MultiContactLaw& law);
+
+/// As above, with what own packings say in LawTableEntry::prior.
+LawTable table_of(const CorrectedAnswer& corrected, const LibraryMatter& matter, int draws = 64);
+
+/// Contradictions as one sentence without an end stop; empty: none.
+std::string contradictions_text(const CorrectedAnswer& answer);
+
+/// The own entry with its isotropic law replaced by the corrected one, which becomes its best, with `draws` normal
+/// draws as refits. Friction, rolling and unloading are the corrected ones. Other forms stay as they were fitted.
+LawTableEntry combined_entry(const CorrectedAnswer& corrected, const LawTableEntry& own, int draws = 64);
 
 /// "mu = 0.5, exponent = 3, ratio = 6, solid fraction = 0.68".
 std::string point_text(const LibraryPoint& at);

@@ -1,10 +1,13 @@
 #include "pipelines/law/law_library_numbers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "calibrate/draws.h"
 #include "common/contact/multi_contact_prediction.h"
+#include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/core/statistics.h"
 #include "common/data/multi_contact_replicates.h"
@@ -153,7 +156,7 @@ std::vector<double> library_numbers(const std::vector<LibraryPartner>& partners,
     double weight = kNotKnown;
     for (std::size_t r = 0; r < law.partners.size(); ++r) {
       const PartnerRow& row = law.partners[r];
-      if (row.kind != partners[k].kind || std::abs(row.ratio - partners[k].ratio) > 1e-6) continue;
+      if (row.kind != partners[k].kind || std::abs(row.ratio - partners[k].ratio) > kSameRatio) continue;
       weight = std::log(numbers[planes + 2 * r]);
       exponent = numbers[planes + 2 * r + 1];
     }
@@ -241,6 +244,41 @@ RefitSpread refit_spread(const std::vector<LibraryPartner>& partners, const LawT
     for (double& x : d) x = std::isfinite(x) ? x : 0.0;
   out.correlations = correlations(draws, size);
   return out;
+}
+
+LibraryPoint library_point_of(const LawTableEntry& entry) {
+  return {entry.spec.friction, entry.spec.exponent, entry.spec.polydispersity, entry.solid_fraction};
+}
+
+OwnNumbers own_numbers(const std::vector<LibraryPartner>& partners, const LawTableEntry& own) {
+  const MultiContactLaw* law = own.find(LawForm::isotropic);
+  if (law == nullptr) throw InputError("law library: the own table has no isotropic law");
+  if (law->replicates.size() < kEnoughReplicates)
+    throw InputError(
+        fmt::format("law library: the own table has {} refits of its isotropic law; {} are needed (the "
+                    ".h5 beside it holds them)",
+                    law->replicates.size(), kEnoughReplicates));
+  const RefitSpread spread = refit_spread(partners, own, *law);
+  OwnNumbers out{library_numbers(partners, *law, multi_contact_numbers(*law), own.spec.poisson_ratio), spread.errors,
+                 spread.correlations};
+  const SideNumbers side = side_numbers(own, *law);
+  out.values.insert(out.values.end(), side.values.begin(), side.values.end());
+  out.errors.insert(out.errors.end(), side.errors.begin(), side.errors.end());
+  return out;
+}
+
+std::vector<double> covariance_of(const std::vector<double>& deviations, const std::vector<double>& correlations) {
+  const std::size_t n = deviations.size();
+  std::vector<double> out(n * n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) out[i * n + j] = correlations[i * n + j] * deviations[i] * deviations[j];
+  return out;
+}
+
+std::vector<double> law_covariance(const LibraryAnswer& answer, std::size_t count) {
+  std::vector<double> deviations;
+  for (std::size_t k = 0; k < count; ++k) deviations.push_back(answer.numbers[k].deviation);
+  return covariance_of(deviations, answer.correlations);
 }
 
 }  // namespace softgrain

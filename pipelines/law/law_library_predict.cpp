@@ -225,6 +225,9 @@ LibraryAnswer answer_at(const LawLibrary& library, const std::vector<LibraryChec
     out.distance = d;
     out.nearest = i;
   }
+  const LibraryMaterial& nearest = library.materials[out.nearest];
+  out.range = {nearest.packings, nearest.volume_max, nearest.overlap_max, nearest.grain_overlap_max,
+               nearest.partner_overlap_max};
   return out;
 }
 

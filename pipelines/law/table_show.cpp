@@ -1,6 +1,8 @@
 // A law table as text for a terminal.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "common/core/text.h"
 #include "common/data/law_words.h"
 #include "pipelines/law/fitted_law.h"
@@ -56,6 +58,19 @@ std::string slides_table(const LawTableEntry& e) {
   add("on solid spheres", e.slide_solid);
   add("on soft ones", e.slide_soft);
   return aligned(rows, 2) + (e.rolls() ? aligned(rolls, 2) : "");
+}
+
+/// What packings and a library say of the numbers that were measured.
+std::string prior_text(const LawTableEntry& e) {
+  if (!e.prior) return "";
+  const auto with_error = [](double value, double error) { return number_text({value, error, 0.0, 0.0}); };
+  Rows rows{{"isotropic law", "packings", "library", "both", "weight of packings [%]"}};
+  for (const PriorNumber& n : e.prior->numbers)
+    if (std::isfinite(n.own))
+      rows.push_back({n.name, with_error(n.own, n.own_error),
+                      std::isfinite(n.library) ? with_error(n.library, n.library_error) : "-",
+                      with_error(n.value, n.error), percent(n.own_weight)});
+  return wrapped("  packings and a library together: " + e.prior->library, 4) + aligned(rows, 2);
 }
 
 /// Forms that are no good say why.
@@ -118,7 +133,7 @@ std::string entry_text(const LawTableEntry& e, bool main, bool utf8) {
               4);
   text += statuses_text(e) + parameters_text(e);
   if (const MultiContactLaw* best = e.find(e.best)) text += partners_text(*best);
-  return text + slides_table(e) + plot_of(e, utf8);
+  return text + prior_text(e) + slides_table(e) + plot_of(e, utf8);
 }
 
 }  // namespace

@@ -297,6 +297,28 @@ TEST(MultiContactFit, ALawFarOffOnWhatWasHeldOutIsInaccurate) {
   EXPECT_EQ(fit_multi_contact_laws(data, options).find(far.best)->status, LawStatus::good);
 }
 
+TEST(MultiContactFit, ALawWithOtherNumbersIsJudgedAgain) {
+  MultiContactOptionsKnown o;
+  o.noise = 0.01;
+  const MultiContactMeasurements data = multi_contact_measurements(known(LawForm::isotropic), arrangements(), o);
+  const MultiContactFitOptions options = quick();
+  const LawTableEntry entry = fit_multi_contact_laws(data, options);
+  const MultiContactLaw& fitted = *entry.find(LawForm::isotropic);
+  MultiContactLaw law = fitted;
+  law.errors.push_back({"of another table", MultiContactUse::apart, 0.3, 1.0, 0.0});
+  judge_again(law, data, options.discrepancy);
+  ASSERT_EQ(law.errors.size(), fitted.errors.size() + 1);
+  for (std::size_t k = 0; k < fitted.errors.size(); ++k)
+    EXPECT_NEAR(law.errors[k].error, fitted.errors[k].error, 1e-9) << law.errors[k].name;
+  EXPECT_NEAR(law.error_fitted, fitted.error_fitted, 1e-9);
+  EXPECT_NEAR(law.error_held_out, fitted.error_held_out, 1e-9);
+  law.a.value *= 2.0;
+  judge_again(law, data, options.discrepancy);
+  EXPECT_GT(law.error_fitted, 0.8) << "all forces are twice as large";
+  EXPECT_GT(law.error_held_out, 0.8);
+  EXPECT_EQ(law.errors.back().error, 0.3) << "it was not measured here";
+}
+
 TEST(MultiContactFit, WithOneLoadingThereIsNothingToLeaveOut) {
   MultiContactOptionsKnown o;
   o.noise = 0.01;

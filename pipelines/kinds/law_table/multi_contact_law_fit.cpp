@@ -8,6 +8,7 @@
 #include "common/core/error.h"
 #include "common/core/text.h"
 #include "common/data/law_words.h"
+#include "common/io/json_record.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
 #include "pipelines/law/law_json.h"
 
@@ -63,6 +64,7 @@ nlohmann::json entry_json(const LawTableEntry& entry) {
   out["slide_solid"] = slide_json(entry.slide_solid);
   out["slide_soft"] = slide_json(entry.slide_soft);
   out["unloading"] = estimate_json(entry.unloading);
+  if (entry.prior) out["prior"] = json_of(*entry.prior);
   for (const MultiContactLaw& law : entry.laws) out["laws"].push_back(law_json(law));
   return out;
 }
@@ -120,8 +122,8 @@ void require_law_of_multi_contact(const SceneTable& root, const MultiContactSetu
     root.add_error("configuration", "a law table needs one plane alone (arrangement \"one\", partner \"plane\")");
 }
 
-void add_entry(MultiContactLawFit& fit, const MultiContactMeasurements& data, const MultiContactFitOptions& options,
-               double target) {
+double add_entry(MultiContactLawFit& fit, const MultiContactMeasurements& data, const MultiContactFitOptions& options,
+                 double target) {
   const LawTableEntry entry = fit_multi_contact_laws(data, options);
   fit.usable = fit.usable && all_converged(data);
   for (const std::string& r : multi_contact_remarks(data, target))
@@ -144,6 +146,7 @@ void add_entry(MultiContactLawFit& fit, const MultiContactMeasurements& data, co
     fit.remarks.push_back(to_string(law.form) + " law: " + to_string(law.status) + ": " + law.reason);
   }
   insert(fit.table, entry);
+  return entry.solid_fraction;
 }
 
 nlohmann::json entries_json(const LawTable& table) {
@@ -155,7 +158,8 @@ nlohmann::json entries_json(const LawTable& table) {
 std::string entries_text(const LawTable& table) {
   std::string text;
   for (const LawTableEntry& entry : table.entries) {
-    text += fmt::format("laws at solid fraction {:.3f} ({} packings):\n", entry.solid_fraction, entry.packings);
+    text += fmt::format("laws at solid fraction {:.3f} ({} packings{}):\n", entry.solid_fraction, entry.packings,
+                        entry.prior ? " and a library" : "");
     for (const MultiContactLaw& law : entry.laws) text += law_line(entry, law);
   }
   return text;

@@ -16,7 +16,8 @@ namespace softgrain {
 struct MultiContactLawFit {
   LawTable table;
   std::vector<std::string> remarks;
-  bool usable = true;  ///< every recorded point came to rest, and the best law of every entry is good
+  std::vector<std::string> warnings{};  ///< what may make the law wrong for its purpose
+  bool usable = true;                   ///< every recorded point came to rest, and the best law of every entry is good
 };
 
 /// "12.1 % on what was held out", or that nothing was; "9.6 % leaving one out", or that there was but one.
@@ -33,9 +34,9 @@ void require_law_of_multi_contact(const SceneTable& root, const MultiContactSetu
 
 /// Fits `data` and adds an entry at the solid fraction of its packings, between those that are there. `target`: wanted
 /// standard error of mean forces, for the remarks. Throws InputError when the table has an entry at this solid
-/// fraction, and what fit_multi_contact_laws() throws.
-void add_entry(MultiContactLawFit& fit, const MultiContactMeasurements& data, const MultiContactFitOptions& options,
-               double target);
+/// fraction, and what fit_multi_contact_laws() throws. Returns the solid fraction.
+double add_entry(MultiContactLawFit& fit, const MultiContactMeasurements& data, const MultiContactFitOptions& options,
+                 double target);
 
 /// All entries with forms, parameters and errors.
 nlohmann::json entries_json(const LawTable& table);

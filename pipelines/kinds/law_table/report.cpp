@@ -137,6 +137,23 @@ std::string parameter_table(const LawTableEntry& entry) {
   return table.html();
 }
 
+/// What packings and a library say of the numbers that were measured, and both together.
+std::string prior_table(const LawTableEntry& entry) {
+  if (!entry.prior) return "";
+  HtmlTable table({"number of the isotropic law", "packings", "library", "both", "weight of the packings [%]"});
+  const auto with_error = [](double value, double error) { return error_text({value, error, 0.0, 0.0}); };
+  for (const PriorNumber& n : entry.prior->numbers)
+    if (std::isfinite(n.own))
+      table.row({n.name, with_error(n.own, n.own_error),
+                 std::isfinite(n.library) ? with_error(n.library, n.library_error) : "–", with_error(n.value, n.error),
+                 format_number(100.0 * n.own_weight, 2)});
+  return paragraph(
+             fmt::format("The isotropic law is that of the packings and of a library together ({}). Errors of the "
+                         "packings are widened by {:.2g}: the form is off by more than packings scatter.",
+                         entry.prior->library, entry.prior->own_factor)) +
+         table.html();
+}
+
 std::string entry_body(const LawTableEntry& entry, const std::optional<MultiContactMeasurements>& multi_contact) {
   std::string body = paragraph(fmt::format(
       "Solid fraction {:.4f} ± {:.4f}, {} packings. Taken where none is named: the {} law. Measured up to h/Rs = "
@@ -148,7 +165,7 @@ std::string entry_body(const LawTableEntry& entry, const std::optional<MultiCont
     if (law.status != LawStatus::good)
       body += paragraph("The " + to_string(law.form) + " law is " + to_string(law.status) +
                         (law.reason.empty() ? "" : ": " + law.reason) + ".");
-  body += parameter_table(entry) + error_table(entry);
+  body += parameter_table(entry) + prior_table(entry) + error_table(entry);
   if (!multi_contact) return body;
   const MultiContactMeasurements data = mean_over_orientations(*multi_contact);  // states point to its configurations
   const std::vector<MultiContactStates> states = average_states(data);

@@ -29,7 +29,12 @@ LawTableRun measure_and_fit(const LawTableSetup& setup, const Run& run) {
   fit.seed = run.seed;
   std::vector<ShellPacking> packings;
   result.data = run_multi_contact_stage(setup.multi_contact, run, result.fit.remarks, packings);
-  add_entry(result.fit, result.data, fit, setup.multi_contact.target);
+  std::vector<EntryMeasurements> measured;
+  const auto add = [&](const MultiContactMeasurements& data) {
+    const double fraction = add_entry(result.fit, data, fit, setup.multi_contact.target);
+    if (setup.prior) measured.push_back({fraction, data});
+  };
+  add(result.data);
   result.fit.table.entries.front().main = true;
   for (std::size_t k = 0; k < setup.variants.size(); ++k) {
     const LawTableVariant& v = setup.variants[k];
@@ -37,10 +42,9 @@ LawTableRun measure_and_fit(const LawTableSetup& setup, const Run& run) {
     MultiContactLevel named;  // nothing inside the soft particles, but a file of its own
     named.file = fmt::format("multi_contact_variant_{}.h5", k + 1);
     packings.clear();
-    add_entry(result.fit,
-              run_multi_contact_stage(setup_of(v, setup.multi_contact), run, result.fit.remarks, packings, &named), fit,
-              setup.multi_contact.target);
+    add(run_multi_contact_stage(setup_of(v, setup.multi_contact), run, result.fit.remarks, packings, &named));
   }
+  combine_with_prior(result.fit, setup.prior, measured, fit);
   save_law_table(result.fit.table, run.path("law_table.toml"), run.provenance);
   return result;
 }
@@ -51,6 +55,7 @@ nlohmann::json summarise(const LawTableSetup& setup, const LawTableRun& result, 
   summary["title"] = setup.title;
   summary["multi_contact"] = multi_contact_json(result.data, setup.multi_contact.target);
   summary["entries"] = entries_json(result.fit.table);
+  if (!result.fit.warnings.empty()) summary["warnings"] = result.fit.warnings;
   summary["remarks"] = result.fit.remarks;
   if (setup.multi_contact.spec.sizes)
     summary["sizes"] = json_of(summaries_of(shell_sizes(setup.multi_contact.spec, result.data.packings)));
@@ -68,7 +73,9 @@ std::string console_summary(const LawTableRun& result, const Run& run) {
 }
 
 RunInputs inputs_of(const LawTableSetup& setup) {
-  return {.seed = setup.multi_contact.seed, .text = sizes_text(setup.multi_contact.spec)};
+  return {.seed = setup.multi_contact.seed,
+          .files = setup.prior ? std::vector{setup.prior->path} : std::vector<std::string>{},
+          .text = sizes_text(setup.multi_contact.spec) + (setup.prior ? setup.prior->text : "")};
 }
 
 Outcome run_law_table(const LawTableSetup& setup, const Run& run) {

@@ -55,7 +55,8 @@ LawTableSetup read_law_table(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     (void)root.choice(kKindKey, {"law-table"});
     const SceneTable calibrate = root.table_or_empty({"calibrate", "fit of the laws to the measurements"});
-    LawTableSetup out{root.text(kTitleKey, ""), read_multi_contact_setup(root), {}, read_multi_contact_fit(calibrate)};
+    LawTableSetup out{
+        root.text(kTitleKey, ""), read_multi_contact_setup(root), {}, read_multi_contact_fit(calibrate), {}};
     read_plan(root, out.multi_contact);
     const SceneTable multi_contact = root.table_or_empty("multi_contact");
     const bool valid = !multi_contact.has_errors() && !root.table_or_empty("packing").has_errors();
@@ -67,6 +68,7 @@ LawTableSetup read_law_table(const Scene& scene) {
         t.add_error("packings", "fewer than calibrate.min_packings: there would be no fit");
     }
     require_law_of_multi_contact(root, out.multi_contact, calibrate, out.fit);
+    out.prior = read_law_prior(root, calibrate, out.fit);
     return out;
   });
 }
@@ -75,6 +77,7 @@ void check_law_table(const LawTableSetup& setup, Findings& out) {
   const MeasureTrial trial = check_multi_contact(setup.multi_contact, out);
   spend_on_packings(setup.multi_contact, trial, 1.0, out);
   spend_on_multi_contact(setup.multi_contact, trial, 1.0, "measuring", out);
+  check_law_prior(setup.prior, setup.multi_contact.spec, trial.packing.solid_fraction(), out);
   out.facts["variants"] = setup.variants.size();
   for (const LawTableVariant& v : setup.variants) {
     const MultiContactSetup of_variant = setup_of(v, setup.multi_contact);

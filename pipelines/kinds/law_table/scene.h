@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/io/scene.h"
+#include "pipelines/kinds/law_table/law_prior.h"
 #include "pipelines/kinds/law_table/multi_contact_law_fit.h"
 #include "pipelines/kinds/law_table/multi_contact_scene.h"
 #include "pipelines/results/kind_results.h"
@@ -28,6 +29,7 @@ struct LawTableSetup {
   MultiContactSetup multi_contact;
   std::vector<LawTableVariant> variants;
   MultiContactFitOptions fit;
+  std::optional<LawLibrary> prior{};  ///< what the packings correct
 };
 
 /// Reads a scene of kind "law-table" to the last key. Throws InputError.

@@ -76,7 +76,8 @@ void measure_table(const PipelineSetup& setup, const Run& run, PipelineResult& r
     std::vector<ShellPacking> packings = result.measured.packings;
     run.guard(
         [&] { result.multi_contact = run_multi_contact_stage(wanted.multi_contact, run, fit.remarks, packings); });
-    add_entry(fit, result.multi_contact, options, wanted.multi_contact.target);
+    const double fraction = add_entry(fit, result.multi_contact, options, wanted.multi_contact.target);
+    combine_with_prior(fit, wanted.prior, {{fraction, result.multi_contact}}, options);
   } catch (const InputError& e) {  // what is left could not be fitted
     why = e.what();
   } catch (const UnusableResult& e) {
@@ -90,6 +91,7 @@ void measure_table(const PipelineSetup& setup, const Run& run, PipelineResult& r
     save_law_table(fit.table, run.path("law_table.toml"), run.provenance);
   }
   result.remarks.insert(result.remarks.end(), fit.remarks.begin(), fit.remarks.end());
+  result.warnings.insert(result.warnings.end(), fit.warnings.begin(), fit.warnings.end());
   result.usable = result.usable && fit.usable;
 }
 
@@ -240,9 +242,14 @@ std::string console_summary(const PipelineSetup& setup, const PipelineResult& r)
 }
 
 RunInputs inputs_of(const PipelineSetup& setup) {
-  return {setup.measure.seed, setup.table ? setup.table->files() : std::vector<std::string>{},
-          sizes_text(setup.measure.spec) + (setup.macro ? sizes_text(setup.macro->spec) : "") +
-              (setup.table ? setup.table->text() : "")};
+  std::vector<std::string> files = setup.table ? setup.table->files() : std::vector<std::string>{};
+  std::string text = sizes_text(setup.measure.spec) + (setup.macro ? sizes_text(setup.macro->spec) : "") +
+                     (setup.table ? setup.table->text() : "");
+  if (setup.measured_table && setup.measured_table->prior) {
+    files.push_back(setup.measured_table->prior->path);
+    text += setup.measured_table->prior->text;
+  }
+  return {setup.measure.seed, files, text};
 }
 
 Outcome run_pipeline(const PipelineSetup& setup, const Run& run) {
@@ -266,6 +273,7 @@ void check_pipeline(const PipelineSetup& setup, Findings& out) {
   const MeasureTrial trial = check_measurements(setup.measure, out);
   if (setup.measured_table) {
     check_configurations(setup.measured_table->multi_contact, out);
+    check_law_prior(setup.measured_table->prior, setup.measure.spec, trial.packing.solid_fraction(), out);
     const auto pool = static_cast<double>(setup.measured_table->multi_contact.pool());
     const auto there = static_cast<double>(setup.measure.packings());
     spend_on_packings(setup.measured_table->multi_contact, trial, std::max(0.0, 1.0 - there / pool), out);

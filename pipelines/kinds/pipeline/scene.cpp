@@ -23,10 +23,11 @@ LawSources read_multi_contact_law(const Scene& scene, const SceneTable& law) {
 MeasuredTable read_measured_table(const SceneTable& root) {
   const SceneTable calibrate =
       root.table_or_empty("calibrate").table_or_empty({"multi_contact", "fit of the multi-contact law"});
-  MeasuredTable out{read_multi_contact_setup(root), read_multi_contact_fit(calibrate)};
+  MeasuredTable out{read_multi_contact_setup(root), read_multi_contact_fit(calibrate), {}};
   require_law_of_multi_contact(root, out.multi_contact, calibrate, out.fit);
   if (out.fit.best == LawForm::pair)
     calibrate.add_error("best", "the pair law is measured anyway: \"isotropic\" or \"directional\"");
+  out.prior = read_law_prior(root, calibrate, out.fit);
   return out;
 }
 
@@ -42,6 +43,8 @@ void read_multi_contact_laws(const Scene& scene, const SceneTable& root, Pipelin
     root.throw_error("law", "[[configuration]] measures a multi-contact law already; leave one of the two out");
   if (root.has("multi_contact") && !measures)
     root.throw_error("multi_contact", "goes with [[configuration]], which says what is measured");
+  if (root.has("prior") && !measures)
+    root.throw_error("prior", "goes with [[configuration]]: packings measured with many neighbours correct a library");
   if (root.has("law"))
     setup.table = read_multi_contact_law(
         scene,

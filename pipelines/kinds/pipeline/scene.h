@@ -6,6 +6,7 @@
 
 #include "calibrate/threshold_fit.h"
 #include "common/io/scene.h"
+#include "pipelines/kinds/law_table/law_prior.h"
 #include "pipelines/kinds/law_table/multi_contact_law_fit.h"
 #include "pipelines/kinds/law_table/multi_contact_scene.h"
 #include "pipelines/kinds/macro/scene.h"
@@ -19,6 +20,7 @@ namespace softgrain {
 struct MeasuredTable {
   MultiContactSetup multi_contact;
   MultiContactFitOptions fit;
+  std::optional<LawLibrary> prior{};  ///< what its packings correct
 };
 
 struct PipelineSetup {
