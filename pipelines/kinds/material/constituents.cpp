@@ -138,6 +138,12 @@ std::string materials_text(const GrainMaterials& materials, double whole) {
       pressure_text(whole));
 }
 
+double mean_density(const std::vector<Constituent>& constituents) {
+  double sum = 0.0;
+  for (const Constituent& c : constituents) sum += c.volume_share * c.density;
+  return sum;
+}
+
 Grading mixed_sizes(const std::vector<Constituent>& constituents) {
   std::vector<SizePiece> pieces;
   for (const Constituent& c : constituents)

@@ -36,6 +36,9 @@ void refuse_idle_material(const SceneTable& root);
 /// the solid volume, as is nu, and mu is the largest. Refuses more materials than a system has room for.
 void take_materials(const SceneTable& root, std::vector<Constituent>& constituents, MacroSpec& spec);
 
+/// Mean density over the solid volume [kg/m^3].
+double mean_density(const std::vector<Constituent>& constituents);
+
 /// Sizes of all constituents together, by solid volume.
 Grading mixed_sizes(const std::vector<Constituent>& constituents);
 

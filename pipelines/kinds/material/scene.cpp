@@ -330,7 +330,10 @@ MaterialScene read_material(const SceneTable& root, bool alone) {
   std::vector<Constituent> constituents;
   read_material_tables(root, base, alone ? &constituents : nullptr);
   const SceneTable grains = root.table("grains");
-  if (!constituents.empty() && !root.has_errors()) take_sizes(base.spec, mixed_sizes(constituents));
+  if (!constituents.empty() && !root.has_errors()) {
+    take_sizes(base.spec, mixed_sizes(constituents));
+    if (base.spec.grain_materials.empty()) base.spec.density = mean_density(constituents);
+  }
   const SceneTable packing = root.table_or_empty("packing");
   read_target(packing, base, alone);
   read_splits(grains, base.spec);
