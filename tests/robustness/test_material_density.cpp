@@ -92,6 +92,22 @@ TEST_F(MaterialDensity, ATargetOutOfReachLeavesTheOtherVariants) {
   EXPECT_EQ(summary("run")["variants"][0]["name"], "met");
 }
 
+/// The same mass in a box is another solid fraction where the grains are heavier: 0.61 of grains of 3,000 kg/m^3 in the mean.
+TEST_F(MaterialDensity, DryDensityOfAMixGoesByTheMeanDensityOfItsConstituents) {
+  std::string text = kDensityScene;
+  text.replace(text.find("density = 2650\n"), 15, "");
+  text.replace(text.find("ratio = 2.0\n"), 12, "");
+  text.replace(text.find("solid_fraction = 0.61"), 21, "dry_density = 1830");
+  const std::string sizes = "sizes = { form = \"power-law\", exponent = 3.5, radius_min = 5e-4, radius_max = 1e-3 }\n";
+  text += "[[constituent]]\nname = \"light\"\ndensity = 2000\nmass_share = 0.333333333333\n" + sizes +
+          "[[constituent]]\nname = \"heavy\"\ndensity = 4000\nmass_share = 0.666666666667\n" + sizes;
+  expect_words(run(text, "alike", "--set samples=1"), 0, {});
+  EXPECT_NEAR(load_macro(file("alike") + "/material.h5")[0].solid_fraction, 0.61, 0.008);
+  text.replace(text.rfind("density = 4000"), 14, "density = 4000\nE = 2e9");
+  expect_words(run(text, "stiff", "--set samples=1"), 0, {});
+  EXPECT_NEAR(load_macro(file("stiff") + "/material.h5")[0].solid_fraction, 0.61, 0.008);
+}
+
 /// Without the key nothing of it is said, and the packing is that of a search that ends at once.
 TEST_F(MaterialDensity, WithoutATargetNothingChanges) {
   std::string plain = kDensityScene;
