@@ -40,7 +40,7 @@ namespace {
 constexpr const char* kStatesFormat = "states";
 
 /// Units of a state, and which columns it has.
-struct StateForm {
+struct BodyForm {
   std::string length;
   std::string velocity;
   std::string spin;
@@ -51,7 +51,7 @@ struct StateForm {
   bool shifted = false;  ///< contacts reach into images
 };
 
-StateForm form_of(const Snapshot& s) {
+BodyForm form_of(const Snapshot& s) {
   const bool si = s.length_unit == "m" && s.force_unit == "N" && s.time_unit == "s";
   return {s.length_unit, s.length_unit + "/" + s.time_unit, "rad/" + s.time_unit,
           si ? "kg" : s.force_unit + " " + s.time_unit + "^2/" + s.length_unit, s.force_unit};
@@ -59,7 +59,7 @@ StateForm form_of(const Snapshot& s) {
 
 }  // namespace
 
-void fields(auto&& visit, Of<SnapshotParticle> auto& p, const StateForm& form) {
+void fields(auto&& visit, Of<SnapshotParticle> auto& p, const BodyForm& form) {
   visit("position", p.position, form.length, kAsRows);
   visit("radius", p.radius, form.length, Limits::not_negative());
   if (form.moves) {
@@ -73,7 +73,7 @@ void fields(auto&& visit, Of<SnapshotParticle> auto& p, const StateForm& form) {
   visit("material", p.material, "1");
 }
 
-void fields(auto&& visit, Of<SnapshotWall> auto& w, const StateForm& form) {
+void fields(auto&& visit, Of<SnapshotWall> auto& w, const BodyForm& form) {
   visit("shape", w.shape, "1", UpTo{WallShape::sphere_inside, "unknown shape of a wall"});
   visit("point", w.point, form.length, kAsRows);
   visit("normal", w.normal, "1", kAsRows);
@@ -82,7 +82,7 @@ void fields(auto&& visit, Of<SnapshotWall> auto& w, const StateForm& form) {
 }
 
 /// Without what it names and where its line ends.
-void fields(auto&& visit, Of<SnapshotContact> auto& c, const StateForm& form) {
+void fields(auto&& visit, Of<SnapshotContact> auto& c, const BodyForm& form) {
   visit("point", c.point, form.length, kAsRows);
   visit("force", c.force, form.force, kAsRows);
   visit("normal_force", c.normal_force, form.force);
@@ -113,7 +113,7 @@ void write_segments(const h5::Group& g, std::size_t count) {
 
 void write_particles(const h5::Group& g, const Snapshot& s) {
   const auto& all = s.particles;
-  StateForm form = form_of(s);
+  BodyForm form = form_of(s);
   form.moves = s.has_velocity;
   form.weighed = std::ranges::all_of(all, [](const SnapshotParticle& p) { return std::isfinite(p.mass); });
   write_records(g, all, form);
@@ -133,7 +133,7 @@ void require_segments(const h5::Group& g) {
 }
 
 void read_particles(const h5::Group& g, Snapshot& s) {
-  StateForm form = form_of(s);
+  BodyForm form = form_of(s);
   form.moves = s.has_velocity = g.has("velocity");
   form.weighed = g.has("mass");
   s.particles.resize(column_length(g, "id"));
@@ -166,7 +166,7 @@ void write_snapshot_contacts(const h5::Group& g, const std::vector<SnapshotConta
                              std::size_t segments) {
   std::vector<std::int64_t> pairs;
   std::vector<double> ends;
-  StateForm form = form_of(units);
+  BodyForm form = form_of(units);
   for (const SnapshotContact& c : contacts) {
     pairs.insert(pairs.end(), {c.i, c.j});
     ends.insert(ends.end(), {c.from[0], c.from[1], c.from[2], c.to[0], c.to[1], c.to[2]});
@@ -199,7 +199,7 @@ std::vector<SnapshotContact> read_snapshot_contacts(const h5::Group& g, const Sn
       contacts[k].to.v[c] = ends[6 * k + 3 + c];
     }
   }
-  StateForm form = form_of(units);
+  BodyForm form = form_of(units);
   form.shifted = g.has("shift");
   read_records(g, contacts, form);
   return contacts;
