@@ -24,7 +24,7 @@ enum class Kept {
 };
 
 /// How a member is called in the file.
-struct Column {
+struct FrameColumn {
   const char* name;
   const char* unit;
   std::vector<double> Trajectory::*values;
@@ -32,7 +32,7 @@ struct Column {
   Kept kept = Kept::moving;
 };
 
-constexpr std::array<Column, 12> kColumns{{
+constexpr std::array<FrameColumn, 12> kFrameColumns{{
     {"time", "s", &Trajectory::time, 0, Kept::always},
     {"position", "m", &Trajectory::position, 3, Kept::always},
     {"velocity", "m/s", &Trajectory::velocity, 3},
@@ -48,17 +48,17 @@ constexpr std::array<Column, 12> kColumns{{
 }};
 
 /// Series in units of their own keep time and lengths alone.
-std::string unit_of(const Column& c, const Snapshot& form) {
+std::string unit_of(const FrameColumn& c, const Snapshot& form) {
   const std::string si = c.unit;
   return si == "s" ? form.time_unit : si == "m" ? form.length_unit : si;
 }
 
-h5::Shape shape_of(const Column& c, std::size_t frames, std::size_t values) {
+h5::Shape shape_of(const FrameColumn& c, std::size_t frames, std::size_t values) {
   if (c.width == 0) return {frames};
   return {frames, frames == 0 ? 0 : values / (frames * c.width), c.width};
 }
 
-void read_column(const h5::Group& group, const Column& c, const std::string& unit, Trajectory& t) {
+void read_column(const h5::Group& group, const FrameColumn& c, const std::string& unit, Trajectory& t) {
   std::vector<double>& values = t.*c.values;
   values = group.doubles(c.name);
   require_unit(group, c.name, unit);
@@ -79,7 +79,7 @@ Snapshot moving_frames() {
 
 void write_trajectory(const h5::Group& group, const Trajectory& t, const Snapshot& form) {
   const std::size_t frames = t.time.size();
-  for (const Column& c : kColumns) {
+  for (const FrameColumn& c : kFrameColumns) {
     const std::vector<double>& values = t.*c.values;
     const bool kept = c.kept == Kept::if_any ? !values.empty() : c.kept == Kept::always || form.has_velocity;
     if (!kept) continue;
@@ -90,7 +90,7 @@ void write_trajectory(const h5::Group& group, const Trajectory& t, const Snapsho
 
 Trajectory read_trajectory(const h5::Group& group, const Snapshot& form) {
   Trajectory t;
-  for (const Column& c : kColumns)
+  for (const FrameColumn& c : kFrameColumns)
     if (c.kept == Kept::if_any ? group.has(c.name) : c.kept == Kept::always || form.has_velocity)
       read_column(group, c, unit_of(c, form), t);
   return t;
@@ -98,7 +98,7 @@ Trajectory read_trajectory(const h5::Group& group, const Snapshot& form) {
 
 Trajectory read_columns(const h5::Group& group, std::initializer_list<std::vector<double> Trajectory::*> columns) {
   Trajectory t;
-  for (const Column& c : kColumns)
+  for (const FrameColumn& c : kFrameColumns)
     if (c.values == &Trajectory::time || std::ranges::find(columns, c.values) != columns.end())
       if (c.kept != Kept::if_any || group.has(c.name)) read_column(group, c, c.unit, t);
   return t;
