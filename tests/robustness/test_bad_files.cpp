@@ -340,7 +340,7 @@ TEST_F(BadResults, PowdersOfAReport) {
   bad([&](Hdf5Edit& f) { f.set(system + "bodies/material", 3, 4); }, {"'material' does not fit"});
   bad([&](Hdf5Edit& f) { f.set(system + "bodies/counts", 0, 1e9); }, {"'counts' does not fit"});
   bad([&](Hdf5Edit& f) { f.set_attribute("sample_0/system", "dimension", 3LL); }, {"'dimension' does not fit"});
-  bad([&](Hdf5Edit& f) { f.resize("sample_0/snapshots/0/radii", 3); }, {"snapshot 0 has arrays"});
+  bad([&](Hdf5Edit& f) { f.resize("sample_0/trajectory/position", 3); }, {"'position' has a wrong shape"});
 }
 
 TEST_F(BadResults, CutAnywhere) {

@@ -151,7 +151,7 @@ inline void tiny_powder(const std::string& path) {
   PowderState state = start_powder(spec, 1, 0);
   rebuild_neighbours(state.system);
   state.points.resize(2);
-  state.snapshots = {powder_snapshot(state.system)};
+  record_snapshot(state.snapshots, state.system);
   h5::AtomicFile file(path);
   write_powder_spec(file.root().create("spec"), spec);
   const h5::Group group = file.root().create("sample_0");
