@@ -47,6 +47,7 @@ void add_stage_values(std::vector<RunValue>& out, const NamedCurves& one) {
       if (stages.size() > 1) add_known(modulus + " at the begin" + where, "Pa", s.modulus_begin);
     }
     add_known("largest q/p" + where, "", s.ratio_peak);
+    add_known("largest shear over normal stress" + where, "", s.friction_peak);
   }
 }
 
