@@ -10,6 +10,7 @@
 #include "pipelines/compare/macro_scores.h"
 #include "pipelines/compare/stage_match.h"
 #include "pipelines/compare/stage_results.h"
+#include "pipelines/kinds/macro/summary.h"
 #include "pipelines/results/summary.h"
 #include "tests/support/temporary_directory.h"
 
@@ -102,6 +103,24 @@ TEST(StageResults, SummariesHoldTheShearOverNormalStress) {
   EXPECT_EQ(written.at("shear_over_normal_peak").at("mean"), 0.31);
   EXPECT_EQ(written.at("shear_strain_at_peak").at("mean"), 0.03);
   EXPECT_EQ(written.at("shear_over_normal_end").at("mean"), 0.25);
+}
+
+/// Reports and compare draw stresses over what drives a test, and say so.
+TEST(StageResults, TestsThatSlideAreDrawnOverTheirShearStrain) {
+  MacroCurve c;
+  c.engine = "law";
+  c.strain = {0.0, 0.02};
+  c.stress_axial = {3.0, 3.0};
+  for (const auto& [test, label] :
+       {std::pair{MacroTest::oedometric, "axial strain [%]"}, std::pair{MacroTest::stages, "axial strain [%]"},
+        std::pair{MacroTest::simple_shear, "shear strain [%]"},
+        std::pair{MacroTest::direct_shear, "shear strain [%]"}}) {
+    c.test = test;
+    const std::vector<RunCurve> drawn = stress_curves({{"", {c}}});
+    ASSERT_EQ(drawn.size(), 1U);
+    EXPECT_EQ(drawn[0].x_label, label);
+    EXPECT_EQ(drawn[0].x.back(), 2.0);
+  }
 }
 
 TEST(StageResults, ModuliAreThoseOfHooke) {

@@ -34,7 +34,8 @@ std::vector<double> volumetric_strains(const MacroCurve& c) {
 template <class Quantity>
 std::string over_strain(const std::vector<MacroCurve>& curves, const char* id, const char* title, const char* label,
                         const char* caption, Quantity&& of) {
-  Plot plot({.id = id, .title = title, .x = {.label = "axial strain [%]"}, .y = {.label = label}, .height = 310.0});
+  const MacroTest test = curves.empty() ? MacroTest::stages : curves.front().test;
+  Plot plot({.id = id, .title = title, .x = {.label = strain_label(test)}, .y = {.label = label}, .height = 310.0});
   constexpr Stress kPlace = &MacroCurve::stress_deviator;
   add_curves(plot, with_column(curves, kPlace, of), kPlace, 1.0);
   return plot.empty() ? "" : figure(plot.svg(), caption);
