@@ -75,10 +75,14 @@ inline bool is_shear(MacroTest test) {
          test == MacroTest::direct_shear;
 }
 
+/// Tests whose strain is a shear strain: planes slide over each other.
+inline bool slides(MacroTest test) { return test == MacroTest::simple_shear || test == MacroTest::direct_shear; }
+
 /// Tests whose runs are compared stage by stage: not the strain of z drives them, or it goes forth and back.
-inline bool by_stages(MacroTest test) {
-  return test == MacroTest::stages || test == MacroTest::simple_shear || test == MacroTest::direct_shear;
-}
+inline bool by_stages(MacroTest test) { return test == MacroTest::stages || slides(test); }
+
+/// Label of MacroCurve::strain in percent.
+inline const char* strain_label(MacroTest test) { return slides(test) ? "shear strain [%]" : "axial strain [%]"; }
 
 /// What the axes of a box or cell do in a part of a test; the load is along z.
 enum class StageKind {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
 
 #include "common/contact/make_laws.h"
 #include "common/core/error.h"
@@ -178,6 +180,17 @@ PressTestLaw press_test_law(const LawOptions& o, const LawLibrary& library) {
   return law_of_press_test(library, o.press_test, friction, static_cast<int>(o.draws));
 }
 
+/// The answer must not take the place of what it is made from: own measurements, a card, the library.
+void refuse_to_replace_input(const LawOptions& o) {
+  std::error_code ignored;
+  for (const auto& [option, input] :
+       {std::pair{"--own", &o.own}, {"--press-test", &o.press_test}, {"--library", &o.library}})
+    for (const fs::path& file : {fs::path(*input), fs::path(*input) / "law_table.toml", fs::path(*input) / "law.toml"})
+      if (!o.out.empty() && !input->empty() && fs::equivalent(file, o.out, ignored))
+        throw InputError(fmt::format(
+            "law get: --out {}: is what {} names and would be overwritten; choose another name", o.out, option));
+}
+
 json answer_json(const LibraryAnswer& answer, const std::vector<std::string>& remarks, const std::string& written) {
   json out{{"command", "law get"},
            {"status", "good"},
@@ -233,6 +246,7 @@ ExitStatus get_law(const LawOptions& o) {
     throw InputError(fmt::format("law get: --draws {}: must be a whole number from 10 to {}", o.draws, kMostDraws));
   if (!o.out.empty() && fs::path(o.out).extension() != ".toml")
     throw InputError("law get: --out " + o.out + ": a law table ends with .toml");
+  refuse_to_replace_input(o);
   const LibraryMatter matter = matter_of(o);
   const LawLibrary library = load_library(o.library.empty() ? shipped_library() : o.library);
   std::vector<std::string> remarks;

@@ -187,7 +187,7 @@ class Reader {
     for (std::size_t k = from + 1; k <= last; ++k) {
       if (!std::isfinite(ratio[k]) || ratio[k] <= r.ratio_peak) continue;
       r.ratio_peak = ratio[k];
-      r.ratio_peak_strain = c_.strain_z[k];
+      if (!slides(r.record.way)) r.ratio_peak_strain = c_.strain_z[k];
     }
     if (!slides(r.record.way) || !point_slides(c_, last)) return;
     const auto friction = [&](std::size_t k) {
@@ -195,8 +195,12 @@ class Reader {
     };
     r.shear_end = c_.shear_strain[last];
     r.friction_end = friction(last);
-    for (std::size_t k = from + 1; k <= last; ++k)
-      if (const double f = friction(k); std::isfinite(f) && !(f <= r.friction_peak)) r.friction_peak = f;
+    for (std::size_t k = from + 1; k <= last; ++k) {
+      const double f = friction(k);
+      if (!std::isfinite(f) || f <= r.friction_peak) continue;
+      r.friction_peak = f;
+      r.friction_peak_shear = c_.shear_strain[k];
+    }
   }
 
   const MacroCurve& c_;
@@ -344,7 +348,8 @@ std::vector<StageMeans> stage_means(const std::vector<MacroCurve>& curves, const
                    mean(&StageResult::modulus_from), mean(&StageResult::modulus_to), mean(&StageResult::modulus_begin),
                    mean(&StageResult::modulus_end), mean(&StageResult::poisson_begin), mean(&StageResult::ratio_peak),
                    mean(&StageResult::ratio_peak_strain), mean(&StageResult::ratio_end), mean(&StageResult::shear_end),
-                   mean(&StageResult::friction_peak), mean(&StageResult::friction_end)});
+                   mean(&StageResult::friction_peak), mean(&StageResult::friction_peak_shear),
+                   mean(&StageResult::friction_end)});
   }
   return out;
 }

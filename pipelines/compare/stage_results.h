@@ -53,17 +53,18 @@ struct StageResult {
   /// (Young, shear, undrained: E50), and over the whole stage where the stress falls. NaN where the stage does not go
   /// through both.
   double modulus = kNaN;
-  double modulus_from = kNaN;       ///< the stress where the interval begins; see stress_of() [Pa]
-  double modulus_to = kNaN;         ///< stress where the interval ends [Pa]
-  double modulus_begin = kNaN;      ///< tangent at the first point: of unload the unloading modulus [Pa]
-  double modulus_end = kNaN;        ///< tangent at the last point, from few points and one side: scatters [Pa]
-  double poisson_begin = kNaN;      ///< Young's way: -d(eps_x + eps_y)/(2 d eps_z) at the first point
-  double ratio_peak = kNaN;         ///< largest q/p
-  double ratio_peak_strain = kNaN;  ///< strain of z at the largest q/p
-  double ratio_end = kNaN;          ///< q/p at the end
-  double shear_end = kNaN;          ///< sliding: shear strain at the end, from the start of the test
-  double friction_peak = kNaN;      ///< sliding: largest |sigma_xz|/sigma_z; its arc tangent is the angle of friction
-  double friction_end = kNaN;       ///< sliding: |sigma_xz|/sigma_z at the end
+  double modulus_from = kNaN;         ///< the stress where the interval begins; see stress_of() [Pa]
+  double modulus_to = kNaN;           ///< stress where the interval ends [Pa]
+  double modulus_begin = kNaN;        ///< tangent at the first point: of unload the unloading modulus [Pa]
+  double modulus_end = kNaN;          ///< tangent at the last point, from few points and one side: scatters [Pa]
+  double poisson_begin = kNaN;        ///< Young's way: -d(eps_x + eps_y)/(2 d eps_z) at the first point
+  double ratio_peak = kNaN;           ///< largest q/p
+  double ratio_peak_strain = kNaN;    ///< strain of z at the largest q/p; sliding: none, as z does not drive it
+  double ratio_end = kNaN;            ///< q/p at the end
+  double shear_end = kNaN;            ///< sliding: shear strain at the end, from the start of the test
+  double friction_peak = kNaN;        ///< sliding: largest |sigma_xz|/sigma_z; its arc tangent is the angle of friction
+  double friction_peak_shear = kNaN;  ///< sliding: shear strain there, from the start of the test
+  double friction_end = kNaN;         ///< sliding: |sigma_xz|/sigma_z at the end
 };
 
 /// Change of stress over that of strain between two stresses (the second lies behind the first), straight between
@@ -99,6 +100,7 @@ struct StageMeans {
   std::optional<MeanError> ratio_end;
   std::optional<MeanError> shear_end;
   std::optional<MeanError> friction_peak;
+  std::optional<MeanError> friction_peak_shear;
   std::optional<MeanError> friction_end;
 };
 

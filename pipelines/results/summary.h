@@ -274,6 +274,10 @@ void fields(auto&& visit, Of<StageMeans> auto& s) {
   visit("q_over_p_peak", s.ratio_peak, kLeftOut);
   visit("axial_strain_at_peak", s.ratio_peak_strain, kLeftOut);
   visit("q_over_p_end", s.ratio_end, kLeftOut);
+  visit("shear_strain_end", s.shear_end, kLeftOut);
+  visit("shear_over_normal_peak", s.friction_peak, kLeftOut);
+  visit("shear_strain_at_peak", s.friction_peak_shear, kLeftOut);
+  visit("shear_over_normal_end", s.friction_end, kLeftOut);
 }
 
 /// A sample that was prepared to a density.

@@ -61,9 +61,11 @@ std::vector<std::vector<std::string>> texts_of(const std::vector<Unit01>& points
   return out;
 }
 
-/// The result of this name, or the first whose name holds the text. Throws InputError with all names.
+/// The result of this name, or the first whose name holds the text; without a unit where no run has a result. Throws
+/// InputError with all names.
 RunValue result_named(const std::string& text, const std::vector<RunEntry>& entries) {
   const std::vector<RunValue> all = numbers_of(entries);
+  if (all.empty()) return {.name = text, .unit = ""};  // the runs say why, and no other name would help
   for (const RunValue& v : all)
     if (v.name == text) return v;
   for (const RunValue& v : all)
@@ -136,6 +138,10 @@ OptimumSummary summary_of_search(const SearchGoal& goal, const RunValue& number,
   out.unit = number.unit;
   out.maximise = goal.maximise;
   out.points = static_cast<std::int64_t>(data.points.size());
+  if (data.points.empty()) {
+    out.reason = "no point has the number";
+    return out;
+  }
   const OptimumEstimate best = find_optimum(data, goal.maximise, seed);
   out.usable = best.usable;
   out.reason = best.message;

@@ -81,6 +81,9 @@ class CommandsTest(InEmptyFolder):
         for wrong in (3, ["x"], [1.5]):
             with self.assertRaisesRegex(softgrain.InputError, "seeds = .*whole numbers"):
                 softgrain.sweep(two_beads(), seeds=wrong, out="wrong", progress=False)
+        for wrong in (1e-4, None, {"low": 1e-4}, np.float64(1e-4), np.array(1e-4)):
+            with self.assertRaisesRegex(softgrain.InputError, "over: time.end = .*list of values"):
+                softgrain.sweep(two_beads(), {"time.end": wrong}, out="wrong", progress=False)
         with self.assertRaisesRegex(softgrain.InputError, "unusable"):
             softgrain.sweep(two_beads(), {"time.end": [1e-4]}, out="wrong", progress=False, unusable="drop")
         with self.assertRaisesRegex(softgrain.InputError, "unusable"):

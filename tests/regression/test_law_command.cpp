@@ -3,6 +3,7 @@
 // from the root of the tree; likewise table.txt (results/law_table/law_table.toml) and difference.txt (both).
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -45,6 +46,21 @@ TEST(LawCommand, ShowsTheCommittedLawsAsBefore) {
   const FittedLaw a = committed(kCard);
   const FittedLaw b = committed(kTable);
   EXPECT_EQ(law::differences_text(a, b, law::law_differences(a, b), false), reference("difference.txt"));
+}
+
+/// An answer from the library does not take the place of the table of own packings that corrects it.
+TEST(LawCommand, GetLeavesWhatItIsMadeFromAlone) {
+  const test::TemporaryDirectory directory;
+  const std::string own = directory.file("law_table.toml");
+  const std::string text = read_text(kRoot + "/" + kTable);
+  write_text_atomic(own, text);
+  const std::string material = "law get --mu 0.3 --exponent 3.5 --ratio 10 --solid-fraction 0.7 ";
+  for (const std::string& named : {own, std::filesystem::path(own).parent_path().string()}) {
+    const test::ProgramOutcome outcome = run_the_program(material + "--own '" + named + "' --out '" + own + "'");
+    EXPECT_EQ(outcome.status, 2) << outcome.output;
+    EXPECT_NE(outcome.output.find("would be overwritten"), std::string::npos) << outcome.output;
+    EXPECT_EQ(read_text(own), text);
+  }
 }
 
 TEST(FittedLaw, OfARunDirectoryIsToldByItsContent) {

@@ -142,5 +142,25 @@ TEST(Search, AnUnknownResultIsAnsweredWithAllNames) {
   }
 }
 
+/// Their summary says why the runs have no results; an unknown name is not the reason.
+TEST(Search, WithoutAnyResultSaysThatThereIsNone) {
+  const TakesWholeNumbers takes_whole = [](const auto&, const auto&) { return false; };
+  const CommonOptions options = search_options({"a=0..1"});
+  const RunPlan all = search_plan(options, takes_whole);
+  const RunRounds rounds = search_rounds(search_goal(options), takes_whole, 1);
+  SetSummary set;
+  for (const PlannedRun& run : all.runs) {
+    set.runs.push_back({.name = run.name, .directory = run.name, .status = RunStatus::not_usable});
+    set.runs.back().values["a"] = run.values.front();
+  }
+  EXPECT_TRUE(rounds.next(all, set.runs).runs.empty());
+  rounds.conclude(all, set);
+  ASSERT_TRUE(set.search.has_value());
+  EXPECT_FALSE(set.search->usable);
+  EXPECT_EQ(set.search->number, "density");
+  EXPECT_EQ(set.head.status, RunStatus::not_usable);
+  EXPECT_NE(search_text(set).find("no point has the number"), std::string::npos) << search_text(set);
+}
+
 }  // namespace
 }  // namespace softgrain

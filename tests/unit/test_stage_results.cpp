@@ -10,6 +10,8 @@
 #include "pipelines/compare/macro_scores.h"
 #include "pipelines/compare/stage_match.h"
 #include "pipelines/compare/stage_results.h"
+#include "pipelines/kinds/macro/summary.h"
+#include "pipelines/results/summary.h"
 #include "tests/support/temporary_directory.h"
 
 namespace softgrain {
@@ -65,11 +67,48 @@ TEST(StageResults, UndrainedAndSlidingStages) {
   EXPECT_NEAR(results[1].shear_end, 0.01, 1e-15);
   EXPECT_NEAR(results[1].friction_end, e.shear * 0.01 / c.stress_axial.back(), 1e-15);
   EXPECT_NEAR(results[1].friction_peak, e.shear * 0.016 / c.stress_axial.back(), 1e-15);
+  EXPECT_NEAR(results[1].friction_peak_shear, 0.008, 1e-15);
+  EXPECT_TRUE(std::isnan(results[1].ratio_peak_strain));  // z stands still
+  EXPECT_NEAR(results[0].ratio_peak_strain, -std::expm1(-0.004), 1e-15);
   const double p = (c.stress_x.back() + c.stress_y.back() + c.stress_axial.back()) / 3.0;
   const double axial = c.stress_axial.back() - c.stress_x.back();
   EXPECT_NEAR(results[1].ratio_end, std::sqrt(axial * axial + 3.0 * std::pow(e.shear * 0.01, 2)) / p, 1e-12);
   EXPECT_EQ(deviators(c)[4], c.stress_deviator[4]);
   EXPECT_EQ(deviators(c).back(), 2.0 * c.stress_xz.back());
+}
+
+/// What sweeps, compare and Python read of a stage that slides.
+TEST(StageResults, SummariesHoldTheShearOverNormalStress) {
+  StageMeans s;
+  s.record = {"slide", StageKind::direct_shear, StageKind::direct_shear};
+  EXPECT_FALSE(json_of(s).contains("shear_over_normal_peak"));
+  s.shear_end = MeanError{2, 0.04, 0.0, 0.0};
+  s.friction_peak = MeanError{2, 0.31, 0.02, 0.01};
+  s.friction_peak_shear = MeanError{2, 0.03, 0.0, 0.0};
+  s.friction_end = MeanError{2, 0.25, 0.02, 0.01};
+  const nlohmann::json written = json_of(s);
+  EXPECT_EQ(written.at("shear_strain_end").at("mean"), 0.04);
+  EXPECT_EQ(written.at("shear_over_normal_peak").at("mean"), 0.31);
+  EXPECT_EQ(written.at("shear_strain_at_peak").at("mean"), 0.03);
+  EXPECT_EQ(written.at("shear_over_normal_end").at("mean"), 0.25);
+}
+
+/// Reports and compare draw stresses over what drives a test, and say so.
+TEST(StageResults, TestsThatSlideAreDrawnOverTheirShearStrain) {
+  MacroCurve c;
+  c.engine = "law";
+  c.strain = {0.0, 0.02};
+  c.stress_axial = {3.0, 3.0};
+  for (const auto& [test, label] :
+       {std::pair{MacroTest::oedometric, "axial strain [%]"}, std::pair{MacroTest::stages, "axial strain [%]"},
+        std::pair{MacroTest::simple_shear, "shear strain [%]"},
+        std::pair{MacroTest::direct_shear, "shear strain [%]"}}) {
+    c.test = test;
+    const std::vector<RunCurve> drawn = stress_curves({{"", {c}}});
+    ASSERT_EQ(drawn.size(), 1U);
+    EXPECT_EQ(drawn[0].x_label, label);
+    EXPECT_EQ(drawn[0].x.back(), 2.0);
+  }
 }
 
 TEST(StageResults, ModuliAreThoseOfHooke) {

@@ -34,7 +34,8 @@ std::vector<double> volumetric_strains(const MacroCurve& c) {
 template <class Quantity>
 std::string over_strain(const std::vector<MacroCurve>& curves, const char* id, const char* title, const char* label,
                         const char* caption, Quantity&& of) {
-  Plot plot({.id = id, .title = title, .x = {.label = "axial strain [%]"}, .y = {.label = label}, .height = 310.0});
+  const MacroTest test = curves.empty() ? MacroTest::stages : curves.front().test;
+  Plot plot({.id = id, .title = title, .x = {.label = strain_label(test)}, .y = {.label = label}, .height = 310.0});
   constexpr Stress kPlace = &MacroCurve::stress_deviator;
   add_curves(plot, with_column(curves, kPlace, of), kPlace, 1.0);
   return plot.empty() ? "" : figure(plot.svg(), caption);
@@ -138,7 +139,9 @@ std::string tables_of_stages(const std::vector<MacroCurve>& curves) {
       {"shear strain [%]", "σxz/σz at the end", "largest σxz/σz", "angle of friction [°]"},
       [](const StageMeans& s) -> std::vector<std::string> {
         if (!s.shear_end) return {};
-        return {cell(s.shear_end, 0.01), cell(s.friction_end), cell(s.friction_peak),
+        const std::string where =
+            s.friction_peak_shear ? " at " + format_number(100.0 * s.friction_peak_shear->mean, 3) + " %" : "";
+        return {cell(s.shear_end, 0.01), cell(s.friction_end), cell(s.friction_peak) + where,
                 s.friction_peak ? format_number(180.0 / std::numbers::pi * std::atan(s.friction_peak->mean), 3) : "–"};
       }};
   const bool slides = std::ranges::any_of(curves, [](const MacroCurve& c) { return !c.shear_strain.empty(); });

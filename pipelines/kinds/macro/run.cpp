@@ -41,6 +41,8 @@ std::string stage_line(const std::string& engine, const StageMeans& s) {
   if (s.axial_end) line += fmt::format(" axial stress {} Pa,", with_error(*s.axial_end));
   if (s.ratio_peak) line += fmt::format(" q/p {} at most,", with_error(*s.ratio_peak));
   if (s.ratio_end) line += fmt::format(" {} at its end,", with_error(*s.ratio_end));
+  if (s.friction_peak) line += fmt::format(" shear over normal stress {} at most,", with_error(*s.friction_peak));
+  if (s.friction_end) line += fmt::format(" {} at its end,", with_error(*s.friction_end));
   line.back() = '\n';
   return line;
 }

@@ -47,6 +47,7 @@ void add_stage_values(std::vector<RunValue>& out, const NamedCurves& one) {
       if (stages.size() > 1) add_known(modulus + " at the begin" + where, "Pa", s.modulus_begin);
     }
     add_known("largest q/p" + where, "", s.ratio_peak);
+    add_known("largest shear over normal stress" + where, "", s.friction_peak);
   }
 }
 
@@ -118,7 +119,8 @@ std::vector<RunCurve> stress_curves(const std::vector<NamedCurves>& all) {
     std::size_t points = 0;
     for (const MacroCurve& c : one.curves)
       if (c.usable && recorded(c, c.stress_axial)) points = std::max(points, c.strain.size());
-    RunCurve curve{"Axial stress", "axial strain [%]", "axial stress", "Pa", one.name, {}, {}};
+    const MacroTest test = one.curves.empty() ? MacroTest::oedometric : one.curves.front().test;
+    RunCurve curve{"Axial stress", strain_label(test), "axial stress", "Pa", one.name, {}, {}};
     double samples = 0.0;
     curve.x.assign(points, 0.0);
     curve.y.assign(points, 0.0);

@@ -74,7 +74,22 @@ std::string line_figure(const std::vector<Variant>& variants, PlotOptions option
   return plot.empty() ? "" : figure(plot.svg(), caption);
 }
 
-std::vector<double> axial_strain(const MacroCurve& c) { return scaled(c.strain_z, 100.0); }
+/// Whether the strain of all tests is a shear strain, while z stands still or dilates.
+bool all_slide(const std::vector<Variant>& variants) {
+  return std::ranges::all_of(variants, [](const Variant& v) {
+    return std::ranges::all_of(v.curves, [](const MacroCurve& c) { return slides(c.test); });
+  });
+}
+
+/// What drives the tests: the strain of z, or the shear strain of tests that all slide.
+Column strain_of(const std::vector<Variant>& variants) {
+  if (all_slide(variants)) return [](const MacroCurve& c) { return scaled(c.shear_strain, 100.0); };
+  return [](const MacroCurve& c) { return scaled(c.strain_z, 100.0); };
+}
+
+AxisOptions axis_of_strain(const std::vector<Variant>& variants) {
+  return {.label = strain_label(all_slide(variants) ? MacroTest::simple_shear : MacroTest::stages)};
+}
 
 std::string state_figure(const std::vector<Variant>& variants) {
   return line_figure(
@@ -92,27 +107,26 @@ std::string stress_figure(const std::vector<Variant>& variants) {
   return line_figure(variants,
                      {.id = "material-axial",
                       .title = "Axial stress",
-                      .x = {.label = "axial strain [%]"},
+                      .x = axis_of_strain(variants),
                       .y = {.label = "axial stress over E"}},
-                     "Nominal strain from the start of the test.", axial_strain,
+                     "Nominal strain from the start of the test.", strain_of(variants),
                      [](const MacroCurve& c) { return scaled(c.stress_axial, 1.0 / c.start.youngs_modulus); });
 }
 
 std::string ratio_figure(const std::vector<Variant>& variants) {
   return line_figure(
-      variants,
-      {.id = "material-ratio", .title = "Stress ratio", .x = {.label = "axial strain [%]"}, .y = {.label = "q/p"}},
-      "q = √(3J₂), p the mean stress.", axial_strain, [](const MacroCurve& c) { return stress_ratios(c); });
+      variants, {.id = "material-ratio", .title = "Stress ratio", .x = axis_of_strain(variants), .y = {.label = "q/p"}},
+      "q = √(3J₂), p the mean stress.", strain_of(variants), [](const MacroCurve& c) { return stress_ratios(c); });
 }
 
 std::string rattler_figure(const std::vector<Variant>& variants) {
   return line_figure(variants,
                      {.id = "material-rattlers",
                       .title = "Rattlers",
-                      .x = {.label = "axial strain [%]"},
+                      .x = axis_of_strain(variants),
                       .y = {.label = "share of the grains [%]"}},
                      "Grains with fewer than four contacts (with friction: two) to grains that do not rattle.",
-                     axial_strain, [](const MacroCurve& c) { return scaled(more_of(c, kRattlers), 100.0); });
+                     strain_of(variants), [](const MacroCurve& c) { return scaled(more_of(c, kRattlers), 100.0); });
 }
 
 /// Shares at start and end, mean over samples.

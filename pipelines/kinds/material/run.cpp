@@ -332,9 +332,10 @@ std::string console_summary(const MaterialSummary& s) {
     if (v.runs.density) text += "  " + density_text(*v.runs.density) + "\n";
     for (const StageMeans& m : v.runs.stages) {
       if (m.axial_end && m.ratio_end)
-        text += fmt::format("  {}: axial stress {:.4g} E, lateral {:.4g} E, q/p {:.3f}\n", m.record.name,
-                            m.axial_end->mean / modulus_of(s, v), m.lateral_end->mean / modulus_of(s, v),
-                            m.ratio_end->mean);
+        text +=
+            fmt::format("  {}: axial stress {:.4g} E, lateral {:.4g} E, q/p {:.3f}{}\n", m.record.name,
+                        m.axial_end->mean / modulus_of(s, v), m.lateral_end->mean / modulus_of(s, v), m.ratio_end->mean,
+                        m.friction_end ? fmt::format(", shear over normal stress {:.3f}", m.friction_end->mean) : "");
       if (const std::string modulus = modulus_text(m); !modulus.empty()) text += "    " + modulus + "\n";
     }
   }

@@ -3,7 +3,7 @@ program writes as JSON, never from its texts."""
 import difflib
 import operator
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from softgrain.errors import InputError, Mistake
@@ -152,6 +152,8 @@ def _choices(key, values):
     """--over of a key: a text as it is ("20..40"), else a list of values."""
     if isinstance(values, str):
         return f"{key}={values}"
+    if isinstance(values, Mapping) or not isinstance(values, Iterable) or getattr(values, "ndim", 1) == 0:
+        raise InputError([f'over: {key} = {values!r:.60}: must be a list of values or a text such as "1..8"'])
     return f"{key}=" + ",".join(v if isinstance(v, str) else value_text(v, key) for v in values)
 
 
