@@ -206,11 +206,6 @@ class Reader {
   const MacroCurve& c_;
 };
 
-std::optional<MeanError> mean_of(const std::vector<const StageResult*>& all, double StageResult::*member) {
-  const MeanError mean = finite_mean(all, member);
-  return mean.n > 0 ? std::optional(mean) : std::nullopt;
-}
-
 }  // namespace
 
 Modulus modulus_of(StageKind way) {
@@ -342,14 +337,11 @@ std::vector<StageMeans> stage_means(const std::vector<MacroCurve>& curves, const
     std::vector<const StageResult*> all;
     for (const auto& sample : samples)
       if (k < sample.size()) all.push_back(&sample[k]);
-    const auto mean = [&](double StageResult::*member) { return mean_of(all, member); };
-    out.push_back({all.front()->record, mean(&StageResult::strain_end), mean(&StageResult::volumetric_end),
-                   mean(&StageResult::axial_end), mean(&StageResult::lateral_end), mean(&StageResult::modulus),
-                   mean(&StageResult::modulus_from), mean(&StageResult::modulus_to), mean(&StageResult::modulus_begin),
-                   mean(&StageResult::modulus_end), mean(&StageResult::poisson_begin), mean(&StageResult::ratio_peak),
-                   mean(&StageResult::ratio_peak_strain), mean(&StageResult::ratio_end), mean(&StageResult::shear_end),
-                   mean(&StageResult::friction_peak), mean(&StageResult::friction_peak_shear),
-                   mean(&StageResult::friction_end)});
+    StageMeans& means = out.emplace_back();
+    means.record = all.front()->record;
+    stage_numbers([&](const char*, auto mean, auto result) {
+      if (const MeanError m = finite_mean(all, result); m.n > 0) means.*mean = m;
+    });
   }
   return out;
 }

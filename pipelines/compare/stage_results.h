@@ -104,6 +104,30 @@ struct StageMeans {
   std::optional<MeanError> friction_end;
 };
 
+/// visit(name, member of means, member of a sample's result) for every number of a stage that means are taken of; the
+/// name is that of summaries.
+void stage_numbers(auto&& visit) {
+  using M = StageMeans;
+  using R = StageResult;
+  visit("modulus_secant", &M::modulus, &R::modulus);
+  visit("modulus_stress_from", &M::modulus_from, &R::modulus_from);
+  visit("modulus_stress_to", &M::modulus_to, &R::modulus_to);
+  visit("modulus_begin", &M::modulus_begin, &R::modulus_begin);
+  visit("modulus_end", &M::modulus_end, &R::modulus_end);
+  visit("poisson_begin", &M::poisson_begin, &R::poisson_begin);
+  visit("axial_strain_end", &M::strain_end, &R::strain_end);
+  visit("volumetric_strain_end", &M::volumetric_end, &R::volumetric_end);
+  visit("axial_stress_end", &M::axial_end, &R::axial_end);
+  visit("lateral_stress_end", &M::lateral_end, &R::lateral_end);
+  visit("q_over_p_peak", &M::ratio_peak, &R::ratio_peak);
+  visit("axial_strain_at_peak", &M::ratio_peak_strain, &R::ratio_peak_strain);
+  visit("q_over_p_end", &M::ratio_end, &R::ratio_end);
+  visit("shear_strain_end", &M::shear_end, &R::shear_end);
+  visit("shear_over_normal_peak", &M::friction_peak, &R::friction_peak);
+  visit("shear_strain_at_peak", &M::friction_peak_shear, &R::friction_peak_shear);
+  visit("shear_over_normal_end", &M::friction_end, &R::friction_end);
+}
+
 /// Stresses between which the modulus of a stage is taken, in words without numbers where they are its own: "2 MPa to 5
 /// MPa", "upper half of the stress", "first half of the largest stress", "whole stage".
 std::string modulus_interval(const StageMeans& stage);

@@ -259,25 +259,9 @@ void fields(auto&& visit, Of<StageMeans> auto& s) {
   visit("kind", s.record.kind);
   visit("way", s.record.way);
   if constexpr (std::is_const_v<std::remove_reference_t<decltype(s)>>) visit("modulus", modulus_of(s.record.way));
-  visit("modulus_secant", s.modulus, kLeftOut);
-  visit("modulus_stress_from", s.modulus_from, kLeftOut);
-  visit("modulus_stress_to", s.modulus_to, kLeftOut);
-  visit("modulus_begin", s.modulus_begin, kLeftOut);
-  visit("modulus_end", s.modulus_end, kLeftOut);
-  visit("poisson_begin", s.poisson_begin, kLeftOut);
+  stage_numbers([&](const char* name, auto mean, auto) { visit(name, s.*mean, kLeftOut); });
   if constexpr (std::is_const_v<std::remove_reference_t<decltype(s)>>)
     visit("not_determined", not_determined(s), kLeftOut);
-  visit("axial_strain_end", s.strain_end, kLeftOut);
-  visit("volumetric_strain_end", s.volumetric_end, kLeftOut);
-  visit("axial_stress_end", s.axial_end, kLeftOut);
-  visit("lateral_stress_end", s.lateral_end, kLeftOut);
-  visit("q_over_p_peak", s.ratio_peak, kLeftOut);
-  visit("axial_strain_at_peak", s.ratio_peak_strain, kLeftOut);
-  visit("q_over_p_end", s.ratio_end, kLeftOut);
-  visit("shear_strain_end", s.shear_end, kLeftOut);
-  visit("shear_over_normal_peak", s.friction_peak, kLeftOut);
-  visit("shear_strain_at_peak", s.friction_peak_shear, kLeftOut);
-  visit("shear_over_normal_end", s.friction_end, kLeftOut);
 }
 
 /// A sample that was prepared to a density.

@@ -73,6 +73,14 @@ TEST(StageResults, UndrainedAndSlidingStages) {
   const double p = (c.stress_x.back() + c.stress_y.back() + c.stress_axial.back()) / 3.0;
   const double axial = c.stress_axial.back() - c.stress_x.back();
   EXPECT_NEAR(results[1].ratio_end, std::sqrt(axial * axial + 3.0 * std::pow(e.shear * 0.01, 2)) / p, 1e-12);
+  // Summaries have every number that means are taken of, and only stages that slide have those of sliding.
+  const auto means = stage_means({c}, "law");
+  stage_numbers([&](const char* name, auto mean, auto result) {
+    EXPECT_EQ(json_of(means[1]).contains(name), std::isfinite(results[1].*result)) << name;
+    EXPECT_EQ((means[1].*mean).has_value(), std::isfinite(results[1].*result)) << name;
+  });
+  EXPECT_EQ(json_of(means[1])["shear_over_normal_peak"]["mean"], results[1].friction_peak);
+  EXPECT_FALSE(json_of(means[0]).contains("shear_strain_end"));
   EXPECT_EQ(deviators(c)[4], c.stress_deviator[4]);
   EXPECT_EQ(deviators(c).back(), 2.0 * c.stress_xz.back());
 }
