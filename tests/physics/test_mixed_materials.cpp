@@ -13,6 +13,7 @@
 #include "macrosim/compression.h"
 #include "macrosim/grain_materials.h"
 #include "macrosim/preparation.h"
+#include "tests/support/temporary_directory.h"
 
 namespace softgrain {
 namespace {
@@ -209,7 +210,26 @@ TEST(MixedMaterials, AMixtureLiesBetweenItsConstituents) {
   EXPECT_LT(pressure, 0.8 * stiff_pressure);
 }
 
-/// The share of each constituent in a level that holds several, and what grains are made of survives a file.
+TEST(MixedMaterials, AFileOfAPackingHoldsWhatItsGrainsAreMadeOf) {
+  const test::TemporaryDirectory directory;
+  const std::string path = directory.file("packing.h5");
+  MacroPacking packing = two_grains(1e-3, 2e-3, 0.0, 1);
+  {
+    h5::AtomicFile file(path);
+    write_macro_packing(file.root().create("mixed"), packing);
+    packing.bodies[1].material = 0;
+    write_macro_packing(file.root().create("alike"), packing);
+    file.commit();
+  }
+  const h5::Group root = h5::open_file(path);
+  const MacroPacking read = read_macro_packing(root.open("mixed"));
+  EXPECT_EQ(read.bodies[0].material, 0);
+  EXPECT_EQ(read.bodies[1].material, 1);
+  EXPECT_EQ(read_macro_packing(root.open("alike")).bodies[1].material, 0);
+  EXPECT_FALSE(root.open("alike").has("material"));
+}
+
+/// The share of each constituent in a level that holds several.
 TEST(MixedMaterials, GrainsOfASizeHaveTheMaterialsOfTheirPieces) {
   const Grading sizes = Grading::classes({{1e-3, 2e-3, 4.0, 0.25, 0}, {1e-3, 2e-3, 4.0, 0.75, 2}});
   RandomStream random(5, kMacroRadii, 0);
