@@ -65,15 +65,15 @@ void set_solid_laws(const MacroSpec& spec, const std::vector<std::int32_t>& numb
 void take_reference(MacroSpec& spec, const Grading& sizes) {
   if (spec.grain_materials.empty()) return;
   double volume = 0.0;
-  double modulus = 0.0;
+  double compliance = 0.0;
   double density = 0.0;
   for (const SizePiece& p : sizes.pieces()) {
     const GrainMaterial& m = material_of(spec, p.material);
     volume += p.volume;
-    modulus += p.volume * m.youngs_modulus;
+    compliance += p.volume / m.youngs_modulus;
     density += p.volume * m.density;
   }
-  spec.youngs_modulus = modulus / volume;
+  spec.youngs_modulus = volume / compliance;
   spec.density = density / volume;
 }
 

@@ -42,8 +42,10 @@ struct SolidContacts {
 void set_solid_laws(const MacroSpec& spec, const std::vector<std::int32_t>& number, std::int32_t wall,
                     const SolidContacts& contacts, LawSet& laws);
 
-/// Makes E and density of the spec the means over the solid volume of these sizes: the reference of packings of them.
-/// Does nothing where all grains are alike.
+/// Makes E and density of the spec those of packings of these sizes: 1/E is the mean of 1/E over the solid volume
+/// (contacts in a row, the same as the mean of 1/E over pairs drawn at random), density the mean. With grains of one
+/// size the pressure over this E differs from that of one material by at most 6 % at a ratio of E of 3, and 23 % at 10;
+/// over the arithmetic mean by 25 % and 60 %. Does nothing where all grains are alike.
 void take_reference(MacroSpec& spec, const Grading& sizes);
 
 }  // namespace softgrain

@@ -170,8 +170,8 @@ struct MacroSpec {
   TwinMotion twin;
   bool kt_secant = true;  ///< tangential law: the secant of the card, as published, instead of the initial slope
   /// Materials of solid grains that differ, by MacroBody::material; empty: all have E, nu, mu and density
-  /// above. With it these stand for all: E, nu and density are means over the solid volume (E is the unit of stresses),
-  /// mu is that of the roughest. Walls have them too.
+  /// above. With it these stand for all: 1/E, nu and density are means over the solid volume (E is the unit of
+  /// stresses), mu is that of the roughest. Walls have them too.
   GrainMaterials grain_materials{};
 };
 

@@ -160,8 +160,8 @@ sizes = { form = "power-law", exponent = 3.5, radius_min = "0.3 mm", radius_max 
 )",
                                    "count = 900\nratio = 3");
   for (const char* part :
-       {"goes into [material]: all grains have one resistance to rolling", "must be above radius_min",
-        "is used twice", "nearest known key is 'density'", "goes without [[constituent]]"})
+       {"goes into [material]: all grains have one resistance to rolling", "must be above radius_min", "is used twice",
+        "nearest known key is 'density'", "goes without [[constituent]]"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 

@@ -128,8 +128,9 @@ void take_materials(const SceneTable& root, std::vector<Constituent>& constituen
 std::string materials_text(const GrainMaterials& materials, double whole) {
   if (materials.empty()) return "";
   return fmt::format(
-      "grains of several materials ({}): E of a packing, which stresses \"over E\" are over, is the mean of its grains "
-      "over the solid volume, {} for all; a contact has the effective modulus of its two grains, and the smaller mu",
+      "grains of several materials ({}): E of a packing, which stresses \"over E\" are over, is the harmonic mean of "
+      "its grains over the solid volume, {} for all; a contact has the effective modulus of its two grains, and the "
+      "smaller mu",
       join_text(materials.each, "; ",
                 [](const GrainMaterial& m) {
                   return fmt::format("{}: E = {}, nu = {:g}, mu = {:g}", m.name, pressure_text(m.youngs_modulus),

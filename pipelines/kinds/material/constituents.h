@@ -32,8 +32,8 @@ std::vector<Constituent> read_constituents(const SceneTable& root, const MacroSp
 void refuse_idle_material(const SceneTable& root);
 
 /// Gives the spec what the grains are made of. Where all constituents have one E, nu and mu, the spec has these and
-/// everything is as without constituents; else each has its material, and E and density of the spec are the means over
-/// the solid volume, as is nu, and mu is the largest. Refuses more materials than a system has room for.
+/// everything is as without constituents; else each has its material, and 1/E, nu and density of the spec are the means
+/// over the solid volume, and mu is the largest. Refuses more materials than a system has room for.
 void take_materials(const SceneTable& root, std::vector<Constituent>& constituents, MacroSpec& spec);
 
 /// Mean density over the solid volume [kg/m^3].

@@ -85,9 +85,9 @@ struct RecipeScene {
   RecipeMacro macro;
   RecipeShells shells;
   std::int64_t cells = 100;  ///< sites of the cells that friction is fitted with
-  /// E of the whole, which its stresses are over: of [material], or with grains of several materials their mean over
-  /// the solid volume. That of a packing is the mean of its own grains, and it is loaded to stresses over E as the
-  /// whole.
+  /// E of the whole, which its stresses are over: of [material], or with grains of several materials the harmonic
+  /// mean over the solid volume. That of a packing is the mean of its own grains, and it is loaded to stresses over E
+  /// as the whole.
   double youngs_modulus = 0.0;
 };
 

@@ -9,8 +9,8 @@
 
 namespace softgrain {
 
-/// Makes E and density of a packing the means of its own grains, and multiplies the stresses of its test with the
-/// change of E: packings of stiff grains and of soft ones are compared at equal stresses over E.
+/// Makes E and density of a packing those of its own grains (take_reference), and multiplies the stresses of its test
+/// with the change of E: packings of stiff grains and of soft ones are compared at equal stresses over E.
 void take_own_reference(MacroSpec& spec, const Grading& sizes);
 
 /// The test of a packing as it is for the whole, of this E [Pa].

@@ -71,7 +71,7 @@ std::vector<double> mean_over(const std::vector<const MacroCurve*>& curves,
   return out;
 }
 
-/// A packing was loaded to stresses over the mean E of its own grains: those of the whole are this factor higher.
+/// A packing was loaded to stresses over the E of its own grains: those of the whole are this factor higher.
 void take_scale(double factor, StatePath& path, std::vector<StageRecord>& stages) {
   for (auto* stresses : {&path.axial, &path.lateral})
     for (double& stress : *stresses) stress *= factor;
