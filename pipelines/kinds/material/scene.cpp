@@ -238,7 +238,7 @@ class Loadings {
   std::vector<std::string> names_;
 };
 
-void read_target(const SceneTable& t, MacroSetup& setup, bool densities) {
+void read_density_target(const SceneTable& t, MacroSetup& setup, bool densities) {
   if (densities)
     read_density(t, setup);
   else
@@ -255,7 +255,7 @@ MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const 
   read_matter(t, spec);
   read_grains(t, spec);
   read_finer_preparation(t, v.setup);
-  read_target(t, v.setup, densities);
+  read_density_target(t, v.setup, densities);
   require_density(t, v.setup);
   read_test(t, spec);
   read_part_stages(root, t, spec);
@@ -306,7 +306,7 @@ MaterialScene read_material(const SceneTable& root, bool densities) {
   read_material_tables(root, base);
   const SceneTable grains = root.table("grains");
   const SceneTable packing = root.table_or_empty("packing");
-  read_target(packing, base, densities);
+  read_density_target(packing, base, densities);
   read_splits(grains, base.spec);
   read_stages(root, root.table_or_empty("test"), base.spec);
   base.samples = root.count(kSamplesKey, 1, 10000, base.samples);
