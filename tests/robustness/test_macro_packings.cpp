@@ -8,10 +8,11 @@
 #include <regex>
 
 #include "common/core/limits.h"
+#include "common/data/law_card.h"
 #include "common/data/macro_result.h"
 #include "common/io/text_file.h"
 #include "tests/support/program.h"
-#include "tests/support/synthetic_law.h"
+#include "tests/support/synthetic_run.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/unwrapped.h"
 

@@ -180,7 +180,7 @@ bool all_made(const MacroContent& content) {
 }
 
 /// What the law of a table is off by. One from a library was fitted to nothing: the library says its error.
-std::string error_text(const LawTableEntry& entry, const MultiContactLaw& law) {
+std::string table_error_text(const LawTableEntry& entry, const MultiContactLaw& law) {
   if (std::isfinite(law.error_cross)) return "off by " + cross_text(law);
   const double off = form_discrepancy(law);
   if (entry.source == TableSource::measured || !(off > 0.0) || !std::isfinite(off)) return "its error is not known";
@@ -204,7 +204,7 @@ void check_table_law(const LawTable& table, const LawSources& given, WantedForm 
   facts["error_cross"] = law.error_cross;
   out.add_once("law", facts,
                fmt::format("law: {}{}; {}", identity_text(named.identity),
-                           entry.main ? ", the main entry of the table" : "", error_text(entry, law)));
+                           entry.main ? ", the main entry of the table" : "", table_error_text(entry, law)));
   const bool of_content = !laws.solid_fraction && contents_fraction > 0.0;
   if (!remark.empty())
     out.warn(!of_content

@@ -256,7 +256,7 @@ class Loadings {
   std::vector<std::string> names_;
 };
 
-void read_target(const SceneTable& t, MacroSetup& setup, bool densities) {
+void read_density_target(const SceneTable& t, MacroSetup& setup, bool densities) {
   if (densities)
     read_density(t, setup);
   else
@@ -279,7 +279,7 @@ MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const 
   read_grains(t, spec);
   read_finer_preparation(t, v.setup);
   require_own_preparation(t, spec);
-  read_target(t, v.setup, densities);
+  read_density_target(t, v.setup, densities);
   require_density(t, v.setup);
   read_test(t, spec);
   read_part_stages(root, t, spec);
@@ -335,7 +335,7 @@ MaterialScene read_material(const SceneTable& root, bool alone) {
     if (base.spec.grain_materials.empty()) base.spec.density = mean_density(constituents);
   }
   const SceneTable packing = root.table_or_empty("packing");
-  read_target(packing, base, alone);
+  read_density_target(packing, base, alone);
   read_splits(grains, base.spec);
   read_stages(root, root.table_or_empty("test"), base.spec);
   base.samples = root.count(kSamplesKey, 1, 10000, base.samples);
