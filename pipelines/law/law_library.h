@@ -188,8 +188,8 @@ struct CorrectedAnswer {
 /// The answer corrected by own packings, see own_entry(): mean and covariance of the product of two normal
 /// distributions. The covariance of own numbers is that of their refits times own_error_factor() squared, that of the
 /// library its widened deviations with the mean correlations. A neighbour that the library does not have keeps what was
-/// measured. The error of the form is that of the own table, where it has configurations that its fit did not see.
-/// Throws InputError for a table without refits.
+/// measured, but for errors that it shares with other numbers. The error of the form is that of the own table, where it
+/// has configurations that its fit did not see. Throws InputError for a table without refits.
 CorrectedAnswer corrected(const LawLibrary& library, const LibraryAnswer& prior, const LawTableEntry& own);
 
 /// By how much refits to other packings understate the errors of a law for what its form does not give back: what it is

@@ -145,7 +145,7 @@ std::vector<std::string> contradictions(const LibraryAnswer& library, const OwnN
   std::vector<std::string> out;
   for (const std::size_t k : told) {
     const LibraryNumber& n = library.numbers[k];
-    if (!std::isfinite(n.value)) continue;
+    if (!std::isfinite(n.value) || n.name == kTrialsNumber) continue;  // trials make packings, no forces
     const double apart = std::abs(own.values[k] - n.value) / std::hypot(own.errors[k], n.deviation);
     if (apart > kMostApart)
       out.push_back(fmt::format("{} {:.4g}, library {:.4g}, {:.1f} standard deviations apart", n.name, own.values[k],
