@@ -67,8 +67,12 @@ TEST(Constituents, GiveTheirMaterialToTheirGrains) {
   std::array<double, 2> volume{};
   for (const MacroBody& b : drawn_bodies(spec, 1, 0)) {
     volume.at(static_cast<std::size_t>(b.material)) += b.r * b.r * b.r;
-    if (b.r > 1.2e-3 * (1.0 + 1e-9)) EXPECT_EQ(b.material, 0);
-    if (b.r < 1e-3 * (1.0 - 1e-9)) EXPECT_EQ(b.material, 1);
+    if (b.r > 1.2e-3 * (1.0 + 1e-9)) {
+      EXPECT_EQ(b.material, 0);
+    }
+    if (b.r < 1e-3 * (1.0 - 1e-9)) {
+      EXPECT_EQ(b.material, 1);
+    }
   }
   EXPECT_NEAR(volume[0] / (volume[0] + volume[1]), 0.6, 0.03);
   EXPECT_NE(packing_key(spec, 1, 0),
