@@ -267,10 +267,10 @@ void read_density_target(const SceneTable& t, MacroSetup& setup, bool densities)
 
 /// Keys of all tables of the scene, in one.
 MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const MacroSetup& base, bool valid,
-                             bool densities) {
+                             bool alone) {
   MaterialVariant v{read_variant_name(t), base};
   MacroSpec& spec = v.setup.spec;
-  if (!root.tables("constituent").empty())
+  if (alone && !root.tables("constituent").empty())
     t.refuse({"sizes", "exponent", "radius_max", "ratio"},
              "goes without [[constituent]], which have sizes of their own");
   if (!spec.grain_materials.empty())
@@ -279,7 +279,7 @@ MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const 
   read_grains(t, spec);
   read_finer_preparation(t, v.setup);
   require_own_preparation(t, spec);
-  read_density_target(t, v.setup, densities);
+  read_density_target(t, v.setup, alone);
   require_density(t, v.setup);
   read_test(t, spec);
   read_part_stages(root, t, spec);
