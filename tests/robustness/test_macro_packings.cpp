@@ -34,8 +34,9 @@ class MacroPackings : public ::testing::Test {
                       "kind = \"macro\"\nlaw = \"law.toml\"\n[macro]\nsteps = 2\nresolved = false\n" + keys);
   }
   [[nodiscard]] ProgramOutcome macro(const std::string& name, const std::string& more = "") const {
+    const std::string threads = more.find("--threads") == std::string::npos ? "--threads 1 " : "";
     ProgramOutcome outcome =
-        run_the_program("macrosim '" + file("scene.toml") + "' --quiet --threads 1 --out '" + file(name) + "' " + more);
+        run_the_program("macrosim '" + file("scene.toml") + "' --quiet --out '" + file(name) + "' " + threads + more);
     outcome.output = unwrapped(outcome.output);
     return outcome;
   }
