@@ -51,7 +51,9 @@ class SieveReader {
     const bool one = rows.size() < 2 && !pan_row;
     Grading grading =
         sieve_grading(rows, dimension,
-                      one ? "" : fmt::format(", or give {} = \"... mm\" {}", low ? "smallest" : "largest", kInScene));
+                      one ? ""
+                          : fmt::format(", or give {0} = \"... mm\" {1} (softgrain check FILE --set '{0}=\"... mm\"')",
+                                        low ? "smallest" : "largest", kInScene));
     return {std::move(grading), columns_text(), std::move(rows), std::move(remarks_)};
   }
 

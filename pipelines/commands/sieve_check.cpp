@@ -35,7 +35,8 @@ std::string scenes_for(const Grading& sizes) {
     return fmt::format("a sample of {} grains follows it within 2 %: use it in grain-box, particles, macro, material",
                        grains_text(grains));
   return fmt::format(
-      "a sample of {} grains would follow it within 2 %: use it in a recipe (pipelines/graded_sand.toml)",
+      "a sample of {} grains would follow it within 2 %: use it in a recipe (pipelines/graded_sand.toml; "
+      "for moduli and K0 pipelines/sand_modulus.toml)",
       grains_text(grains));
 }
 
