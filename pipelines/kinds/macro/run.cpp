@@ -37,7 +37,7 @@ std::string stage_line(const std::string& engine, const StageMeans& s) {
   std::string line = fmt::format("{}, stage {}:", engine, s.record.name);
   if (const std::string modulus = modulus_text(s); !modulus.empty()) line += " " + modulus + ",";
   if (s.modulus_begin && s.record.kind != StageKind::hold)
-    line += fmt::format(" tangent at its begin {},", modulus_text(*s.modulus_begin));
+    line += fmt::format(" tangent at its beginning {},", modulus_text(*s.modulus_begin));
   if (s.axial_end) line += fmt::format(" axial stress {} Pa,", with_error(*s.axial_end));
   if (s.ratio_peak) line += fmt::format(" q/p {} at most,", with_error(*s.ratio_peak));
   if (s.ratio_end) line += fmt::format(" {} at its end,", with_error(*s.ratio_end));
