@@ -212,8 +212,11 @@ MacroPacking read_macro_packing(const h5::Group& group) {
   if (group.has("material")) {
     const auto material = group.integers("material");
     if (material.size() != packing.bodies.size()) throw IoError("macro packing: arrays of wrong length");
-    for (std::size_t k = 0; k < material.size(); ++k)
+    for (std::size_t k = 0; k < material.size(); ++k) {
+      if (material[k] < 0 || material[k] >= static_cast<std::int64_t>(GrainMaterials::kMost))
+        throw IoError("macro packing: no such material");
       packing.bodies[k].material = static_cast<std::int32_t>(material[k]);
+    }
   }
   read_springs(group, packing);
   if (group.has_attribute("loop_passes")) read_attributes(group, packing.cost);

@@ -145,12 +145,12 @@ struct PriorNumber {
 void fields(auto&& visit, Of<PriorNumber> auto& n) {
   visit("name", n.name);
   visit("own", n.own);
-  visit("own_error", n.own_error);
+  visit("own_error", n.own_error, Limits::not_negative());
   visit("library", n.library);
-  visit("library_error", n.library_error);
+  visit("library_error", n.library_error, Limits::not_negative());
   visit("value", n.value);
-  visit("error", n.error);
-  visit("own_weight", n.own_weight);
+  visit("error", n.error, Limits::not_negative());
+  visit("own_weight", n.own_weight, Limits::flag());
 }
 
 /// How the prediction of a library came into the law of an entry.

@@ -92,11 +92,15 @@ void write_prior(Out out, const LawPrior& prior) {
                  "number = [\n",
                  quoted(prior.library), real(prior.distance), real(prior.own_factor));
   for (const PriorNumber& n : prior.numbers) {
-    fmt::format_to(out, "  {{ name = {}", quoted(n.name));
-    if (std::isfinite(n.own)) fmt::format_to(out, ", own = {:.7g}, own_error = {:.7g}", n.own, n.own_error);
-    if (std::isfinite(n.library))
-      fmt::format_to(out, ", library = {:.7g}, library_error = {:.7g}", n.library, n.library_error);
-    fmt::format_to(out, ", value = {:.7g}, error = {:.7g}, own_weight = {:.4g} }},\n", n.value, n.error, n.own_weight);
+    std::vector<std::string> parts;
+    const auto write = [&]<class Member>(const char* name, const Member& member, const auto&...) {
+      if constexpr (std::is_same_v<Member, std::string>)
+        parts.push_back(fmt::format("{} = {}", name, quoted(member)));
+      else if (std::isfinite(member))
+        parts.push_back(fmt::format("{} = {:.7g}", name, member));
+    };
+    fields(write, n);
+    fmt::format_to(out, "  {{ {} }},\n", fmt::join(parts, ", "));
   }
   fmt::format_to(out, "]\n");
 }
@@ -210,16 +214,13 @@ LawPrior read_prior(const SceneTable& t) {
   out.own_factor = t.number("own_factor", Unit::none, Range{1.0, kInfinity, false, true});
   for (const SceneTable& n : t.tables("number")) {
     PriorNumber one;
-    one.name = n.text("name");
-    const auto known = [&](const char* value, const char* error, double& to, double& to_error) {
-      if (!n.has(value)) return;
-      to = n.number(value, Unit::none);
-      to_error = n.number(error, Unit::none, Range::not_negative());
+    const auto read = [&]<class Member>(const char* name, Member& member, const Limits& limits = Limits::anything()) {
+      if constexpr (std::is_same_v<Member, std::string>)
+        member = n.text(name);
+      else if (n.has(name) || !std::isnan(member))  // what may be unknown is NaN
+        member = n.number(name, Unit::none, Range::closed(limits.low, limits.high));
     };
-    known("own", "own_error", one.own, one.own_error);
-    known("library", "library_error", one.library, one.library_error);
-    known("value", "error", one.value, one.error);
-    one.own_weight = n.number("own_weight", Unit::none, Range::closed(0.0, 1.0));
+    fields(read, one);
     out.numbers.push_back(std::move(one));
   }
   return out;

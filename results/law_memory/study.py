@@ -27,7 +27,11 @@ import re
 import sys
 import tomllib
 
-import numpy as np
+try:
+    import numpy as np
+except ImportError:
+    print(f"{sys.argv[0]}: needs numpy (Debian: python3-numpy)", file=sys.stderr)
+    sys.exit(77)
 
 HERE = pathlib.Path(__file__).resolve().parent
 TWINS = HERE.parent / "macro_vs_resolved"

@@ -17,7 +17,7 @@ struct MultiContactLawFit {
   LawTable table;
   std::vector<std::string> remarks;
   std::vector<std::string> warnings{};  ///< what may make the law wrong for its purpose
-  bool usable = true;                   ///< every recorded point came to rest, and the best law of every entry is good
+  bool usable = true;                   ///< every recorded point is in equilibrium, and the best law of every entry is good
 };
 
 /// "12.1 % on what was held out", or that nothing was; "9.6 % leaving one out", or that there was but one.

@@ -296,21 +296,21 @@ constexpr std::array kMakingBodies{"bodies",
                                    "coarse_share",
                                    "first_pressure",
                                    "preparation_tolerance",
-                                   "preparation_passes",
-                                   "solid_fraction",
-                                   "void_ratio",
-                                   "dry_density",
-                                   "solid_fraction_tolerance"};
+                                   "preparation_passes"};
 
 /// `packing`: places, radii and kinds of all bodies from a file; what would make them otherwise has no place beside it,
 /// nor below a common one. The file is read for the boundary of the table that names it.
 void read_given(const SceneTable& t, MacroSetup& setup) {
   const bool own = t.has("packing");
   if (!own && !setup.given) return;
-  for (const char* key : kMakingBodies)
-    if (t.has(key))
-      t.add_error(key, own ? "goes without packing, which says where all bodies are"
-                           : "goes without the common packing, which says where all bodies are");
+  const auto refuse = [&](const auto& keys) {
+    for (const char* key : keys)
+      if (t.has(key))
+        t.add_error(key, own ? "goes without packing, which says where all bodies are"
+                             : "goes without the common packing, which says where all bodies are");
+  };
+  refuse(kMakingBodies);
+  refuse(kDensityKeys);
   if (!own) t.refuse({"boundary"}, "is that of the common packing: give it beside that, or packing here too");
   if (setup.samples > 1) t.add_error("samples", "a packing is one sample: must be 1");
   if (!own) return;

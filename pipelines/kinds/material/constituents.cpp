@@ -8,7 +8,6 @@
 #include "common/core/text.h"
 #include "common/packing/grading_scene.h"
 #include "macrosim/grain_materials.h"
-#include "pipelines/compare/stage_results.h"
 
 namespace softgrain {
 

@@ -483,6 +483,7 @@ std::vector<Property> properties_of_packings(const MaterialVariant& v) {
           {"preparation_tolerance", number(p.tolerance)},
           {"preparation_passes", std::to_string(p.max_passes)},
           {"target solid fraction", v.setup.density ? number(v.setup.density->solid_fraction(s.density)) : "none"},
+          {"solid_fraction_tolerance", v.setup.density ? number(v.setup.density->tolerance) : "none"},
           {"sizes of", whole_sizes(s)}};
 }
 

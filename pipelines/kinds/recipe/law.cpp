@@ -36,10 +36,8 @@ MaterialLaw fit_coarsest(const RecipeScene& scene, const std::vector<VariantResu
 }
 
 double grain_density(const RecipeScene& scene) {
-  if (scene.constituents.empty()) return scene.material.variants.front().setup.spec.density;
-  double mass = 0.0;
-  for (const Constituent& c : scene.constituents) mass += c.volume_share * c.density;
-  return mass;
+  return scene.constituents.empty() ? scene.material.variants.front().setup.spec.density
+                                    : mean_density(scene.constituents);
 }
 
 CellCard among_all_fines(const RecipeScene& scene, const CellCard& coarsest, const OnsetByForms& fines) {

@@ -36,7 +36,7 @@ class RecipeRun {
     MaterialOutcome measured = summarise(scene_.material, results_, run_);
     summary_.material = std::move(measured.summary);
     for (const std::string& raised : scene_.raised) head().remarks.push_back(raised);
-    if (const GrainMaterials materials = spec().grain_materials; !materials.empty()) {
+    if (const GrainMaterials& materials = spec_.grain_materials; !materials.empty()) {
       summary_.material.youngs_modulus = scene_.youngs_modulus;
       head().remarks.push_back(materials_text(materials, scene_.youngs_modulus));
     }
@@ -79,7 +79,7 @@ class RecipeRun {
   }
 
   void describe() {
-    const bool alike = spec().grain_materials.empty();
+    const bool alike = spec_.grain_materials.empty();
     for (const Constituent& c : scene_.constituents) {
       ConstituentSummary s{c.name, c.mass_share, c.density, c.volume_share};
       if (!alike) {
@@ -110,11 +110,7 @@ class RecipeRun {
     load(forms, *states, widen);
   }
 
-  /// Material and test of the whole.
-  [[nodiscard]] MacroSpec spec() const {
-    return test_of_whole(scene_.material.variants.front().setup.spec, scene_.youngs_modulus);
-  }
-  [[nodiscard]] bool staged() const { return scene_.material.variants.front().setup.spec.test == MacroTest::stages; }
+  [[nodiscard]] bool staged() const { return spec_.test == MacroTest::stages; }
 
   /// Where all levels were packed together, what they did stands beside it.
   void press_by_stages(const StateFit& states, const Estimate& onset) {
@@ -283,7 +279,7 @@ class RecipeRun {
 
   void add_moduli() {
     const double modulus = scene_.youngs_modulus;
-    std::array<double, 2> interval = spec().modulus_stress;
+    std::array<double, 2> interval = spec_.modulus_stress;
     if (staged()) interval = {out().staged->stages.front().stress_from, out().staged->stages.front().stress_to};
     std::vector<RecipeCurve> curves = out().curves;
     if (staged()) std::ranges::for_each(curves, up_to_highest);
@@ -345,6 +341,8 @@ class RecipeRun {
   }
 
   RecipeScene scene_;
+  /// Material and test of the whole.
+  const MacroSpec spec_ = test_of_whole(scene_.material.variants.front().setup.spec, scene_.youngs_modulus);
   const Run& run_;
   std::vector<VariantResult> results_;
   WholeLaw law_;
