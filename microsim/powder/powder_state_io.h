@@ -37,9 +37,9 @@ void write_powder_state(const h5::Group& group, const PowderState& state);
 /// Reads into a state whose system has been made from the same PowderSpec. Throws IoError when something is missing.
 void read_powder_state(const h5::Group& group, PowderState& state);
 
-/// Reads the recorded points and the stages of a written state; empty the latter are empty where an earlier program
-/// left none.
+/// The recorded points of a written state.
 std::vector<PowderPoint> read_course(const h5::Group& group);
+/// The stages of a written state; empty where an earlier program left none.
 std::vector<PowderStage> read_stages(const h5::Group& group);
 
 /// The system of a stored sample (a group with what write_powder_state wrote) with the law of its specification, to be
