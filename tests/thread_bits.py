@@ -68,23 +68,24 @@ def run(program, words, threads, place):
 
 
 def different(program, scenes, name, counts, out):
-    """What differs or fails, in words; empty: nothing."""
+    """What differs or fails, in words; empty: nothing. The first count runs twice: what then differs (times) does not count."""
     words = command_of(scenes, name, out)
-    places, statuses = [], []
-    for threads in counts:
-        place = out / name / f"threads-{threads}" / "run"
+    runs, statuses = [], []
+    for number, threads in enumerate([counts[0], *counts]):
+        place = out / name / f"{number}" / "run"
         place.parent.mkdir(parents=True, exist_ok=True)
         status, errors = run(program, words, threads, place)
         if status not in (0, 3):
             return f"{threads} threads: status {status}: {errors.strip()[-600:]}"
-        places.append(place)
+        runs.append(place)
         statuses.append(status)
     if len(set(statuses)) > 1:
         return f"statuses {statuses}"
-    for threads, place in zip(counts[1:], places[1:]):
-        # Reports and provenance say how many threads there were and what it took; their numbers stand in the other files.
-        found = [f for f in compare(places[0], place, quiet=True) if not f[0].endswith((".html", "log.txt")) and
-                 ".cost." not in f[1]]
+    changing = frozenset(compare(runs[0], runs[1], quiet=True))
+    for threads, place in zip(counts[1:], runs[2:]):
+        # Reports say how many threads there were; their numbers stand in the other files.
+        found = [f for f in compare(runs[0], place, known=changing, quiet=True) if not f[0].endswith(".html") and
+                 not f[1].endswith(("threads", "memory_before_scene"))]
         if found:
             return f"{threads} threads: {len(found)} places differ: {sorted(found)[:3]}"
     return ""
