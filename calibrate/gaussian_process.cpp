@@ -233,6 +233,16 @@ ProcessValue GaussianProcess::at(const std::vector<double>& u) const {
           unit_ * std::sqrt(std::max(left, 0.0) + shape_.scatter * shape_.scatter)};
 }
 
+void GaussianProcess::expect(const std::vector<double>& u, double error) {
+  if (u.size() != points_.front().size() || !std::ranges::all_of(u, [](double x) { return std::isfinite(x); }) ||
+      !std::isfinite(error) || error < 0.0)
+    throw InputError("Gaussian process: a point has other coordinates than the others, or an error is below 0");
+  values_.push_back((at(u).mean - mean_) / unit_);
+  points_.push_back(u);
+  errors_.push_back(error / unit_);
+  solve();
+}
+
 double GaussianProcess::scatter() const { return unit_ * shape_.scatter; }
 const std::vector<double>& GaussianProcess::lengths() const { return shape_.lengths; }
 

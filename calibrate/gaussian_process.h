@@ -30,6 +30,10 @@ class GaussianProcess {
   /// What another point would have: its deviation holds the scatter s, not the error of a measurement there.
   [[nodiscard]] ProcessValue at(const std::vector<double>& u) const;
 
+  /// As if a point had been measured with this standard error, and what is expected there had been found: deviations
+  /// around it narrow, means stay, and so do A, l_a and s. Throws InputError for other coordinates and errors below 0.
+  void expect(const std::vector<double>& u, double error);
+
   [[nodiscard]] double scatter() const;                      ///< s
   [[nodiscard]] const std::vector<double>& lengths() const;  ///< l_a
 

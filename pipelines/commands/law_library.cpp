@@ -85,6 +85,38 @@ std::string checks_text(const LawLibrary& library) {
   return text + "no press tests: " + without->source + " has no law of one plane with a force at Delta = 0.2\n";
 }
 
+/// Which materials to measure, see next_materials(), and the commands that do.
+std::string next_text(const NextMaterials& next) {
+  if (next.materials.empty()) return "";
+  std::string text = fmt::format(
+      "ln force of one plane: uncertain by {:.3g} (root mean square over the materials that are served). Measured "
+      "next, "
+      "each with those above it:\n{:>8} {:>9} {:>7} {:>15} {:>10} {:>14} {:>11}\n",
+      next.deviation, "mu", "exponent", "ratio", "solid fraction", "trials", "uncertain now", "then left");
+  std::string commands;
+  for (std::size_t k = 0; k < next.materials.size(); ++k) {
+    const NextMaterial& m = next.materials[k];
+    text += fmt::format("{:>8.3f} {:>9.2f} {:>7.2f} {:>15.3f} {:>10.2g} {:>14.3g} {:>11.3g}\n", m.at.friction,
+                        m.at.exponent, m.at.polydispersity, m.at.solid_fraction, m.trials, m.deviation, m.left);
+    commands += fmt::format(
+        "softgrain run pipelines/law_library.toml --set material.mu={:.3f} --set packing.exponent={:.2f} "
+        "--set packing.polydispersity={:.2f} --set packing.trials={:.0f} --out results/next_{}\n",
+        m.at.friction, m.at.exponent, m.at.polydispersity, m.trials, k + 1);
+  }
+  return text + commands;
+}
+
+json next_json(const NextMaterials& next) {
+  json out = json::array();
+  for (const NextMaterial& m : next.materials) {
+    json one{{"deviation", m.deviation}, {"left", m.left}};
+    for (const LibraryVariable& v : kLibraryVariables) one[v.name] = m.at.*v.value;
+    if (std::isfinite(m.trials)) one["trials"] = m.trials;
+    out.push_back(std::move(one));
+  }
+  return {{"deviation", next.deviation}, {"materials", std::move(out)}};
+}
+
 /// What `law library --out` may write: the library, and tables of leaving one out, that of press tests last.
 std::vector<std::string> files_of(const std::string& out) {
   if (out.empty()) return {};
@@ -219,10 +251,14 @@ std::string answer_text(const LibraryAnswer& answer, const std::vector<std::stri
 
 ExitStatus make_library(const LawOptions& o) {
   if (o.files.empty()) throw InputError("law library: give directories with law tables (see softgrain law library -h)");
+  constexpr std::int64_t kMostNext = 50;
+  if (o.next < 0 || o.next > kMostNext)
+    throw InputError(fmt::format("law library: --next {}: must be a whole number from 0 to {}", o.next, kMostNext));
   const std::vector<std::string> files = files_of(o.out);
   for (const std::string& path : files) refuse_to_overwrite(path, "choose another directory, or move it away");
   const LibraryCollection all = library_of(o.files);
   const std::vector<std::string> written = write_library(all.library, files, provenance_of(o));
+  const NextMaterials next = o.next > 0 ? next_materials(all.library, static_cast<int>(o.next)) : NextMaterials{};
   const bool good = std::ranges::none_of(all.left_out, &LeftOutTable::damaged);
   if (o.json) {
     json out{{"command", "law library"},
@@ -231,11 +267,13 @@ ExitStatus make_library(const LawOptions& o) {
              {"left_out", left_out_json(all.left_out)},
              {"leave_one_out", check_json(all.library.checks)},
              {"leave_one_out_press_test", check_json(all.library.press_checks)}};
+    if (o.next > 0) out["next"] = next_json(next);
     if (!written.empty()) out["written"] = written;
     write_standard_output(out.dump(2) + "\n");
   } else {
     write_standard_output(left_out_text(all.left_out) + fmt::format("{} materials\n", all.library.materials.size()) +
-                          checks_text(all.library) + (written.empty() ? "" : "written: " + join_text(written) + "\n"));
+                          checks_text(all.library) + next_text(next) +
+                          (written.empty() ? "" : "written: " + join_text(written) + "\n"));
   }
   return good ? ExitStatus::good : ExitStatus::not_usable;
 }

@@ -163,6 +163,9 @@ void add_law_command(CLI::App& app, LawOptions& options) {
   add_files(*library, options, "directories with law_table.toml at any depth, or a library");
   library->add_option("--out", options.out, "Library to write; default: what is found, on the terminal")
       ->option_text("FILE.toml");
+  library
+      ->add_option("--next", options.next, "Says which N materials would narrow the answers most, were they measured")
+      ->option_text("N");
   add_get(*add(LawAction::get, "The law table of a material that was not measured, from a library, in a second"),
           options);
 }

@@ -69,6 +69,7 @@ struct LawOptions {
   double narrow = 0.5;        ///< --narrow: wanted width over what it is
   bool as_scene = false;      ///< --toml of plan: as tables of a law-table scene
 
+  std::int64_t next = 0;       ///< --next of library: materials that would narrow its answers most; 0: none are said
   std::string library;         ///< --library of get: the library; empty: that of the program
   double friction = -1.0;      ///< --mu of get
   double exponent = -1.0;      ///< --exponent of get

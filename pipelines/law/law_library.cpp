@@ -1,14 +1,18 @@
 #include "pipelines/law/law_library.h"
 
 #include <fmt/format.h>
+#include <gsl/gsl_qrng.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "calibrate/gaussian_process.h"
 #include "common/core/error.h"
+#include "common/core/statistics.h"
 #include "common/core/text.h"
+#include "pipelines/law/law_library_numbers.h"
 #include "pipelines/law/law_library_predict.h"
 
 namespace softgrain {
@@ -63,7 +67,81 @@ void require_inside(const UnitBox& box, const LibraryPoint& at) {
                                fractions_inside(box, at)));
 }
 
+/// Points of the box that are served, spread evenly.
+std::vector<std::vector<double>> served_points(const UnitBox& box) {
+  constexpr std::size_t kPoints = 256;
+  constexpr std::size_t kMostTried = 100 * kPoints;
+  const std::unique_ptr<gsl_qrng, decltype(&gsl_qrng_free)> sequence(
+      gsl_qrng_alloc(gsl_qrng_sobol, static_cast<unsigned>(kLibraryVariables.size())), &gsl_qrng_free);
+  std::vector<std::vector<double>> out;
+  std::vector<double> u(kLibraryVariables.size());
+  for (std::size_t k = 0; k < kMostTried && out.size() < kPoints; ++k) {
+    gsl_qrng_get(sequence.get(), u.data());
+    for (std::size_t a = 0; a < u.size(); ++a)
+      if (!(box.high(a) > box.low(a))) u[a] = 0.5;
+    if (distance_from_hull(box.points(), u) <= kReachOfHull) out.push_back(u);
+  }
+  return out;
+}
+
+double mean_square_deviation(const GaussianProcess& process, const std::vector<std::vector<double>>& points) {
+  double sum = 0.0;
+  for (const std::vector<double>& u : points) {
+    const double deviation = process.at(u).deviation;
+    sum += deviation * deviation;
+  }
+  return sum / static_cast<double>(points.size());
+}
+
+/// The point, one of `points`, whose measurement leaves the least mean square, and what it leaves.
+std::pair<std::size_t, double> most_telling(const GaussianProcess& process, double error,
+                                            const std::vector<std::vector<double>>& points) {
+  std::pair<std::size_t, double> best{0, std::numeric_limits<double>::infinity()};
+  for (std::size_t c = 0; c < points.size(); ++c) {
+    GaussianProcess then = process;
+    then.expect(points[c], error);
+    if (const double left = mean_square_deviation(then, points); left < best.second) best = {c, left};
+  }
+  return best;
+}
+
+LibraryPoint material_at(const UnitBox& box, const std::vector<double>& u) {
+  const std::vector<double> row = box.row(u);
+  LibraryPoint out;
+  for (std::size_t a = 0; a < row.size(); ++a)
+    out.*kLibraryVariables[a].value = kLibraryVariables[a].logarithm ? std::exp(row[a]) : row[a];
+  return out;
+}
+
+/// Positions to try per grain for the solid fraction of this point.
+double trials_at(const LawLibrary& library, const UnitBox& box, const std::vector<double>& u) {
+  const std::vector<std::string> names = library.names();
+  const auto k = static_cast<std::size_t>(std::ranges::find(names, kTrialsNumber) - names.begin());
+  if (k == names.size() || library.checks[k].materials == 0) return std::nan("");
+  return std::exp(predicted_number(library.checks[k], known_number(library, box, k), {u}).front().mean);
+}
+
 }  // namespace
+
+NextMaterials next_materials(const LawLibrary& library, int count) {
+  if (library.checks.size() != library.names().size()) throw InputError("law library: it is not checked");
+  const UnitBox box = box_of(library);
+  const KnownNumber force = known_number(library, box, 0);
+  GaussianProcess process(force.points, force.values, force.errors);
+  const double error = quantile(force.errors, 0.5);
+  const double widened = library.checks.front().factor;
+  const std::vector<std::vector<double>> points = served_points(box);
+  if (points.empty()) throw InputError("law library: its materials lie in too small a part of their ranges");
+  NextMaterials out{widened * std::sqrt(mean_square_deviation(process, points)), {}};
+  for (int k = 0; k < count; ++k) {
+    const auto [best, left] = most_telling(process, error, points);
+    const std::vector<double>& u = points[best];
+    out.materials.push_back({material_at(box, u), trials_at(library, box, u), widened * process.at(u).deviation,
+                             widened * std::sqrt(left)});
+    process.expect(u, error);
+  }
+  return out;
+}
 
 std::string point_text(const LibraryPoint& at) {
   return join_text(kLibraryVariables, ", ",

@@ -151,6 +151,25 @@ LibraryAnswer ask_library(const LawLibrary& library, const LibraryPoint& at);
 /// eight materials.
 std::vector<LibraryCheck> check_library(const LawLibrary& library);
 
+/// A material that is worth measuring.
+struct NextMaterial {
+  LibraryPoint at;
+  double trials = 0.0;     ///< positions tried per grain that give its solid fraction, as the library knows; NaN: unknown
+  double deviation = 0.0;  ///< of ln force of one plane there, of an answer, before it is measured
+  double left = 0.0;       ///< root mean square of these deviations over all materials that are served, afterwards
+};
+
+struct NextMaterials {
+  double deviation = 0.0;  ///< root mean square over all materials that are served, now
+  std::vector<NextMaterial> materials;
+};
+
+/// Which materials would narrow the answers most, one after the other: each makes the mean square of the deviation of
+/// the force least, over materials spread evenly over all that the library serves (active learning of Cohn, Ghahramani
+/// and Jordan 1996, doi:10.1613/jair.295). Deviations of a Gaussian process do not depend on what will be measured, only
+/// on where, and on the errors, for which the median of those of the library is taken.
+NextMaterials next_materials(const LawLibrary& library, int count);
+
 /// Whether the answer is to a press test, so that the grains inside are not known.
 inline bool of_press_test(const LibraryAnswer& answer) { return std::isnan(answer.at.exponent); }
 

@@ -93,18 +93,6 @@ double apart(const std::vector<double>& u, const std::vector<double>& v) {
   return std::sqrt(square);
 }
 
-KnownNumber known_number(const LawLibrary& library, const UnitBox& box, std::size_t k) {
-  KnownNumber out;
-  for (std::size_t i = 0; i < library.materials.size(); ++i) {
-    const LibraryMaterial& m = library.materials[i];
-    if (!std::isfinite(m.numbers[k]) || !std::isfinite(m.errors[k])) continue;
-    out.points.push_back(box.points()[i]);
-    out.values.push_back(m.numbers[k]);
-    out.errors.push_back(m.errors[k]);
-  }
-  return out;
-}
-
 /// Mean of the correlations of all materials: that of positive matrices is one.
 std::vector<double> mean_correlations(const LawLibrary& library) {
   const std::size_t size = library.law_numbers() * library.law_numbers();
@@ -142,6 +130,25 @@ std::vector<double> UnitBox::operator()(const std::vector<double>& row) const {
   std::vector<double> out;
   for (std::size_t a = 0; a < low_.size(); ++a)
     out.push_back(high_[a] > low_[a] ? (row[a] - low_[a]) / (high_[a] - low_[a]) : 0.5);
+  return out;
+}
+
+std::vector<double> UnitBox::row(const std::vector<double>& u) const {
+  std::vector<double> out;
+  for (std::size_t a = 0; a < u.size(); ++a)
+    out.push_back(high_[a] > low_[a] ? low_[a] + u[a] * (high_[a] - low_[a]) : low_[a]);
+  return out;
+}
+
+KnownNumber known_number(const LawLibrary& library, const UnitBox& box, std::size_t k) {
+  KnownNumber out;
+  for (std::size_t i = 0; i < library.materials.size(); ++i) {
+    const LibraryMaterial& m = library.materials[i];
+    if (!std::isfinite(m.numbers[k]) || !std::isfinite(m.errors[k])) continue;
+    out.points.push_back(box.points()[i]);
+    out.values.push_back(m.numbers[k]);
+    out.errors.push_back(m.errors[k]);
+  }
   return out;
 }
 

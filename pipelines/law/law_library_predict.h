@@ -21,6 +21,7 @@ class UnitBox {
  public:
   explicit UnitBox(const std::vector<std::vector<double>>& rows);
   [[nodiscard]] std::vector<double> operator()(const std::vector<double>& row) const;
+  [[nodiscard]] std::vector<double> row(const std::vector<double>& u) const;  ///< of a point of the box
   [[nodiscard]] const std::vector<std::vector<double>>& points() const { return points_; }  ///< the rows, scaled
   [[nodiscard]] double low(std::size_t a) const { return low_[a]; }
   [[nodiscard]] double high(std::size_t a) const { return high_[a]; }
@@ -30,6 +31,9 @@ class UnitBox {
   std::vector<double> high_;
   std::vector<std::vector<double>> points_;
 };
+
+/// The materials that have number k of LawLibrary::names().
+KnownNumber known_number(const LawLibrary& library, const UnitBox& box, std::size_t k);
 
 /// What is wrong with the value of a variable, at u of its measured range; empty: nothing. One that never varied serves
 /// its own value, but for rounding.

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "calibrate/gaussian_process.h"
 #include "common/contact/make_laws.h"
 #include "common/core/error.h"
 #include "common/core/statistics.h"
@@ -380,6 +381,44 @@ TEST(LawLibrary, ScenesNameTheMaterial) {
       message_of([&] { (void)law("[library]\nmu = 0.45\nexponent = 3.2\nratio = 70.0\nsolid_fraction = 0.66\n"); }),
       "ratio = 70: measured from 4 to 14");
   expect_in(message_of([&] { (void)law("[library]\nmu = 0.45\nexponent = 3.2\nratio = 7.0\n"); }), "solid_fraction");
+}
+
+TEST(LawLibrary, NextMaterialsNarrowTheAnswersMost) {
+  LawLibrary with_gap = library();
+  std::erase_if(with_gap.materials,
+                [](const LibraryMaterial& m) { return m.at.friction > 0.5 && m.at.friction < 0.8; });
+  std::erase_if(with_gap.materials,
+                [](const LibraryMaterial& m) { return m.at.friction > 0.79 && m.at.exponent > 3.9; });
+  ASSERT_GE(with_gap.materials.size(), least_materials());
+  const NextMaterials next = next_materials(with_gap, 4);
+  ASSERT_EQ(next.materials.size(), 4U);
+  double before = next.deviation;
+  for (const NextMaterial& m : next.materials) {
+    EXPECT_LT(m.left, before);
+    EXPECT_GT(m.left, 0.0);
+    before = m.left;
+    EXPECT_NO_THROW((void)ask_library(with_gap, m.at));
+    EXPECT_GT(m.deviation, m.left) << "where the library knows little";
+    EXPECT_NEAR(std::log(m.trials), std::log(1e4) + 20.0 * (m.at.solid_fraction - 0.65), 0.3);
+  }
+  EXPECT_GT(next.materials.front().at.friction, 0.5) << "in the gap";
+  EXPECT_LT(next_materials(library(), 1).deviation, next.deviation);
+}
+
+TEST(LawLibrary, WhatIsExpectedNarrowsAndMovesNothing) {
+  const std::vector<std::vector<double>> points{{0.0}, {0.2}, {0.4}, {0.6}, {0.9}};
+  GaussianProcess process(points, {0.1, 0.5, 0.7, 0.6, 0.1}, std::vector<double>(5, 0.05));
+  const ProcessValue before = process.at({0.75});
+  const ProcessValue far = process.at({0.1});
+  process.expect({0.75}, 0.01);
+  const ProcessValue after = process.at({0.75});
+  EXPECT_NEAR(after.mean, before.mean, 1e-9);
+  EXPECT_LT(after.deviation, before.deviation);
+  EXPECT_GE(after.deviation, process.scatter());
+  EXPECT_NEAR(process.at({0.1}).mean, far.mean, 1e-9);
+  EXPECT_LE(process.at({0.1}).deviation, far.deviation + 1e-12);
+  EXPECT_THROW(process.expect({0.1}, -1.0), InputError);
+  EXPECT_THROW(process.expect({0.1, 0.2}, 0.1), InputError);
 }
 
 }  // namespace
