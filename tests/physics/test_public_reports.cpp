@@ -133,4 +133,89 @@ TEST(PublicReports, ThreeTurningBallsKeepTheirMomenta) {
   EXPECT_LT(norm(s.particles.spin[2]), norm(Vec3{{6.0, -2.0, 10.0}}));
 }
 
+/// lammps/lammps pull request 5007: grazing impacts on a wall gained up to a third of their energy and left faster
+/// along the wall than they came.
+TEST(PublicReports, GrazingImpactsGainNothing) {
+  for (const Partner partner : {Partner::plane, Partner::sphere})
+    for (const double friction : {0.1, 0.5})
+      for (const double degrees : {30.0, 60.0, 76.0, 85.0}) {
+        const double angle = degrees * std::numbers::pi / 180.0;
+        ImpactSetup setup{partner, 0.01, 1e4, std::cos(angle)};
+        setup.sliding_speed = std::sin(angle);
+        System3 s = impact_system(setup, ball_on_ball(friction, 0.9), kSoftBall);
+        const ImpactOutcome out = collide(s, partner, 1e-6, 60000);
+        ASSERT_TRUE(out.ended) << degrees;
+        EXPECT_LT(out.energy_ratio, 1.0) << degrees << " " << friction;
+        EXPECT_LE(s.particles.velocity[0][0], setup.sliding_speed) << degrees << " " << friction;
+        EXPECT_GT(s.particles.velocity[0][0], 0.0) << "it is not thrown back";
+      }
+}
+
+/// chaos-polymtl/lethe pull request 559: a ball touched one wall at a time, so one in a corner fell through the others.
+TEST(PublicReports, ABallInACornerTouchesAllWalls) {
+  System3 s;
+  s.materials = {kSoftBall};
+  s.laws = LawSet(1);
+  s.laws.set(0, 0, ball_on_ball(0.0, 0.5));
+  const double overlap = 1e-4;
+  add_grain(s.particles, test_sphere<3>({{0.01 - overlap, 0.01 - 2.0 * overlap, 0.01 - 3.0 * overlap}}, 0.01, 2500.0));
+  for (int a = 0; a < 3; ++a) {
+    Vec3 normal{};
+    normal[a] = 1.0;
+    add_plane(s.particles, NewBody<3>{}, normal);
+  }
+  force_pass(s, 1e-7);
+  const auto contacts = contact_records(s);
+  ASSERT_EQ(contacts.size(), 3U);
+  const double stiffness = 4.0 / 3.0 * 0.5 * 4e5 / (1.0 - 0.04) * std::sqrt(0.01);
+  for (int a = 0; a < 3; ++a) {
+    const double force = stiffness * std::pow(static_cast<double>(a + 1) * overlap, 1.5);
+    EXPECT_NEAR(s.particles.force[0][a], force, 1e-9 * force) << a;
+  }
+}
+
+/// chaos-polymtl/lethe pull request 1949: pairs over an edge or a corner of a cell that repeats in several directions.
+TEST(PublicReports, APairOverTheCornerOfAPeriodicCellIsAPair) {
+  const Vec3 apart{{0.0112, 0.0113, 0.0111}};
+  const auto forces = [&](const Vec3& at) {
+    System3 s;
+    s.materials = {kSoftBall};
+    s.laws = LawSet(1);
+    s.laws.set(0, 0, ball_on_ball(0.5, 0.5));
+    s.cell = box_cell<3>({{0.1, 0.1, 0.1}}, {true, true, true});
+    for (const Vec3& x : {at, at + apart}) {
+      Vec3 inside = x;
+      for (int k = 0; k < 3; ++k) inside[k] -= 0.1 * std::floor(inside[k] / 0.1);
+      add_grain(s.particles, test_sphere<3>(inside, 0.01, 2500.0));
+    }
+    s.particles.velocity[0] = Vec3{{0.1, -0.2, 0.05}};
+    s.particles.spin[1] = Vec3{{3.0, -1.0, 2.0}};
+    VelocityVerlet<3> motion(1e-6);
+    motion.initialise(s);
+    for (int k = 0; k < 200; ++k) motion.step(s);
+    EXPECT_EQ(contact_records(s).size(), 1U);
+    return std::array<Vec3, 2>{Vec3(s.particles.velocity[1]), Vec3(s.particles.spin[1])};
+  };
+  const auto middle = forces({{0.05, 0.05, 0.05}});
+  for (const Vec3& at : {Vec3{{0.095, 0.095, 0.05}}, Vec3{{0.095, 0.05, 0.095}}, Vec3{{0.095, 0.095, 0.095}}}) {
+    const auto corner = forces(at);
+    for (std::size_t k = 0; k < 2; ++k) EXPECT_LT(norm(corner[k] - middle[k]), 1e-9 * norm(middle[k])) << k;
+  }
+}
+
+/// chaos-polymtl/lethe pull request 300: both balls of a pair had the torque of one radius. Each has its own arm, the
+/// distance of its centre from the middle of the contact.
+TEST(PublicReports, UnequalBallsHaveArmsOfTheirOwn) {
+  ImpactSetup setup{Partner::sphere, 0.01, 3.0, 0.2};
+  setup.sliding_speed = 0.1;
+  System3 s = impact_system(setup, ball_on_ball(0.5, 0.7), kSoftBall);
+  VelocityVerlet<3> motion(1e-6);
+  motion.initialise(s);
+  for (int k = 0; k < 300; ++k) motion.step(s);
+  ASSERT_GT(overlap_of(s, Partner::sphere), 0.0);
+  const auto turned = [&](std::size_t u) { return s.particles.spin[u][1] / s.particles.inverse_inertia[u]; };
+  ASSERT_GT(std::abs(turned(0)), 0.0);
+  EXPECT_NEAR(turned(1) / turned(0), 3.0, 0.01) << "the same force on arms of 3 to 1";
+}
+
 }  // namespace
