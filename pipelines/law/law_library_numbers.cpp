@@ -108,13 +108,20 @@ void substitute_slides(LawTableEntry& entry) {
   as(entry.slide_soft, entry.slide_solid);
 }
 
-ConfigurationError form_error(const std::string& name, double error, double onset, bool in_proportion) {
+/// Root mean square of an error of which the logarithm is known to a deviation: that of a log-normal distribution.
+double from_logarithm(const LibraryNumber& logarithm) {
+  const double deviation = std::isfinite(logarithm.deviation) ? logarithm.deviation : 0.0;
+  return std::exp(logarithm.value + deviation * deviation);
+}
+
+ConfigurationError form_error(const std::string& name, const LibraryNumber& error, const LibraryNumber& onset,
+                              bool in_proportion) {
   ConfigurationError out;
   out.name = name;
   out.use = MultiContactUse::predicted;
-  out.error = std::exp(error);
+  out.error = from_logarithm(error);
   out.end_ratio = 1.0;
-  if (std::isfinite(onset)) out.offset = FormOffset{0.0, std::exp(onset)};
+  if (std::isfinite(onset.value)) out.offset = FormOffset{0.0, from_logarithm(onset)};
   out.in_proportion = in_proportion;
   return out;
 }
@@ -124,9 +131,8 @@ void set_form_numbers(const LibraryNumber* n, LawTableEntry& entry, MultiContact
   entry.unloading =
       entry.unloading_measured ? estimate_of(n[0], 1.0, 1.0) : Estimate{1.0, kInfinity, -kInfinity, kInfinity};
   law.errors.clear();
-  if (std::isfinite(n[1].value))
-    law.errors.push_back(form_error("library, in proportion", n[1].value, n[3].value, true));
-  if (std::isfinite(n[2].value)) law.errors.push_back(form_error("library, sheared", n[2].value, n[3].value, false));
+  if (std::isfinite(n[1].value)) law.errors.push_back(form_error("library, in proportion", n[1], n[3], true));
+  if (std::isfinite(n[2].value)) law.errors.push_back(form_error("library, sheared", n[2], n[3], false));
   double sum = 0.0;
   for (const ConfigurationError& e : law.errors) sum += e.error * e.error;
   if (!law.errors.empty())

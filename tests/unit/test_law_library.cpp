@@ -383,6 +383,18 @@ TEST(LawLibrary, ScenesNameTheMaterial) {
   expect_in(message_of([&] { (void)law("[library]\nmu = 0.45\nexponent = 3.2\nratio = 7.0\n"); }), "solid_fraction");
 }
 
+TEST(LawLibrary, TheErrorOfTheFormIsWhatItIsInTheMeanSquare) {
+  LibraryAnswer a = ask_library(library(), kBetween);
+  const auto at = std::ranges::find(a.numbers, std::string("ln error, in proportion"), &LibraryNumber::name);
+  ASSERT_NE(at, a.numbers.end());
+  at->value = std::log(0.2);
+  at->deviation = 0.4;
+  const LawTable table = table_of(library(), a, {}, 16);
+  const std::vector<ConfigurationError>& errors = table.entries.front().find(LawForm::isotropic)->errors;
+  ASSERT_FALSE(errors.empty());
+  EXPECT_NEAR(errors.front().error, 0.2 * std::exp(0.16), 1e-12) << "not 0.2: as likely half as large as twice";
+}
+
 TEST(LawLibrary, NextMaterialsNarrowTheAnswersMost) {
   LawLibrary with_gap = library();
   std::erase_if(with_gap.materials,
