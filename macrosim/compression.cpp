@@ -8,6 +8,7 @@
 #include "common/dynamics/contact_tensors.h"
 #include "common/dynamics/contact_watch.h"
 #include "common/dynamics/damped_relaxation.h"
+#include "common/dynamics/parallel_pass.h"
 #include "common/dynamics/residual.h"
 #include "macrosim/body_contacts.h"
 #include "macrosim/pressed_box.h"
@@ -132,6 +133,7 @@ RelaxationResult counted_step(CompressionState& state, const MacroSpec& spec, co
     // The first point of all is the start at rest.
     const double shear = state.curve.strain.empty() ? 0.0 : shear_increment(stage);
     rest = step_of(macro, spec, stage, strain, shear, stress);
+    if (rest.end == RelaxationEnd::converged) keep_largest_volumes(macro.system);
   } catch (const InputError& e) {  // a cell that has become too small: no fault of the scene
     throw UnusableResult(e.what());
   }

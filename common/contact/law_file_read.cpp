@@ -189,6 +189,8 @@ AnyLaw read_multi_contact_law(Reader& r) {
   law.friction = r.not_negative("friction");
   law.kt_ratio = r.not_negative("kt_ratio");
   law.unloading = r.positive("retreat");
+  if (r.has("unloading_ratio"))
+    r.fail("unloading_ratio", "is a memory of whole particles, which runs of our own engine alone have: leave it out");
   if (kRolling) {
     law.rolling = r.not_negative("rolling");
     law.rolling_friction = r.not_negative("rolling_friction");

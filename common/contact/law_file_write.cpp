@@ -119,6 +119,7 @@ void write(std::string& out, const std::string& name, const SoftMultiContact<kLa
   w.value("friction", law.friction);
   w.value("kt_ratio", law.kt_ratio);
   w.value("retreat", law.unloading);
+  if (law.unloading_ratio != 1.0) w.value("unloading_ratio", law.unloading_ratio);
   if (kRolling) {
     w.value("rolling", law.rolling);
     w.value("rolling_friction", law.rolling_friction);

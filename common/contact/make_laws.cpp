@@ -104,6 +104,7 @@ MultiContactLaws laws_of(const LawTableEntry& entry, const MultiContactModel& mo
   law.form = model.form;
   law.partner = model.solid;
   law.modulus = choices.modulus;
+  law.unloading_ratio = choices.unloading_ratio;
   const auto slides = [&](const SlideLaw& slide) {
     law.friction = choices.friction >= 0.0 ? choices.friction : slide.friction.value;
     law.kt_ratio = slide.kt_ratio.value;
@@ -164,6 +165,8 @@ MultiContactModel multi_contact_model(const MultiContactLaw& law) {
 }
 
 MultiContactLaws make_multi_contact_laws(const LawTableEntry& entry, const MultiContactChoices& choices) {
+  if (choices.unloading_ratio > 1.0 && (choices.form != LawForm::isotropic || choices.unloading))
+    throw InputError("law table: unloading_ratio goes with the isotropic form and without unloading = true");
   MultiContactModel model = multi_contact_model(usable(entry, choices.form));
   if (entry.volume_max > 0.0) model.form.pressure.range = {entry.volume_max, choices.beyond.value_or(entry.beyond)};
   if (model.multi_contact == LawForm::pair) return laws_of<LawForm::pair>(entry, model, choices);

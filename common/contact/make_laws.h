@@ -38,6 +38,7 @@ struct MultiContactChoices {
   double friction = -1.0;                 ///< mu_soft; negative: as measured
   double wall_friction = -1.0;            ///< friction of grains with planes; negative: as among themselves
   bool unloading = false;                 ///< use the measured unloading branch
+  double unloading_ratio = 1.0;           ///< slope of p(S) in unloading over that in loading: isotropic form alone
   bool rolling = true;                    ///< use rolling resistance, where it was measured
   std::optional<Extrapolation> beyond{};  ///< instead of what the table says
 };
@@ -50,7 +51,8 @@ struct MultiContactLaws {
   AnyLaw soft_soft;
 };
 
-/// Throws InputError when the entry has no usable law of this form, or none for soft neighbours.
+/// Throws InputError when the entry has no usable law of this form, or none for soft neighbours, and when an
+/// unloading_ratio above 1 meets another form or the unloading branch.
 MultiContactLaws make_multi_contact_laws(const LawTableEntry& entry, const MultiContactChoices& choices);
 
 // A law table as files: a card for people (TOML) and, for programs, the forces it stands for on a grid (HDF5).

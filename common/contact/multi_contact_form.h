@@ -123,8 +123,24 @@ struct alignas(sizeof(T) == sizeof(double) ? 32 : alignof(T)) MultiContactSum {
 
   /// All contacts are in and make an equivalent volume s.
   void close(const MultiContactPressure& pressure, const T& s) {
-    ready = true;
     const auto [p, slope] = pressure.at(s);
+    set_pressure(s, p, slope);
+  }
+
+  /// The same for a particle that unloads `steeper` times as steeply from m, its largest volume at rest so far
+  /// (results/law_memory): below m the pressure is that of the volume m - steeper (m - s), and loading again goes back
+  /// the same way. At fixed m it is the derivative of P(m - steeper (m - s))/steeper, P' = p. This energy falls when m
+  /// grows to s, so that no closed cycle gains energy.
+  void close(const MultiContactPressure& pressure, const T& s, const T& m, double steeper) {
+    const Mask<T> back = s < m;
+    const T below = largest<T>(m - steeper * (m - s), T(0.0));
+    const auto [p, slope] = pressure.at(choose<T>(back, below, s));
+    set_pressure(s, p, choose<T>(back, steeper * slope, slope));
+  }
+
+  /// Pressure p and its slope dp/ds at the equivalent volume s.
+  void set_pressure(const T& s, const T& p, const T& slope) {
+    ready = true;
     const T ratio = p / s;
     gain = choose<T>(s > 0.0, ratio, T(0.0));
     gain_slope = choose<T>(s > 0.0, (slope - ratio) / (s * s), T(0.0));

@@ -35,15 +35,16 @@ struct LostVolumeTable {
 
 /// F = sum over the soft bodies of the pair of E R^2 dnu/dx p(S)/S B, kt = kt_ratio kn, |Ft| <= mu F, no dashpots
 /// (quasi-static). kUnloading: a contact that retreats from its deepest overlap x_max feels x_max - s (x_max - x)
-/// instead of x (s = retreat >= 1) and comes back the same way; off, it costs nothing. The tangential spring keeps its
-/// force while its stiffness grows and its length while that falls, so that it gives back no more than it took: pressed
-/// on after a slide, a soft particle feels the drag that it felt before (results/shear_and_rolling), where a spring of
-/// the new stiffness would pull up to fifteen times as hard. With kUnloading the memory is the largest overlap, and the
-/// spring takes the new stiffness as it is. kRolling: bodies that turn
-/// against each other across the normal by the angle theta feel the moment E R^2 R12 rolling theta, at most
-/// rolling_friction F R, R the harmonic mean of both radii (R of the soft body alone against a plane and solids) and
-/// R12 as in the law of Hertz; the contact then goes R12 theta over the surface. A spring of one stiffness under a
-/// limit that falls with the force: it can give back no more than it took. SI units; 3D only.
+/// instead of x (s = retreat >= 1) and comes back the same way; off, it costs nothing. unloading_ratio is a memory of
+/// the isotropic form, of whole particles instead of contacts: see MultiContactSum::close(). The tangential spring
+/// keeps its force while its stiffness grows and its length while that falls, so that it gives back no more than it
+/// took: pressed on after a slide, a soft particle feels the drag that it felt before (results/shear_and_rolling),
+/// where a spring of the new stiffness would pull up to fifteen times as hard. With kUnloading the memory is the
+/// largest overlap, and the spring takes the new stiffness as it is. kRolling: bodies that turn against each other
+/// across the normal by the angle theta feel the moment E R^2 R12 rolling theta, at most rolling_friction F R, R the
+/// harmonic mean of both radii (R of the soft body alone against a plane and solids) and R12 as in the law of Hertz;
+/// the contact then goes R12 theta over the surface. A spring of one stiffness under a limit that falls with the force:
+/// it can give back no more than it took. SI units; 3D only.
 template <LawForm kLawForm, bool kUnloading, bool kRolling = false>
 struct SoftMultiContact {
   static constexpr LawTraits traits{.dimension = 3,
@@ -68,6 +69,7 @@ struct SoftMultiContact {
   double unloading = 1.0;   ///< s of the unloading branch
   double rolling = 0.0;     ///< stiffness against rolling over E R^2 R12
   double rolling_friction = 0.0;  ///< largest moment over F R
+  double unloading_ratio = 1.0;   ///< of a soft particle as a whole: slope of p(S) in unloading over that in loading
   bool i_is_soft = true;
   bool j_is_soft = false;
 
@@ -106,7 +108,9 @@ struct SoftMultiContact {
   [[nodiscard]] double equivalent(const MultiContactSum<D>& sum) const {
     return kLawForm == LawForm::directional ? form.equivalent_volume(sum) : sum.volume;
   }
-  /// Pressure of a body whose contacts have all been added.
+  /// Whether soft particles unload from their largest equivalent volume so far, Particles::largest_volume.
+  [[nodiscard]] bool remembers() const { return kLawForm == LawForm::isotropic && unloading_ratio > 1.0; }
+  /// Pressure of a body whose contacts have all been added, as it loads.
   template <int D>
   void finish(MultiContactSum<D>& sum) const {
     sum.close(form.pressure, equivalent(sum));

@@ -28,6 +28,8 @@ struct Particles {
   std::vector<double> inverse_inertia;  ///< [1/(kg m^2)]; 0: not turned by torques
   std::vector<std::int32_t> material;   ///< index into the materials of the scene
   std::vector<std::int32_t> shell;      ///< slot of the shell this grain (or shell) lives in, -1: none
+  std::vector<double> largest_volume;   ///< largest equivalent volume S of each body at rest so far, of laws that
+                                        ///< remember it; empty before the first rest and without such a law
   std::vector<std::int32_t> id;         ///< order of addition of each grain; empty while it equals the slot
   std::vector<Vec<D>> plane_normal;     ///< one per plane, unit, into the space of the grains
   std::vector<double>

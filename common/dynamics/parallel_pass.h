@@ -84,4 +84,9 @@ void add_particle_shares(System<D>& system, const ContactSection& section, const
 template <int D>
 void close_particle_sums(System<D>& system, ThreadPart part);
 
+/// The system has come to rest in its last pass, whose sums are there: bodies of laws that unload more steeply than
+/// they load (SoftMultiContact::remembers) take its volume for their largest one where it is. Nothing in the plane.
+template <int D>
+void keep_largest_volumes(System<D>& system);
+
 }  // namespace softgrain

@@ -1,5 +1,7 @@
 #include "common/dynamics/parallel_pass.h"
 
+#include <algorithm>
+
 #include "common/dynamics/block_gather.h"
 
 namespace softgrain {
@@ -73,18 +75,23 @@ class Shares : Gatherer<3, kAskedOfShares<Law>, kGeometry, kPeriodic, kSource> {
 template <class Law>
 class Closing {
  public:
-  explicit Closing(const Law& law) : law_(law) {}
+  Closing(const Law& law, const std::vector<double>& largest)
+      : law_(law), largest_(law.remembers() && !largest.empty() ? largest.data() : nullptr) {}
 
-  void add(MultiContactSum<3>& sum) {
+  void add(Slot body, MultiContactSum<3>& sum) {
     if (!(sum.square > 0.0)) return;
     waiting_[static_cast<std::size_t>(many_)] = &sum;
     volume_.v[many_] = law_.equivalent(sum);
+    if (largest_ != nullptr) most_.v[many_] = largest_[at(body)];
     if (++many_ == kLanes) close();
   }
   void close() {
     for (int l = many_; l < kLanes; ++l) volume_.v[l] = volume_.v[0];
     MultiContactSum<3, Lanes> sum;
-    if (many_ > 0) sum.close(law_.form.pressure, volume_.at(0));
+    if (largest_ != nullptr)
+      unload(sum);
+    else if (many_ > 0)
+      sum.close(law_.form.pressure, volume_.at(0));
     for (int l = 0; l < many_; ++l) {
       waiting_[static_cast<std::size_t>(l)]->gain = sum.gain[static_cast<std::size_t>(l)];
       waiting_[static_cast<std::size_t>(l)]->gain_slope = sum.gain_slope[static_cast<std::size_t>(l)];
@@ -93,10 +100,17 @@ class Closing {
   }
 
  private:
+  void unload(MultiContactSum<3, Lanes>& sum) {
+    for (int l = many_; l < kLanes; ++l) most_.v[l] = most_.v[0];
+    if (many_ > 0) sum.close(law_.form.pressure, volume_.at(0), most_.at(0), law_.unloading_ratio);
+  }
+
   const Law& law_;
+  const double* largest_;  ///< per body, of laws that remember it; else null
   int many_ = 0;
   std::array<MultiContactSum<3>*, static_cast<std::size_t>(kLanes)> waiting_{};
   Row volume_{};
+  Row most_{};
 };
 
 }  // namespace
@@ -141,14 +155,34 @@ void close_particle_sums(System<3>& s, ThreadPart part) {
     std::visit(
         [&]<class Law>(const Law& law) {
           if constexpr (Law::traits.needs_particle_pass) {
-            Closing<Law> closing(law);
+            Closing<Law> closing(law, s.particles.largest_volume);
             for (std::size_t k = begin; k < end; ++k)
-              if (is_own(part, bodies[k].body)) closing.add(s.contacts.particle_sum[at(bodies[k].body)]);
+              if (is_own(part, bodies[k].body))
+                closing.add(bodies[k].body, s.contacts.particle_sum[at(bodies[k].body)]);
             closing.close();
           }
         },
         s.laws.law(bodies[begin].law));
   }
+}
+
+template <>
+void keep_largest_volumes(System<2>&) {}
+
+template <>
+void keep_largest_volumes(System<3>& s) {
+  std::vector<double>& largest = s.particles.largest_volume;
+  for (const MultiContactBody& one : s.contacts.multi_contact_bodies)
+    std::visit(
+        [&]<class Law>(const Law& law) {
+          if constexpr (Law::traits.needs_particle_pass) {
+            if (!law.remembers()) return;
+            largest.resize(s.particles.sphere.size(), 0.0);
+            double& most = largest[at(one.body)];
+            most = std::max(most, law.equivalent(s.contacts.particle_sum[at(one.body)]));
+          }
+        },
+        s.laws.law(one.law));
 }
 
 template <int D>

@@ -208,6 +208,7 @@ void reorder_grains(System<D>& s, const std::vector<Slot>& order) {
   permute(p.inverse_inertia, order);
   permute(p.material, order);
   permute(p.shell, order);
+  permute(p.largest_volume, order);
   permute(s.neighbours.reference, order);
   permute(s.neighbours.skin, order);
   if (!s.neighbours.reference.empty()) rename_pairs(s, order);

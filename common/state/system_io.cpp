@@ -84,6 +84,7 @@ void write_bodies(const h5::Group& g, const Particles<D>& p) {
   write_slots(g, "id", p.id);
   write_vectors(g, "plane_normal", p.plane_normal);
   g.write("plane_load", p.plane_load);
+  if (!p.largest_volume.empty()) g.write("largest_volume", p.largest_volume);
 }
 
 template <int D>
@@ -157,6 +158,9 @@ void read_bodies(const h5::Group& g, Particles<D>& p, Count materials) {
   p.id = read_ids(g, p.grains);
   p.plane_normal = read_vectors<D>(g, "plane_normal", static_cast<std::size_t>(p.planes));
   p.plane_load = read_numbers(g, "plane_load", static_cast<std::size_t>(p.planes));
+  p.largest_volume = g.has("largest_volume") ? read_numbers(g, "largest_volume", n) : std::vector<double>{};
+  const auto is_volume = [](double volume) { return volume >= 0.0 && volume <= kMostLength; };
+  if (!std::all_of(p.largest_volume.begin(), p.largest_volume.end(), is_volume)) damaged("largest_volume");
 }
 
 template <int D>

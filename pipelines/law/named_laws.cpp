@@ -96,7 +96,9 @@ class RangeCheck {
 
 /// A short name of all numbers of a law, so that a run that goes on does not mistake another law for this one.
 std::string tag_of(const LawTableEntry& entry, const LawSources& sources, LawForm form) {
-  return short_hash(fmt::format("{}{} {} {} {} {:a}", sources.rolling ? "" : "rolls freely ",
+  const std::string memory =
+      sources.unloading_ratio > 1.0 ? fmt::format("unloading ratio {:a} ", sources.unloading_ratio) : "";
+  return short_hash(fmt::format("{}{}{} {} {} {} {:a}", memory, sources.rolling ? "" : "rolls freely ",
                                 sources.friction.value_or(-1.0), sources.unloading, numbers_of(entry, form),
                                 to_string(sources.beyond.value_or(entry.beyond)), entry.volume_max));
 }
@@ -181,7 +183,8 @@ std::function<std::string(const System3&)> card_note(const LawCard& card, const 
 }
 
 /// Keys that choose among what a table offers.
-constexpr std::array kTableKeys{"solid_fraction", "range", "mu", "rolling"};
+constexpr const char* kRatioKey = "unloading_ratio";
+constexpr std::array kTableKeys{"solid_fraction", "range", "mu", kRatioKey, "rolling"};
 
 /// A branch that the card does not have cannot be asked for.
 void require_card_unloading(const SceneTable& t, const LawSources& sources) {
@@ -208,7 +211,26 @@ void read_table_choices(const SceneTable& t, LawSources& out) {
                           "true for a law card that has one, else false"},
                          false);
   out.card_unloading = out.unloading || !t.has("unloading");
+  out.unloading_ratio = t.number({kRatioKey,
+                                  "law table, isotropic form: stiffness of a soft particle in unloading over that in "
+                                  "loading; above 1 it remembers its largest volume at rest"},
+                                 Unit::none, Range::closed(1.0, 3.0), out.unloading_ratio);
   out.rolling = t.flag({"rolling", "law table: true: use the rolling resistance, if measured"}, true);
+}
+
+/// A memory is of whole particles under one pressure: `form_key` is what asks for that form. Where the table is known,
+/// its best form will do.
+void require_remembering(const SceneTable& t, const LawSources& law, const char* form_key) {
+  if (!(law.unloading_ratio > 1.0)) return;
+  const auto is_isotropic = [&](const WantedForm& form) {
+    if (form || law.table() == nullptr) return form.value_or(LawForm::isotropic) == LawForm::isotropic;
+    return std::ranges::all_of(law.table()->entries,
+                               [](const LawTableEntry& entry) { return entry.best == LawForm::isotropic; });
+  };
+  if (law.unloading)
+    t.add_error(kRatioKey, "goes without unloading = true: a memory of particles or of contacts, not of both");
+  else if (!std::ranges::all_of(law.forms, is_isotropic))
+    t.add_error(kRatioKey, fmt::format("goes with the isotropic form alone: {}", form_key));
 }
 
 std::vector<WantedForm> read_forms(const SceneTable& law, bool has_table) {
@@ -251,13 +273,14 @@ NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const Macro
   choices.modulus = spec.youngs_modulus;
   choices.friction = sources.friction.value_or(-1.0);
   choices.unloading = sources.unloading;
+  choices.unloading_ratio = sources.unloading_ratio;
   choices.rolling = sources.rolling;
   choices.beyond = sources.beyond;
   const MultiContactLaws laws = make_multi_contact_laws(entry, choices);
   choices.friction = spec.wall_friction;
   choices.wall_friction = spec.wall_friction;
   const std::string unloads =
-      sources.unloading
+      sources.unloading || sources.unloading_ratio > 1.0
           ? ""
           : no_unloading_text(spec, entry.unloading_measured
                                         ? fmt::format("the {} law as it is taken (unloading = true takes the branch "
@@ -372,7 +395,9 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
   if (files.empty()) law.throw_error("table", "give a law table, a law card, or both");
   if (law.has("forms")) out.forms = read_forms(law, with_table);
   read_table_choices(law, out);
-  if (!with_table) {
+  if (with_table) {
+    require_remembering(law, out, "forms = [\"isotropic\"]");
+  } else {
     out.forms = {LawForm::pair};
     law.refuse({"form"}, "goes with a law table; a card holds the pair law alone");
     law.refuse(kTableKeys, "goes with a law table (key table)");
@@ -388,7 +413,10 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
   return out;
 }
 
-void read_law_choices(const SceneTable& root, LawSources& out) {
+namespace {
+
+/// Whatever the law is.
+void read_choices(const SceneTable& root, LawSources& out) {
   out.forms = {parse_enum<LawForm>(root.choice({"form",
                                                 "law table: form of the law, `best`: the one that predicts left-out "
                                                 "loadings best; `cell`: with a card of the cell law"},
@@ -396,22 +424,34 @@ void read_law_choices(const SceneTable& root, LawSources& out) {
   read_table_choices(root, out);
 }
 
+constexpr const char* kIsotropicForm = "form = \"isotropic\"";
+
+}  // namespace
+
+void read_law_choices(const SceneTable& root, LawSources& out) {
+  read_choices(root, out);
+  require_remembering(root, out, kIsotropicForm);
+}
+
 LawSources read_scene_law(const SceneTable& root, const std::string& path) {
   LawSources out;
-  read_law_choices(root, out);
+  read_choices(root, out);
   out.laws = {law_at(root, path)};
   refuse_idle_library(root, {path});
   const bool asks_cells = root.has("form") && root.text("form") == "cell";
   if (out.cells() != nullptr) {
     if (!asks_cells) root.refuse({"form"}, path + " is a card of the cell law: \"cell\"");
-    root.refuse({"solid_fraction", "range", "mu", "unloading", "rolling", "beyond"},
+    root.refuse({"solid_fraction", "range", "mu", "unloading", kRatioKey, "rolling", "beyond"},
                 "goes with laws of soft particles; " + path + " is a card of the cell law");
     return out;
   }
   if (asks_cells)
     root.refuse({"form"}, "\"cell\" goes with a card of the cell law, and " + path + " is a law of soft particles");
   require_fraction(root, out);
-  if (out.card() == nullptr) return out;
+  if (out.card() == nullptr) {
+    require_remembering(root, out, kIsotropicForm);
+    return out;
+  }
   const std::string pair_alone = "goes with a law table; " + path + " is a law card, which holds the pair law alone";
   if (out.forms.front() != LawForm::pair) root.refuse({"form"}, pair_alone);
   root.refuse(kTableKeys, pair_alone);

@@ -48,6 +48,7 @@ struct LawSources {
   std::optional<double> friction;           ///< mu_soft of the table's laws; empty: as measured
   bool unloading = false;                   ///< whether the measured unloading branch of a table is used
   bool card_unloading = true;               ///< whether the unloading branches of a card are used
+  double unloading_ratio = 1.0;             ///< stiffness of soft particles in unloading over that in loading
   bool rolling = true;                      ///< whether the measured rolling resistance is used
   std::optional<Extrapolation> beyond{};    ///< policy beyond the range, instead of that of card or table
 
@@ -80,8 +81,8 @@ FittedLaw law_of_key(const SceneTable& table, const std::string& key, const std:
 LawSources read_law_sources(const Scene& scene, const SceneTable& law);
 
 /// The one law of a macro scene: key `beyond`, and keys `form` (default the best of the table; a card has the pair law
-/// only, a card of the cell law "cell"), `solid_fraction`, `range`, `mu` and `unloading` of `root`, which go with
-/// tables, and the card or table at `path`. Throws InputError, IoError.
+/// only, a card of the cell law "cell"), `solid_fraction`, `range`, `mu`, `unloading` and `unloading_ratio` of `root`,
+/// which go with tables, and the card or table at `path`. Throws InputError, IoError.
 LawSources read_scene_law(const SceneTable& root, const std::string& path);
 
 /// The keys of read_scene_law() alone, for scenes that are read without their law. Throws InputError.

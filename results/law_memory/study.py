@@ -3,8 +3,8 @@
 results/macro_vs_resolved, whose curves are in its pictures and its table.
 
   study.py --self-test               passivity of every form (needs numpy)
-  study.py [--out FOLDER] NAME=RUN...   writes macro.csv; each RUN is one of laws.toml, by the program of
-                                     tests/bench/law_memory/build.sh (needs numpy and h5py); the first is what others are held against
+  study.py [--out FOLDER] NAME=RUN...   writes macro.csv; each RUN is one of laws.toml, by the program with
+                                     --set law.unloading_ratio=S or by that of tests/bench/law_memory/build.sh (needs numpy and h5py)
 
 All forms share the isotropic law of results/law_table: a soft particle of radius R with the lost volumes nu_c of its contacts
 bears F_c = E R^2 (d nu_c/dx) p(S), S = sum nu_c, x the overlap over R. What a form changes is the volume that the pressure sees:

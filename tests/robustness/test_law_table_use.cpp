@@ -142,6 +142,50 @@ TEST_F(LawTableUse, TheUnloadingBranchActsOnContactsThatRetreat) {
   EXPECT_GT(steeper.stress_x.back(), 0.0);
 }
 
+/// Loading is as without the memory, bit for bit; unloading is steeper.
+TEST_F(LawTableUse, ParticlesThatRememberUnloadMoreSteeply) {
+  const std::string head = "kind = \"macro\"\nlaw = \"law_table.toml\"\nform = \"isotropic\"\n";
+  const std::string test =
+      "[macro]\nbodies = 16\nresolved = false\n[[stage]]\nkind = \"oedometric\"\nstrain = 0.2\nsteps = 2\n"
+      "[[stage]]\nkind = \"unload\"\nstrain = 0.02\nsteps = 2\n[[stage]]\nkind = \"reload\"\nsteps = 2\n";
+  const auto curve = [&](const std::string& name, const std::string& lines) {
+    write_text_atomic(file("scene.toml"), head + lines + test);
+    expect(run_the_program("run '" + file("scene.toml") + "' --quiet --out '" + file(name) + "'"), 0, {});
+    return load_macro(file(name) + "/macro.h5").at(0);
+  };
+  const MacroCurve off = curve("off", "");
+  const MacroCurve one = curve("one", "unloading_ratio = 1.0\n");
+  const MacroCurve on = curve("on", "unloading_ratio = 1.5\n");
+  ASSERT_EQ(on.stress_axial.size(), 7U);
+  EXPECT_EQ(one.stress_axial, off.stress_axial);
+  EXPECT_EQ(one.law.hash, off.law.hash);
+  EXPECT_NE(on.law.hash, off.law.hash);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(on.stress_axial[k], off.stress_axial[k]) << k;
+  EXPECT_GT(off.stress_axial[2], 0.0);
+  EXPECT_LT(on.stress_axial[3], 0.95 * off.stress_axial[3]);
+  EXPECT_LT(on.stress_axial[4], 0.95 * off.stress_axial[4]);
+  EXPECT_NEAR(on.stress_axial[6], off.stress_axial[6], 0.1 * off.stress_axial[6]) << "back where unloading began";
+  EXPECT_NE(summary("off").dump().find("has no unloading branch"), std::string::npos);
+  EXPECT_EQ(summary("on").dump().find("has no unloading branch"), std::string::npos);
+}
+
+TEST_F(LawTableUse, AMemoryWhereItCannotBeIsRefused) {
+  const std::string ratio = "unloading_ratio = 1.3\n";
+  const std::string isotropic = "form = \"isotropic\"\n";
+  expect(macro("out", isotropic + "unloading_ratio = 0.9\n"), 2, {"unloading_ratio = 0.9", "from 1 to 3"});
+  expect(macro("out", isotropic + "unloading_ratio = 3.1\n"), 2, {"unloading_ratio = 3.1", "from 1 to 3"});
+  const std::string alone = "goes with the isotropic form alone: form = \"isotropic\"";
+  expect(macro("out", ratio), 2, {"unloading_ratio", alone});  // best: directional
+  expect(macro("out", "form = \"pair\"\n" + ratio), 2, {"unloading_ratio", alone});
+  expect(macro("out", isotropic + "unloading = true\n" + ratio), 2, {"unloading_ratio", "without unloading = true"});
+  expect(macro("out", ratio, "--law '" + file("law.toml") + "'"), 2, {"unloading_ratio", "goes with a law table"});
+  expect(macro("out", isotropic + ratio, "--engine lammps --write-only"), 2, {"unloading_ratio", "--engine lammps"});
+  LawTableEntry entry = law_entry(0.70);
+  entry.best = LawForm::isotropic;
+  save_law_table({1, {entry}}, file("law_table.toml"));
+  expect(macro("best", ratio), 0, {});
+}
+
 TEST_F(LawTableUse, WhatTheTableDidNotMeasureIsRefusedOrSaid) {
   LawTableEntry entry = law_entry(0.70);
   entry.unloading = synthetic::unknown(1.0);

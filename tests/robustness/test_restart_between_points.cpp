@@ -1,10 +1,13 @@
 // A run that is taken up at any moment at which it can be saved, between recorded points too, ends in the same bits.
 #include <gtest/gtest.h>
 
+#include "common/contact/make_laws.h"
+#include "common/state/system_io.h"
 #include "macrosim/compression.h"
 #include "microsim/measure.h"
 #include "microsim/shell_packing.h"
 #include "tests/support/multi_contact.h"
+#include "tests/support/temporary_directory.h"
 
 namespace {
 
@@ -137,6 +140,88 @@ TEST(RestartBetweenPoints, StagesGoOnFromEveryIncrement) {
     EXPECT_EQ(whole.curve.strain_x, saved[k].curve.strain_x) << k;
     EXPECT_EQ(whole.curve.stage, saved[k].curve.stage) << k;
     expect_same(whole.curve.cost, saved[k].curve.cost);
+  }
+}
+
+/// Loading and unloading, between walls by strain, in a cell by stress.
+MacroSpec spec_that_unloads(Boundary boundary) {
+  MacroSpec spec;
+  spec.boundary = boundary;
+  spec.bodies = 40;
+  spec.soft_share = 0.4;
+  spec.test = MacroTest::stages;
+  for (const StageKind kind : {StageKind::isotropic, StageKind::unload}) {
+    MacroStage stage;
+    stage.record = {to_string(kind), kind, StageKind::isotropic};
+    stage.steps = 2;
+    stage.isotropic = true;
+    const bool loads = kind == StageKind::isotropic;
+    for (AxisDrive& axis : stage.axis)
+      axis = boundary == Boundary::periodic ? AxisDrive{true, loads ? 600.0 : 200.0, -1}
+                                            : AxisDrive{false, loads ? 0.06 : -0.01, -1};
+    spec.stages.push_back(stage);
+  }
+  return spec;
+}
+
+CompressionState state_with_ratio(const MacroSpec& spec, double ratio) {
+  static const LawTable table = load_law_table(SOFTGRAIN_SOURCE_DIR "/results/law_table/law_table.toml");
+  MultiContactChoices choices;
+  choices.form = LawForm::isotropic;
+  choices.modulus = spec.youngs_modulus;
+  choices.unloading_ratio = ratio;
+  const MultiContactLaws laws = make_multi_contact_laws(main_entry(table), choices);
+  const MacroPacking packing = make_macro_packing(spec, 1, 0);
+  CompressionState state;
+  state.macro =
+      make_law_system(spec, packing, {laws.soft_solid, laws.solid_soft, laws.soft_plane, laws.soft_soft}, 0.7);
+  state.curve = begin_curve(spec, packing, state.macro, "law", 0);
+  return state;
+}
+
+System3 through_a_file(const System3& s) {
+  const TemporaryDirectory directory;
+  {
+    h5::AtomicFile file(directory.file("state.h5"));
+    write_system(file.root().create("state"), s);
+    file.commit();
+  }
+  System3 read;
+  read.materials = s.materials;
+  read.laws = s.laws;
+  read_system(h5::open_file(directory.file("state.h5")).open("state"), read);
+  return read;
+}
+
+/// Soft particles that unload from their largest volume at rest take it along.
+TEST(RestartBetweenPoints, ParticlesThatRememberGoOnFromEveryFile) {
+  for (const Boundary boundary : {Boundary::walls, Boundary::periodic}) {
+    const MacroSpec spec = spec_that_unloads(boundary);
+    CompressionState elastic = state_with_ratio(spec, 1.0);
+    compress(elastic, spec);
+    CompressionState whole = state_with_ratio(spec, 1.5);
+    std::vector<CompressionState> saved;
+    RunControl<CompressionState> control{.seconds = 0.0};
+    control.save = [&](const CompressionState& s) { saved.push_back(s); };
+    compress(whole, spec, control);
+    ASSERT_TRUE(whole.curve.usable) << whole.curve.note;
+    ASSERT_EQ(whole.curve.stress_axial.size(), 5U);
+    EXPECT_TRUE(elastic.macro.system.particles.largest_volume.empty());
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(whole.curve.stress_axial[k], elastic.curve.stress_axial[k]) << k;
+    if (boundary == Boundary::walls)
+      EXPECT_LT(whole.curve.stress_axial[4], 0.97 * elastic.curve.stress_axial[4]);
+    else
+      EXPECT_GT(whole.curve.strain[4], elastic.curve.strain[4]) << "less strain comes back";
+    ASSERT_EQ(saved.size(), 9U);
+    for (CompressionState& state : saved) {
+      state.macro.system = through_a_file(state.macro.system);
+      compress(state, spec);
+      EXPECT_EQ(whole.curve.strain, state.curve.strain);
+      EXPECT_EQ(whole.curve.stress_axial, state.curve.stress_axial);
+      EXPECT_EQ(whole.curve.stress_lateral, state.curve.stress_lateral);
+      EXPECT_EQ(whole.macro.system.particles.largest_volume, state.macro.system.particles.largest_volume);
+      expect_same(whole.curve.cost, state.curve.cost);
+    }
   }
 }
 

@@ -120,6 +120,7 @@ void expect_same_state(const System<D>& a, const System<D>& b) {
   EXPECT_EQ(a.contacts.j, b.contacts.j);
   EXPECT_EQ(a.contacts.image, b.contacts.image);
   EXPECT_EQ(a.contacts.memory, b.contacts.memory);
+  EXPECT_EQ(a.particles.largest_volume, b.particles.largest_volume);
   expect_same_bits(a.contacts.roll, b.contacts.roll, "roll");
   EXPECT_TRUE(a.cell.edges == b.cell.edges);
   EXPECT_TRUE(same_bits(a.time, b.time));

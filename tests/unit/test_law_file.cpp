@@ -108,6 +108,20 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
+/// Other programs that read laws have no state of whole particles.
+TEST(LawFile, AMemoryOfParticlesIsWrittenAndRefused) {
+  SoftMultiContact<LawForm::isotropic, false> law;
+  law.modulus = 1.0;
+  const std::string without = laws_text({{"law", law}});
+  EXPECT_EQ(without.find("unloading_ratio"), std::string::npos);
+  law.unloading_ratio = 1.3;
+  const std::string with = laws_text({{"law", law}});
+  EXPECT_EQ(with, replaced(without, "retreat = 1.0\n", "retreat = 1.0\nunloading_ratio = 1.3\n"));
+  EXPECT_EQ(laws_text({{"law", mirrored(mirrored(law))}}), with);
+  EXPECT_EQ(complaint(without), "");
+  EXPECT_NE(complaint(with).find("key 'unloading_ratio' is a memory of whole particles"), std::string::npos);
+}
+
 TEST(LawFile, SaysWhatIsWrong) {
   const std::string text = laws_text(every_law());
   EXPECT_NE(complaint("").find("no laws file"), std::string::npos);

@@ -233,6 +233,39 @@ TEST(TableLawOfAScene, WallFrictionIsThatOfTheScene) {
   EXPECT_EQ((std::get<SoftMultiContact<LawForm::isotropic, false>>(bag.laws.soft_wall).friction), 0.07);
 }
 
+/// The number changes what tells laws apart; without it they have the names that they had.
+TEST(TableLawOfAScene, AMemoryOfParticlesIsPartOfTheLaw) {
+  using Isotropic = SoftMultiContact<LawForm::isotropic, false>;
+  LawSources chosen = sources(LawForm::isotropic);
+  const NamedLaws off = scene_law(chosen, spec_of_table(), 0.7, "law");
+  EXPECT_FALSE(std::get<Isotropic>(off.laws.soft_wall).remembers());
+  chosen.unloading_ratio = 1.3;
+  const NamedLaws on = scene_law(chosen, spec_of_table(), 0.7, "law");
+  for (const AnyLaw& law : {on.laws.soft_solid, on.laws.solid_soft, on.laws.soft_wall, on.laws.soft_soft}) {
+    EXPECT_EQ(std::get<Isotropic>(law).unloading_ratio, 1.3);
+    EXPECT_TRUE(std::get<Isotropic>(law).remembers());
+  }
+  EXPECT_NE(on.identity.hash, off.identity.hash);
+  EXPECT_NE(on.tag, off.tag);
+  chosen.unloading_ratio = 1.4;
+  EXPECT_NE(scene_law(chosen, spec_of_table(), 0.7, "law").identity.hash, on.identity.hash);
+  EXPECT_NE(scene_law(chosen, spec_of_table(), 0.7, "law").tag, on.tag);
+}
+
+TEST(TableLawOfAScene, AMemoryOfParticlesGoesWithOnePressureAlone) {
+  for (const LawForm form : {LawForm::pair, LawForm::isotropic, LawForm::directional})
+    for (const bool unloading : {false, true}) {
+      MultiContactChoices choices;
+      choices.form = form;
+      choices.unloading = unloading;
+      choices.unloading_ratio = 1.3;
+      if (form == LawForm::isotropic && !unloading)
+        EXPECT_NO_THROW((void)make_multi_contact_laws(law_entry(), choices));
+      else
+        EXPECT_THROW((void)make_multi_contact_laws(law_entry(), choices), InputError) << to_string(form) << unloading;
+    }
+}
+
 TEST(TableLawOfAScene, OtherGrainsAreRefused) {
   MacroSpec spec = spec_of_table();
   spec.friction = 0.5;

@@ -185,6 +185,8 @@ TEST_F(ParticlesLawTable, WhatDoesNotAddUpIsRefused) {
   expect_refused(last("E = \"0.5 MPa\"", "E = \"0.6 MPa\""), {"add up", "E = 600000"});
   expect_refused(last("file = \"one.toml\"\n", "file = \"one.toml\"\nunloading = true\n"),
                  {"add up", "with unloading"});
+  expect_refused(last("file = \"one.toml\"\n", "file = \"one.toml\"\nunloading_ratio = 1.3\n"),
+                 {"unloading_ratio", "goes with macro scenes"});
   expect_refused(with(good, "kind = \"soft-wall\"", "kind = \"soft-solid\""), {"wall", "soft-wall"});
   expect_refused(with(good, "kind = \"soft-solid\"", "kind = \"soft-wall\""), {"walls", "soft-solid"});
   expect_refused(with(good, "which_soft = \"soft\"", "which_soft = \"rigid\""), {"which_soft", "one of the pair"});

@@ -49,6 +49,7 @@ void read_levels(const SceneTable& t, HierarchySetup& out) {
   out.form = t.choice<LawForm>({"form", "law of the inner soft particles"}, out.form);
   out.unloading =
       t.flag({"unloading", "true: the law of the inner soft particles uses its unloading branch"}, out.unloading);
+  t.refuse({"unloading_ratio"}, "goes with macro scenes alone");
   out.rolling = t.flag(
       {"rolling", "true: the law of the inner soft particles uses its rolling resistance, if measured"}, out.rolling);
 }

@@ -208,6 +208,9 @@ ReadyMacro ready_macro(const Scene& scene, const CommonOptions& options) {
     throw InputError("key macro.preparation = \"lammps\" needs --engine lammps");
   if (macro.law.cells() != nullptr && lammps) throw InputError("--engine lammps: LAMMPS knows no cells; leave it out");
   if (lammps) refuse_sliding(macro.setup.spec);
+  if (lammps && macro.law.unloading_ratio > 1.0)
+    scene.root().throw_error("unloading_ratio",
+                             "--engine lammps: soft particles of LAMMPS remember nothing; leave it out");
   if (macro.setup.bands > 0) require_draws(macro, lammps.has_value());
   require_noise(scene, macro.setup, lammps.has_value());
   return ready;

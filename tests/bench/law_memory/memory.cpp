@@ -1,6 +1,7 @@
 // A trial of results/law_memory: soft particles of multi-contact laws with a memory, linked around the program as it is
-// (build.sh). Not part of any build. By the environment: MEMORY_S (s of the form `maximum`), MEMORY_A (A of the form
-// `shear`), MEMORY_WORK=1 (the form `work` instead of `shear`); without them the program computes as it does.
+// (build.sh). Not part of any build. By the environment: MEMORY_A (A of the form `shear`), MEMORY_WORK=1 (the form `work`
+// instead of `shear`), MEMORY_S (s of the form `maximum`, which the program has as `unloading_ratio`; with MEMORY_A the
+// form `both`); without them the program computes as it does.
 //
 // The state of a particle moves when a strained box is strained again: what was at rest before is kept. One law at a
 // time (a scene with `forms` of one name, --threads 1). Restarts forget the state.
