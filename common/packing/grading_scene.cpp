@@ -89,8 +89,20 @@ double must(const std::optional<double>& value, const CsvFile& csv, const CsvRow
   return *value;
 }
 
+/// A file says the whole distribution: values beside it are those of another one. The usual way there is a --set that
+/// gives the file to a scene with values, so the message has the setting that replaces both.
+void refuse_beside_file(const SceneTable& t, std::initializer_list<const char*> keys, GradingForm form) {
+  if (t.path().empty())
+    t.refuse(keys, "goes without file, which gives all sizes: leave out one of the two");
+  else
+    t.refuse(keys, fmt::format("goes without file, which gives all sizes: leave out one of the two; a whole table in "
+                               "its place: --set '{}={{form=\"{}\",file=\"{}\"}}'",
+                               t.path(), to_string(form), t.text("file")));
+}
+
 Grading read_curve(const SceneTable& t, int dimension) {
   if (t.has("file")) {
+    refuse_beside_file(t, {"openings", "passing"}, GradingForm::sieve_curve);
     const SieveOptions options = read_sieve_options(t);  // asked for before the file is read
     return read_sieve_file(t.resolve(t.text(kFileKey)), options, dimension).grading;
   }
@@ -113,7 +125,10 @@ Grading read_curve(const SceneTable& t, int dimension) {
 }
 
 Grading read_list(const SceneTable& t, int dimension) {
-  if (t.has("file")) return read_radii(t.resolve(t.text(kFileKey)), dimension);
+  if (t.has("file")) {
+    refuse_beside_file(t, {"radii", "counts"}, GradingForm::list);
+    return read_radii(t.resolve(t.text(kFileKey)), dimension);
+  }
   std::vector<double> radii =
       t.numbers({"radii", "`\"list\"` without a file: the sizes"}, Unit::length, Range::positive());
   if (radii.empty()) t.throw_error("radii", "at least one radius is needed");
