@@ -173,7 +173,11 @@ SieveOptions read_sieve_options(const SceneTable& t) {
 }
 
 Grading read_radii(const std::string& path, int dimension) {
-  const CsvFile csv = CsvFile::read(path);
+  CsvFile csv = CsvFile::read(path);
+  csv.take_units_behind_names([](const std::string& name) {
+    const bool size = name == "radius" || name == "r" || name == "diameter" || name == "d";
+    return size ? std::optional(Unit::length) : std::nullopt;
+  });
   csv.require_known_comments({}, "a list of sizes");
   const bool diameters = column_of(csv, {"radius", "r"}) < 0 && column_of(csv, {"diameter", "d"}) >= 0;
   const std::size_t column = diameters ? length_column(csv, {"diameter", "d"}, "diameter [mm]")

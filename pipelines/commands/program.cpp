@@ -349,6 +349,7 @@ int end_of_parsing(const CLI::App& app, const CLI::ParseError& e, bool as_json) 
   }
   const std::string command = command_on_line(app);
   std::string message = e.what();
+  if (const std::string missing = missing_value_text(app, message); !missing.empty()) message = missing;
   if (const std::string unknown = unknown_word_text(app); !unknown.empty()) message = unknown;
   // CLI11 puts "--threads: " before the message of a validator, which names the option itself.
   if (const std::size_t colon = message.find(": ");

@@ -11,6 +11,7 @@ namespace softgrain {
 LawCard card_of_press_test(const std::string& path) {
   ForceCurveOptions options;
   options.unloading = Unloading::fit;
+  options.by_options = false;
   ExperimentFit fit = fit_experiment(read_force_curve_files({path}, options), {}, true);
   const auto unusable =
       std::ranges::find_if(fit.card.pairs, [](const PairLaw& law) { return !has_numbers(law.status); });
