@@ -149,6 +149,10 @@ ExitStatus command_examples(const ExampleOptions& options);
 /// share/softgrain/pipelines of the prefix where it is installed; empty when neither is there.
 std::string shipped_scenes();
 
+/// Messages with more about files that are not there ("PATH: no such file"): the one of the program whose path ends so,
+/// and, unless the path is one of the `words` of the command line, that scenes name files relative to their folders.
+std::string with_missing_files_explained(const std::string& messages, const std::vector<std::string>& words);
+
 /// The text of a scene, with every file that it names relative to `folder` named by its full path; names of what is no
 /// file there stay.
 std::string with_full_paths(const std::string& scene, const std::string& folder);

@@ -388,7 +388,7 @@ int run_words(int argc, char** argv) {
   try {
     return parse_and_run_or_explain(app, argc, argv);
   } catch (const Error& e) {
-    return complain(e.status(), e.what(), as_json);
+    return complain(e.status(), with_missing_files_explained(e.what(), {argv, argv + argc}), as_json);
   } catch (const std::bad_alloc&) {
     return complain(ExitStatus::not_usable, "not enough memory", as_json);
   } catch (const std::system_error& e) {  // of file systems and streams
