@@ -172,8 +172,11 @@ bool is_beside_a_scene(const std::string& path, const std::vector<std::string>& 
 }
 
 std::string about_missing_file(const std::string& path, const std::vector<std::string>& words) {
-  const std::string shipped = shipped_counterpart(path);
+  std::string shipped = shipped_counterpart(path);
+  if (shipped.empty()) shipped = shipped_counterpart(path + ".toml");
   std::string text = shipped.empty() ? "" : "; one of this name comes with the program: " + shipped;
+  if (fs::path(shipped).extension() == ".toml" && fs::path(shipped).parent_path() == fs::path(shipped_scenes()))
+    text += fmt::format(" (softgrain examples {} --out FILE copies it)", fs::path(shipped).stem().string());
   if (std::ranges::find(words, path) != words.end() || !is_beside_a_scene(path, words)) return text;
   text += "; paths in a scene are relative to its own folder";
   if (!shipped.empty())

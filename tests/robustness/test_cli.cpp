@@ -144,7 +144,9 @@ TEST(CommandLine, AFileThatACopiedSceneLacksIsTheOneOfTheProgram) {
     expect("check '" + scene + "'", 4, words);
   expect("check '" + scene + "'", 4, missing);
   // What the command line names itself is not that of a scene.
-  expect("check nowhere/quickstart.toml", 4, "/pipelines/quickstart.toml");
+  expect("check nowhere/quickstart.toml", 4,
+         "/pipelines/quickstart.toml (softgrain examples quickstart --out FILE copies it)");
+  expect("check quickstart", 4, "/pipelines/quickstart.toml (softgrain examples quickstart");
   const Outcome absent = program("check absent_scene.toml");
   EXPECT_EQ(absent.output.find("relative"), std::string::npos) << absent.output;
 }
