@@ -90,14 +90,18 @@ double must(const std::optional<double>& value, const CsvFile& csv, const CsvRow
 }
 
 /// A file says the whole distribution: values beside it are those of another one. The usual way there is a --set that
-/// gives the file to a scene with values, so the message has the setting that replaces both.
+/// gives the file to a scene with values, so the message has the setting that replaces both. Said once for all `keys`.
 void refuse_beside_file(const SceneTable& t, std::initializer_list<const char*> keys, GradingForm form) {
-  if (t.path().empty())
-    t.refuse(keys, "goes without file, which gives all sizes: leave out one of the two");
-  else
-    t.refuse(keys, fmt::format("goes without file, which gives all sizes: leave out one of the two; a whole table in "
-                               "its place: --set '{}={{form=\"{}\",file=\"{}\"}}'",
-                               t.path(), to_string(form), t.text("file")));
+  bool said = false;
+  for (const char* key : keys) {
+    if (!t.has(key) || said) continue;
+    said = true;
+    std::string text = "goes without file, which gives all sizes: leave out one of the two";
+    if (!t.path().empty())
+      text += fmt::format("; a whole table in its place: --set '{}={{form=\"{}\",file=\"{}\"}}'", t.path(),
+                          to_string(form), t.text("file"));
+    t.add_error(key, text);
+  }
 }
 
 Grading read_curve(const SceneTable& t, int dimension) {
