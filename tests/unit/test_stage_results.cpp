@@ -11,6 +11,7 @@
 #include "pipelines/compare/macro_scores.h"
 #include "pipelines/compare/stage_match.h"
 #include "pipelines/compare/stage_results.h"
+#include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/macro/summary.h"
 #include "pipelines/report/report.h"
 #include "pipelines/results/summary.h"
@@ -123,9 +124,11 @@ TEST(StageResults, ReportsDrawStagesThatSlideOverTheirShearStrain) {
   };
   const MacroCurve both = pressed_and_slid().curve;
   const std::string html = page(both);
-  for (const char* id : {"material-axial", "material-axial-sliding", "material-ratio-sliding",
-                         "macro-stages-ratio-sliding", "macro-stages-volume-sliding"})
-    EXPECT_TRUE(has(html, std::string(id) + "\"")) << id;
+  for (const char* id : {"material-axial", "material-axial-sliding", "material-ratio-sliding"})
+    EXPECT_TRUE(has(html, std::string("id=\"") + id + "-clip\"")) << id;
+  const std::string parts = report::stage_parts({both}, MacroTest::stages);
+  for (const char* id : {"macro-stages-ratio", "macro-stages-ratio-sliding", "macro-stages-volume-sliding"})
+    EXPECT_TRUE(has(parts, std::string("id=\"") + id + "-clip\"")) << id;
   EXPECT_TRUE(has(html, "shear strain [%]"));
   EXPECT_TRUE(has(html, "axial stress [kPa]")) << "stages have stresses in Pa";
   MacroCurve pressed = both;
