@@ -39,15 +39,38 @@ std::string percent_text(double share, const NumberForm& form, const char* undef
   return rounded_text(100.0 * share, form) + " %";
 }
 
-std::string pressure_text(double stress, int digits) {
-  constexpr std::array<std::pair<double, const char*>, 3> kPrefixes{{{1e9, "GPa"}, {1e6, "MPa"}, {1e3, "kPa"}}};
-  const auto* const at = std::ranges::find_if(kPrefixes, [&](const auto& p) { return std::abs(stress) >= p.first; });
-  const bool none = at == kPrefixes.end();
-  // Rounded first: "120 kPa" with two digits, not "1.2e+02 kPa".
-  const double value =
-      std::strtod(fmt::format("{:.{}e}", none ? stress : stress / at->first, digits - 1).c_str(), nullptr);
+namespace {
+
+struct PressureUnit {
+  double factor = 1.0;
+  const char* symbol = "Pa";
+};
+
+/// The largest unit of which a stress [Pa] is one at least.
+PressureUnit pressure_unit(double stress) {
+  constexpr std::array<PressureUnit, 3> kUnits{{{1e9, "GPa"}, {1e6, "MPa"}, {1e3, "kPa"}}};
+  const auto* const at = std::ranges::find_if(kUnits, [&](const auto& u) { return std::abs(stress) >= u.factor; });
+  return at == kUnits.end() ? PressureUnit{} : *at;
+}
+
+/// Rounded to so many digits, then written without an exponent: "120" with two digits, not "1.2e+02".
+std::string plain_digits(double number, int digits) {
+  const double value = std::strtod(fmt::format("{:.{}e}", number, digits - 1).c_str(), nullptr);
   const bool plain = std::abs(value) < 1e6 && std::abs(value) >= 1e-4;
-  return fmt::format("{:.{}g} {}", value, plain ? std::max(digits, 6) : digits, none ? "Pa" : at->second);
+  return fmt::format("{:.{}g}", value, plain ? std::max(digits, 6) : digits);
+}
+
+}  // namespace
+
+std::string pressure_text(double stress, int digits) {
+  const PressureUnit unit = pressure_unit(stress);
+  return plain_digits(stress / unit.factor, digits) + " " + unit.symbol;
+}
+
+std::string pressure_text(const MeanError& mean) {
+  const PressureUnit unit = pressure_unit(mean.mean);
+  const std::string error = mean.n > 1 ? " +- " + plain_digits(mean.error / unit.factor, 2) : "";
+  return plain_digits(mean.mean / unit.factor, 4) + error + " " + unit.symbol;
 }
 
 std::optional<double> if_finite(double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; }

@@ -58,6 +58,9 @@ std::string percent_text(double share, const NumberForm& form = {1, true}, const
 /// "50 kPa", "-1 MPa": a stress in Pa as messages give it.
 std::string pressure_text(double stress, int digits = 6);
 
+/// "650 +- 20 MPa" of a mean in Pa; a single value has no error.
+std::string pressure_text(const MeanError& mean);
+
 /// The number if it is finite.
 std::optional<double> if_finite(double value);
 

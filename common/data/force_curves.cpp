@@ -52,20 +52,25 @@ namespace {
 /// Names under which a quantity may stand in the header (lower case).
 struct ColumnName {
   const char* quantity;
+  Unit unit;
+  const char* example;  ///< of a title
   std::vector<std::string> names;
 };
 
 const std::vector<ColumnName>& column_names() {
   static const std::vector<ColumnName> names{
-      {"hn", {"hn", "h_n", "h", "overlap", "displacement", "indentation"}},
-      {"Delta", {"delta", "delta_n", "hn/rs", "h/rs"}},
-      {"Fn", {"fn", "f_n", "f", "force", "normal force", "load"}},
-      {"standard error", {"se", "error", "standard error", "standard_error", "stderr", "fn_se", "fn error", "sigma"}},
-      {"sample", {"sample", "specimen", "test", "packing"}},
-      {"ht", {"ht", "h_t", "tangential displacement"}},
-      {"Ft", {"ft", "f_t", "tangential force"}},
-      {"kt", {"kt", "k_t", "tangential stiffness"}},
-      {"branch", {"branch", "phase"}}};
+      {"hn", Unit::length, "hn [mm]", {"hn", "h_n", "h", "overlap", "displacement", "indentation"}},
+      {"Delta", Unit::none, "Delta", {"delta", "delta_n", "hn/rs", "h/rs"}},
+      {"Fn", Unit::force, "Fn [N]", {"fn", "f_n", "f", "force", "normal force", "load"}},
+      {"standard error",
+       Unit::force,
+       "se [N]",
+       {"se", "error", "standard error", "standard_error", "stderr", "fn_se", "fn error", "sigma"}},
+      {"sample", Unit::none, "sample", {"sample", "specimen", "test", "packing"}},
+      {"ht", Unit::length, "ht [um]", {"ht", "h_t", "tangential displacement"}},
+      {"Ft", Unit::force, "Ft [N]", {"ft", "f_t", "tangential force"}},
+      {"kt", Unit::stiffness, "kt [N/mm]", {"kt", "k_t", "tangential stiffness"}},
+      {"branch", Unit::none, "branch", {"branch", "phase"}}};
   return names;
 }
 
@@ -75,7 +80,21 @@ std::size_t& place(CurveLayout& layout, std::size_t quantity) {
   return *places[quantity];
 }
 
+/// The quantity of a name, its index in column_names().
+std::optional<std::size_t> quantity_of(const std::string& name) {
+  for (std::size_t q = 0; q < column_names().size(); ++q) {
+    const auto& names = column_names()[q].names;
+    if (std::find(names.begin(), names.end(), name) != names.end()) return q;
+  }
+  return std::nullopt;
+}
+
+/// What to write in place of a title that is none of ours: "force_n" is meant to be "force [N]", "forse" force.
 std::string known_columns(const std::string& found) {
+  if (quantity_of(found)) return "";
+  if (const auto q = quantity_of(found.substr(0, found.find_first_of(" _/,"))))
+    if (const std::string example = column_names()[*q].example; example.ends_with(']'))
+      return fmt::format(" (write it as \"{}\")", example);
   std::vector<std::string> all;
   for (const ColumnName& c : column_names()) all.insert(all.end(), c.names.begin(), c.names.end());
   const std::string near = nearest_word(found, all);
@@ -103,15 +122,6 @@ void refuse_ambiguous(const CsvFile& file) {
                       file.where(file.header_line()), c.title));
 }
 
-/// The quantity of a name, its index in column_names().
-std::optional<std::size_t> quantity_of(const std::string& name) {
-  for (std::size_t q = 0; q < column_names().size(); ++q) {
-    const auto& names = column_names()[q].names;
-    if (std::find(names.begin(), names.end(), name) != names.end()) return q;
-  }
-  return std::nullopt;
-}
-
 /// Number of a repeat, however it is written (1, 01); empty: all repeats.
 using Repeat = std::optional<std::int64_t>;
 
@@ -132,6 +142,16 @@ std::optional<NamedColumn> named_column(const std::string& name) {
   std::int64_t repeat = 0;
   if (std::from_chars(name.data() + digits, name.data() + name.size(), repeat).ec != std::errc()) return std::nullopt;
   return NamedColumn{*q, repeat};
+}
+
+/// The table with units in the place of units.
+CsvFile table_of_curves(const std::string& path) {
+  CsvFile file = CsvFile::read(path);
+  file.take_units_behind_names([](const std::string& name) -> std::optional<Unit> {
+    const auto named = named_column(name);
+    return named ? std::optional(column_names()[named->quantity].unit) : std::nullopt;
+  });
+  return file;
 }
 
 /// Columns by the repeat that they belong to, in the order of their numbers; those without one belong to all.
@@ -198,16 +218,13 @@ void require_columns(const CsvFile& file, const CurveLayout& at) {
     no_column(file, at.ht == CurveLayout::none ? "ht beside Ft" : "Ft beside ht");
   if (at.kt != CurveLayout::none && at.ft != CurveLayout::none)
     throw InputError(file.where(file.header_line()) + ": give the tangential law once, as kt or as ht and Ft");
-  const auto unit = [&](std::size_t column, Unit u, const char* example) {
-    if (column != CurveLayout::none) file.require_unit(column, u, example);
-  };
-  unit(at.hn, Unit::length, "hn [mm]");
-  unit(at.delta, Unit::none, "Delta");
-  unit(at.fn, Unit::force, "Fn [N]");
-  unit(at.error, Unit::force, "se [N]");
-  unit(at.ht, Unit::length, "ht [um]");
-  unit(at.ft, Unit::force, "Ft [N]");
-  unit(at.kt, Unit::stiffness, "kt [N/mm]");
+  CurveLayout layout = at;
+  for (std::size_t q = 0; q < column_names().size(); ++q) {
+    const std::size_t column = place(layout, q);
+    const ColumnName& known = column_names()[q];
+    if (column != CurveLayout::none && column != at.sample && column != at.branch)
+      file.require_unit(column, known.unit, known.example);
+  }
 }
 
 /// What comments of a press test may say.
@@ -229,13 +246,18 @@ void read_machine(const CsvFile& file, CurveLayout& at) {
   if (const auto k = file.quantity(kMachine, Unit::stiffness, Range::positive())) at.machine_stiffness = *k;
 }
 
+/// An option that says what a comment may say, where the command has such options.
+std::string beside_text(const ForceCurveOptions& options, const char* option) {
+  return options.by_options ? std::string("give ") + option + ", or " : "write ";
+}
+
 PairKind kind_of(const CsvFile& file, const ForceCurveOptions& options) {
   const auto said = file.word(kKind);
   if (!said && options.kind) return *options.kind;
   if (!said)
-    throw InputError(file.path() +
-                     ": which contact was measured? Give --kind soft-solid or soft-soft, or a comment \"# kind = "
-                     "soft-solid\"");
+    throw InputError(file.path() + ": which contact was measured? " +
+                     beside_text(options, "--kind soft-solid or soft-soft") +
+                     "a comment \"# kind = soft-solid\" (against a plate) or \"# kind = soft-soft\" (two alike)");
   const auto kind = parse_enum<PairKind>(said->value);
   if (!kind)
     throw InputError(
@@ -261,14 +283,13 @@ std::optional<double> agreed(const CsvFile& file, const CsvNames& names, Unit un
 SoftParticleSpec spec_of(const CsvFile& file, const ForceCurveOptions& options) {
   const auto radius = agreed(file, kRadius, Unit::length, options.shell_radius, options.radius_from, "m");
   if (!radius)
-    throw InputError(file.path() +
-                     ": the radius of the soft particle is needed: --radius \"16 mm\", or a comment \"# Rs = 16 mm\"");
+    throw InputError(file.path() + ": the radius of the soft particle is needed: " +
+                     beside_text(options, "--radius \"16 mm\"") + "a comment \"# Rs = 16 mm\"");
   const auto modulus = agreed(file, kModulus, Unit::pressure, options.youngs_modulus, options.modulus_from, "Pa");
   if (!modulus)
-    throw InputError(
-        file.path() +
-        ": E of the grains is needed to make the law dimensionless: --modulus \"0.5 MPa\", or a comment \"# E "
-        "= 0.5 MPa\" (a law used with the same E gives back the measured forces)");
+    throw InputError(file.path() + ": E of the grains is needed to make the law dimensionless: " +
+                     beside_text(options, "--modulus \"0.5 MPa\"") +
+                     "a comment \"# E = 0.5 MPa\" (a law used with the same E gives back the measured forces)");
   SoftParticleSpec spec = unknown_soft_particle(*radius, *modulus);
   const auto take = [&](double SoftParticleSpec::*value, const CsvNames& names) {
     const SoftParticleNumber& number = soft_particle_number(value);
@@ -350,7 +371,7 @@ SaidByFile said_by_comments(const CsvFile& table) {
 }
 
 ForceCurves read_force_curves(const std::string& path, const ForceCurveOptions& options) {
-  const CsvFile file = CsvFile::read(path);
+  const CsvFile file = table_of_curves(path);
   ForceCurves out;
   std::vector<CurveLayout> layouts = layouts_of(file, out.remarks);
   for (const CurveLayout& at : layouts) require_columns(file, at);

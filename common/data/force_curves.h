@@ -64,6 +64,7 @@ struct ForceCurveOptions {
   const char* kind_from = "--kind";      ///< who says each, for messages
   const char* radius_from = "--radius";
   const char* modulus_from = "--modulus";
+  bool by_options = true;  ///< whether messages name the options --kind, --radius and --modulus
   Unloading unloading = Unloading::refuse;
   double initial_angle_deg = 0.05;         ///< a column kt is taken as the slope over +- this angle
   double secant_angle_deg = kSecantAngle;  ///< Ft is interpolated at this angle

@@ -266,6 +266,48 @@ void CsvFile::require_known_columns(const CsvNames& known, const std::string& wh
   }
 }
 
+namespace {
+
+bool is_unit_of(const std::string& text, Unit unit) {
+  try {
+    (void)parse_quantity("1 " + text, unit);
+    return !text.empty();
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// "displacement in ", "f /" without what stands between a name and its unit.
+std::string name_before_unit(std::string name) {
+  constexpr const char* kBetween = " _/,";
+  const auto without_end = [&] { name.resize(name.find_last_not_of(kBetween) + 1); };
+  without_end();
+  for (const char* in : {" in", "_in"})
+    if (name.ends_with(in)) {
+      name.resize(name.size() - 3);
+      without_end();
+    }
+  return name;
+}
+
+}  // namespace
+
+void CsvFile::take_units_behind_names(const std::function<std::optional<Unit>(const std::string&)>& unit_of) {
+  for (CsvColumn& c : columns_) {
+    if (!c.unit.empty() || unit_of(c.name)) continue;
+    for (std::size_t at = c.title.find_first_of(" _/"); at != std::string::npos;
+         at = c.title.find_first_of(" _/", at + 1)) {
+      const std::string name = name_before_unit(csv::lower(c.title.substr(0, at)));
+      const std::string unit = trimmed(c.title.substr(at + 1));
+      const std::optional<Unit> quantity = unit_of(name);
+      if (!quantity || *quantity == Unit::none || !is_unit_of(unit, *quantity)) continue;
+      c.name = name;
+      c.unit = unit;
+      break;
+    }
+  }
+}
+
 std::optional<double> CsvFile::number(const CsvRow& row, std::size_t column, Unit unit) const {
   std::string cell = row.cells[column];
   if (csv::is_missing(cell)) return std::nullopt;

@@ -55,6 +55,11 @@ class CsvFile {
   /// a row that is too long.
   static std::optional<CsvFile> find(const std::string& bytes, const std::string& path, const CsvIsHeader& is_header);
 
+  /// Takes units apart that stand behind a name without brackets: "force_N", "Force N", "F/N", "displacement_in_mm".
+  /// `unit_of` says which quantity a name has, nothing for an unknown one. Names that it knows as they are stay
+  /// ("F_n").
+  void take_units_behind_names(const std::function<std::optional<Unit>(const std::string&)>& unit_of);
+
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] const std::vector<CsvColumn>& columns() const { return columns_; }
   [[nodiscard]] const std::vector<CsvRow>& rows() const { return rows_; }

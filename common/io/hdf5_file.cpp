@@ -132,6 +132,7 @@ struct AtomicFile::Impl {
 AtomicFile::AtomicFile(const std::string& path, bool keep_previous, bool sealed)
     : impl_(std::make_unique<Impl>(Impl{path, keep_previous, sealed, false, nullptr})) {
   silence_library();
+  require_folder_of(path);
   impl_->file = std::make_shared<File>(File{create_file(temporary_name(path)), path});
 }
 

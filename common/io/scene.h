@@ -162,6 +162,8 @@ class SceneTable {
   [[nodiscard]] std::vector<std::string> keys() const;  ///< names present, for tables with free names ([material.NAME])
   [[nodiscard]] SceneTable named(const Key& key) const;  ///< sub-table with a free name
 
+  /// Name of the table as --set writes it, "grains.sizes", "contact.0"; empty for the root.
+  [[nodiscard]] std::string path() const;
   /// "file:line" of a key (of the table itself when the key is absent), for messages of checks that span keys.
   [[nodiscard]] std::string where(const std::string& key) const;
   /// A path written in the scene, relative to the scene's own folder.

@@ -106,6 +106,7 @@ struct SceneTable::Impl {
   [[nodiscard]] bool any(bool Impl::*what) const;
 
   std::shared_ptr<Impl> make_child(const std::string& key, const toml::table* table, bool is_element) const;
+  [[nodiscard]] std::string setting_beside(const toml::node& node) const;
   /// Adds keys that nobody asked for.
   void find_unknown(std::vector<SceneError>& out) const;
 };

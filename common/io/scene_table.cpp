@@ -121,6 +121,17 @@ std::shared_ptr<SceneTable::Impl> SceneTable::Impl::make_child(const std::string
   return child;
 }
 
+/// Which key of this table --set gave, where `node` stands in the file: a value that it replaced may have asked for the
+/// others. Empty: none, or the whole table is of --set.
+std::string SceneTable::Impl::setting_beside(const toml::node& node) const {
+  if (content == nullptr || path.empty() || document->overridden.contains(&node)) return "";
+  for (const auto& [other, value] : *content)
+    if (document->overridden.contains(&value))
+      return "with --set " + path + "." + std::string(other.str()) + " it may no longer fit: --set '" + path +
+             "={...}' replaces the whole table";
+  return "";
+}
+
 void SceneTable::Impl::find_unknown(std::vector<SceneError>& out) const {
   if (broken) return;
   const std::vector<std::string> asked(known.begin(), known.end());
@@ -137,7 +148,7 @@ void SceneTable::Impl::find_unknown(std::vector<SceneError>& out) const {
       const std::string near = nearest_word(key, asked);
       const std::string help =
           !near.empty() ? "nearest known key is '" + near + "'" : "known keys are " + join_text(known);
-      const std::string scope = out_of_scope_text(key);
+      const std::string scope = out_of_scope_text(key) + (near.empty() ? setting_beside(node) : "");
       out.push_back({.line = line_of(node),
                      .text = where(key, node) + ": unknown key '" + key + "' " + location() +
                              (known.empty() ? "" : "; " + help) + (scope.empty() ? "" : "; " + scope)});
@@ -223,6 +234,8 @@ std::vector<std::string> SceneTable::keys() const {
 }
 
 SceneTable SceneTable::named(const Key& key) const { return table(key); }
+
+std::string SceneTable::path() const { return impl_->path; }
 
 std::string SceneTable::where(const std::string& key) const {
   const toml::node* node = impl_->find(key);

@@ -46,13 +46,14 @@ bool has_room(int descriptor) {
   return false;
 }
 
-void write_file(const std::string& path, const std::string& text) {
+/// `shown`: the path in messages.
+void write_file(const std::string& path, const std::string& text, const std::string& shown) {
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor < 0) throw IoError(path + ": cannot be created: " + system_message());
+  if (descriptor < 0) throw IoError(shown + ": cannot be created: " + system_message());
   const bool good = write_all(descriptor, text);
   const std::string reason = system_message();
   const bool closed = ::close(descriptor) == 0;
-  if (!good || !closed) throw IoError(path + ": cannot be written: " + (good ? system_message() : reason));
+  if (!good || !closed) throw IoError(shown + ": cannot be written: " + (good ? system_message() : reason));
 }
 
 /// What a path names that is no plain file; empty for one.
@@ -106,9 +107,19 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(kSpace) - first + 1);
 }
 
+void require_folder_of(const std::string& path) {
+  const std::string folder = fs::path(path).parent_path().string();
+  std::error_code trouble;
+  if (folder.empty() || fs::is_directory(folder, trouble)) return;
+  throw IoError(fs::exists(folder, trouble)
+                    ? fmt::format("{}: {} is no folder", path, folder)
+                    : fmt::format("{}: there is no folder {}; make it first, or choose another place", path, folder));
+}
+
 void write_text_atomic(const std::string& path, const std::string& text) {
   try {
-    write_file(temporary_name(path), text);
+    require_folder_of(path);
+    write_file(temporary_name(path), text, path);
     rename_into_place(path);
   } catch (...) {
     std::error_code ignored;
@@ -140,7 +151,7 @@ void require_writable_directory(const std::string& path) {
   }
   // Not every file system knows files without a name; one with a name is left behind when the process is killed now.
   const std::string probe = path + "/.write-test-" + std::to_string(::getpid());
-  write_file(probe, "test\n");
+  write_file(probe, "test\n", path);
   fs::remove(probe, trouble);
 }
 

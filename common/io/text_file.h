@@ -30,6 +30,9 @@ inline std::optional<FileForm> file_form(const std::string& path) {
   return parse_enum<FileForm>(std::filesystem::path(path).extension().string());
 }
 
+/// Throws IoError, which names the folder, where that of a file to be written is not there.
+void require_folder_of(const std::string& path);
+
 /// Writes to `path + ".tmp"`, flushes to disk and renames. Throws IoError.
 void write_text_atomic(const std::string& path, const std::string& text);
 

@@ -89,8 +89,24 @@ double must(const std::optional<double>& value, const CsvFile& csv, const CsvRow
   return *value;
 }
 
+/// A file says the whole distribution: values beside it are those of another one. The usual way there is a --set that
+/// gives the file to a scene with values, so the message has the setting that replaces both. Said once for all `keys`.
+void refuse_beside_file(const SceneTable& t, std::initializer_list<const char*> keys, GradingForm form) {
+  bool said = false;
+  for (const char* key : keys) {
+    if (!t.has(key) || said) continue;
+    said = true;
+    std::string text = "goes without file, which gives all sizes: leave out one of the two";
+    if (!t.path().empty())
+      text += fmt::format("; a whole table in its place: --set '{}={{form=\"{}\",file=\"{}\"}}'", t.path(),
+                          to_string(form), t.text("file"));
+    t.add_error(key, text);
+  }
+}
+
 Grading read_curve(const SceneTable& t, int dimension) {
   if (t.has("file")) {
+    refuse_beside_file(t, {"openings", "passing"}, GradingForm::sieve_curve);
     const SieveOptions options = read_sieve_options(t);  // asked for before the file is read
     return read_sieve_file(t.resolve(t.text(kFileKey)), options, dimension).grading;
   }
@@ -113,7 +129,10 @@ Grading read_curve(const SceneTable& t, int dimension) {
 }
 
 Grading read_list(const SceneTable& t, int dimension) {
-  if (t.has("file")) return read_radii(t.resolve(t.text(kFileKey)), dimension);
+  if (t.has("file")) {
+    refuse_beside_file(t, {"radii", "counts"}, GradingForm::list);
+    return read_radii(t.resolve(t.text(kFileKey)), dimension);
+  }
   std::vector<double> radii =
       t.numbers({"radii", "`\"list\"` without a file: the sizes"}, Unit::length, Range::positive());
   if (radii.empty()) t.throw_error("radii", "at least one radius is needed");
@@ -158,7 +177,11 @@ SieveOptions read_sieve_options(const SceneTable& t) {
 }
 
 Grading read_radii(const std::string& path, int dimension) {
-  const CsvFile csv = CsvFile::read(path);
+  CsvFile csv = CsvFile::read(path);
+  csv.take_units_behind_names([](const std::string& name) {
+    const bool size = name == "radius" || name == "r" || name == "diameter" || name == "d";
+    return size ? std::optional(Unit::length) : std::nullopt;
+  });
   csv.require_known_comments({}, "a list of sizes");
   const bool diameters = column_of(csv, {"radius", "r"}) < 0 && column_of(csv, {"diameter", "d"}) >= 0;
   const std::size_t column = diameters ? length_column(csv, {"diameter", "d"}, "diameter [mm]")

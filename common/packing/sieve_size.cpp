@@ -51,14 +51,21 @@ const std::map<std::string, double>& astm_inches() {
   return all;
 }
 
-/// Openings of ISO 565 and 3310 between 1 and 10, and in every other decade: R 20 and R 40/3.
+/// Openings of ISO 565 and 3310 between 1 and 10, and in every other decade: R 20 and R 40/3. Besides those that are
+/// rounded otherwise from 10 to 100 (13.2 mm; 22, 26, 32 and 36 um), and the names that EN 12620 gives to sieves of
+/// 11.2, 12.5, 22.4 and 31.5 mm.
 bool is_iso_opening(double opening) {
   constexpr std::array kSeries{1.0,  1.06, 1.12, 1.18, 1.25, 1.4,  1.5,  1.6,  1.7,  1.8, 1.9, 2.0,  2.12, 2.24,
                                2.36, 2.5,  2.65, 2.8,  3.0,  3.15, 3.35, 3.55, 3.75, 3.8, 4.0, 4.25, 4.5,  4.75,
                                5.0,  5.3,  5.6,  6.0,  6.3,  6.7,  7.1,  7.5,  8.0,  8.5, 9.0, 9.5};
+  constexpr std::array kOfTens{1.1, 1.2, 1.32, 2.2, 2.6, 3.2, 3.6};
   if (!(opening > 0.0)) return false;
   const double decade = std::pow(10.0, std::floor(std::log10(opening) + 1e-9));
-  return std::ranges::any_of(kSeries, [&](double one) { return std::abs(opening / decade - one) < 1e-6; });
+  const auto is_in = [&](const auto& series) {
+    return std::ranges::any_of(series, [&](double one) { return std::abs(opening / decade - one) < 1e-6; });
+  };
+  const bool tens = std::abs(decade - 10.0) < 1e-6 || std::abs(decade - 0.01) < 1e-9;  // mm or um; um in mm
+  return is_in(kSeries) || (tens && is_in(kOfTens));
 }
 
 bool is_digit_of_size(char c) { return c >= '0' && c <= '9'; }

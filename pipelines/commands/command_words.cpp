@@ -81,6 +81,17 @@ std::string unknown_command_text(const std::string& given, const std::string& hi
                      join_text(known));
 }
 
+std::string missing_value_text(const CLI::App& program, const std::string& message) {
+  if (!message.starts_with("--") || message.find(" required ") == std::string::npos) return "";
+  const CLI::App* command = &program;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  const std::string name = message.substr(0, message.find(':'));
+  const CLI::Option* option = command->get_option_no_throw(name);
+  if (option == nullptr || option->get_option_text().empty()) return "";
+  return fmt::format("{0}: nothing follows it; give {0} {1}: {2}", name, option->get_option_text(),
+                     option->get_description());
+}
+
 std::string unknown_word_text(const CLI::App& program) {
   const CLI::App* command = &program;
   while (command->remaining_size() == 0 && !command->get_subcommands().empty())

@@ -149,6 +149,10 @@ ExitStatus command_examples(const ExampleOptions& options);
 /// share/softgrain/pipelines of the prefix where it is installed; empty when neither is there.
 std::string shipped_scenes();
 
+/// Messages with more about files that are not there ("PATH: no such file"): the one of the program whose path ends so,
+/// and, unless the path is one of the `words` of the command line, that scenes name files relative to their folders.
+std::string with_missing_files_explained(const std::string& messages, const std::vector<std::string>& words);
+
 /// The text of a scene, with every file that it names relative to `folder` named by its full path; names of what is no
 /// file there stay.
 std::string with_full_paths(const std::string& scene, const std::string& folder);
@@ -180,6 +184,10 @@ std::string command_on_line(const CLI::App& app);
 /// What to say of an unknown command; `hint` names the nearest one, or is empty.
 std::string unknown_command_text(const std::string& given, const std::string& hint,
                                  const std::vector<std::string>& known);
+
+/// What to say of an option without its value, by the message of the parser about it: what it takes, as its help says.
+/// Empty for other messages.
+std::string missing_value_text(const CLI::App& program, const std::string& message);
 
 /// What to say of an option (or the name of a part of a command) that was given and is unknown: the nearest one of the
 /// command, or which commands know it. Empty when there was none.

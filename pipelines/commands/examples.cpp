@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
@@ -144,6 +145,56 @@ std::string shipped_scenes() {
     for (const char* place : {"share/softgrain/pipelines", "pipelines"})
       if (fs::exists(at / place / kFirstExample, error)) return (at / place).string();
   return "";
+}
+
+namespace {
+
+/// The file of the program whose path ends as this one does, in as many parts as possible; empty: there is none.
+std::string shipped_counterpart(const fs::path& path) {
+  const std::string folder = shipped_scenes();
+  if (folder.empty()) return "";
+  std::error_code ignored;
+  for (fs::path end = path.relative_path(); !end.empty();) {
+    for (const fs::path& root : {fs::path(folder), fs::path(folder).parent_path()})
+      if (fs::is_regular_file(root / end, ignored)) return (root / end).string();
+    fs::path shorter;
+    for (auto part = std::next(end.begin()); part != end.end(); ++part) shorter /= *part;
+    end = shorter;
+  }
+  return "";
+}
+
+/// Whether a scene among these words may have named the file: it lies in the scene's folder, or below.
+bool is_beside_a_scene(const std::string& path, const std::vector<std::string>& words) {
+  return std::ranges::any_of(words, [&](const std::string& word) {
+    return word != path && word.ends_with(".toml") && path.starts_with(fs::path(word).parent_path().string());
+  });
+}
+
+std::string about_missing_file(const std::string& path, const std::vector<std::string>& words) {
+  std::string shipped = shipped_counterpart(path);
+  if (shipped.empty()) shipped = shipped_counterpart(path + ".toml");
+  std::string text = shipped.empty() ? "" : "; one of this name comes with the program: " + shipped;
+  if (fs::path(shipped).extension() == ".toml" && fs::path(shipped).parent_path() == fs::path(shipped_scenes()))
+    text += fmt::format(" (softgrain examples {} --out FILE copies it)", fs::path(shipped).stem().string());
+  if (std::ranges::find(words, path) != words.end() || !is_beside_a_scene(path, words)) return text;
+  text += "; paths in a scene are relative to its own folder";
+  if (!shipped.empty())
+    text += ": name that file, or copy the scene with softgrain examples NAME --out FILE, which does";
+  return text;
+}
+
+}  // namespace
+
+std::string with_missing_files_explained(const std::string& messages, const std::vector<std::string>& words) {
+  constexpr std::string_view kMissing = ": no such file";
+  std::string text;
+  std::istringstream lines(messages);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.ends_with(kMissing)) line += about_missing_file(line.substr(0, line.size() - kMissing.size()), words);
+    append_part(text, line, "\n");
+  }
+  return text;
 }
 
 std::string with_full_paths(const std::string& scene, const std::string& folder) {

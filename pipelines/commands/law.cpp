@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "common/core/text.h"
@@ -323,6 +324,18 @@ json full_json(const LawOptions& o, const FittedLaw& file, const std::vector<Val
   return out;
 }
 
+/// What an export of this format has written may be written again: it begins alike. Other files are left alone.
+void refuse_to_replace_other_files(const LawOptions& o, const std::string& text) {
+  constexpr std::size_t kBeginning = 30;
+  std::error_code ignored;
+  if (o.out.empty() || !std::filesystem::exists(o.out, ignored)) return;
+  if (read_text(o.out).starts_with(text.substr(0, kBeginning))) return;
+  throw InputError(
+      fmt::format("law export: --out {}: is there already, is no {} export, and would be overwritten; choose "
+                  "another name",
+                  o.out, to_string(*o.format)));
+}
+
 ExitStatus export_law(const LawOptions& o) {
   if (!o.format) throw InputError("law export: give --to lammps-table, csv or json");
   const FittedLaw file = load_contact_law(o, o.files.front());
@@ -340,6 +353,7 @@ ExitStatus export_law(const LawOptions& o) {
                ? law::values_csv(tables, units)
                : full_json(o, file, tables, units).dump(2, ' ', false, json::error_handler_t::replace) + "\n";
   }
+  refuse_to_replace_other_files(o, text);
   if (!o.out.empty()) write_text_atomic(o.out, text);
   if (o.json) {
     json summary = head_json(o, file);

@@ -223,6 +223,29 @@ void refuse_to_replace_input(const LawOptions& o) {
             "law get: --out {}: is what {} names and would be overwritten; choose another name", o.out, option));
 }
 
+/// What `law get` has written may be written again. Anything else may be measured, or written by hand.
+bool is_own_answer(const std::string& path) {
+  try {
+    const FittedLaw law = load_law(path);
+    return law.table() != nullptr && law.origin.command.find(" law get") != std::string::npos;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+void refuse_to_replace_foreign_files(const LawOptions& o) {
+  std::error_code ignored;
+  if (o.out.empty()) return;
+  const std::string beside = fs::path(o.out).replace_extension(".h5").string();
+  const bool there = fs::exists(o.out, ignored);
+  if (there ? is_own_answer(o.out) : !fs::exists(beside, ignored)) return;
+  const std::string taken = there ? o.out : beside;
+  throw InputError(fmt::format(
+      "law get: --out {}: {} is there already, is no table that law get wrote, and would be overwritten; choose "
+      "another name",
+      o.out, taken));
+}
+
 json answer_json(const LibraryAnswer& answer, const std::vector<std::string>& remarks, const std::string& written) {
   json out{{"command", "law get"},
            {"status", "good"},
@@ -285,6 +308,7 @@ ExitStatus get_law(const LawOptions& o) {
   if (!o.out.empty() && fs::path(o.out).extension() != ".toml")
     throw InputError("law get: --out " + o.out + ": a law table ends with .toml");
   refuse_to_replace_input(o);
+  refuse_to_replace_foreign_files(o);
   const LibraryMatter matter = matter_of(o);
   const LawLibrary library = load_library(o.library.empty() ? shipped_library() : o.library);
   std::vector<std::string> remarks;

@@ -349,6 +349,7 @@ int end_of_parsing(const CLI::App& app, const CLI::ParseError& e, bool as_json) 
   }
   const std::string command = command_on_line(app);
   std::string message = e.what();
+  if (const std::string missing = missing_value_text(app, message); !missing.empty()) message = missing;
   if (const std::string unknown = unknown_word_text(app); !unknown.empty()) message = unknown;
   // CLI11 puts "--threads: " before the message of a validator, which names the option itself.
   if (const std::size_t colon = message.find(": ");
@@ -387,7 +388,7 @@ int run_words(int argc, char** argv) {
   try {
     return parse_and_run_or_explain(app, argc, argv);
   } catch (const Error& e) {
-    return complain(e.status(), e.what(), as_json);
+    return complain(e.status(), with_missing_files_explained(e.what(), {argv, argv + argc}), as_json);
   } catch (const std::bad_alloc&) {
     return complain(ExitStatus::not_usable, "not enough memory", as_json);
   } catch (const std::system_error& e) {  // of file systems and streams

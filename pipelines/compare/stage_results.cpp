@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "common/core/few_samples.h"
 #include "common/core/text.h"
 #include "common/core/vec.h"
 
@@ -133,6 +134,7 @@ class Reader {
     r.volumetric_end = volumetric(last);
     r.axial_end = c_.stress_axial[last];
     r.lateral_end = 0.5 * (c_.stress_x[last] + c_.stress_y[last]);
+    if (r.record.way == StageKind::oedometric && r.axial_end > 0.0) r.lateral_ratio = r.lateral_end / r.axial_end;
     add_moduli(r, from, last);
     add_strength(r, from, last);
     return r;
@@ -282,12 +284,41 @@ std::string modulus_text(const StageMeans& s) {
   if (!s.modulus)
     return fmt::format("{} modulus not determined: the {} does not go through its interval ({})", to_string(modulus),
                        stress_of(modulus), modulus_interval(s));
-  std::string text = fmt::format("{} modulus {} Pa from {:.3g} to {:.3g} Pa of {}", to_string(modulus),
-                                 with_error(*s.modulus), s.modulus_from->mean, s.modulus_to->mean, stress_of(modulus));
+  std::string text =
+      fmt::format("{} modulus {} from {} to {} of {}", to_string(modulus), pressure_text(*s.modulus),
+                  pressure_text(s.modulus_from->mean, 3), pressure_text(s.modulus_to->mean, 3), stress_of(modulus));
   if (!(s.record.modulus_stress[1] > 0.0)) text += " (" + modulus_interval(s) + ")";
   if (s.axial_end && s.modulus->n < s.axial_end->n)
     text += fmt::format(", {} of {} samples", s.modulus->n, s.axial_end->n);
   return text;
+}
+
+std::string negative_tangents_text(const std::vector<NamedTangent>& tangents, const std::string& of) {
+  std::string found;
+  for (const NamedTangent& t : tangents)
+    if (t.value < 0.0)
+      append_part(
+          found,
+          fmt::format("{}{}, {} point: {}", of.empty() ? "" : of + " ", t.stage, t.where, pressure_text(t.value, 3)),
+          "; ");
+  if (found.empty()) return "";
+  return "negative tangent modulus (" + found +
+         "): stresses scatter by more than they change between recorded points; take fewer steps in the stage, more "
+         "grains or a smaller tolerance";
+}
+
+std::vector<NamedTangent> tangents_of(const std::vector<StageMeans>& stages) {
+  std::vector<NamedTangent> out;
+  for (const StageMeans& s : stages) {
+    const Modulus modulus = modulus_of(s.record.way);
+    if (s.record.kind == StageKind::hold || modulus == Modulus::none) continue;
+    const auto add = [&](const char* where, const std::optional<MeanError>& m) {
+      if (m && is_told_from_zero(m->n, m->mean, m->error)) out.push_back({s.record.name, where, m->mean});
+    };
+    add("first", s.modulus_begin);
+    if (modulus == Modulus::constrained || modulus == Modulus::bulk) add("last", s.modulus_end);
+  }
+  return out;
 }
 
 std::vector<double> stress_ratios(const MacroCurve& c, double bearing) {
@@ -299,6 +330,21 @@ std::vector<double> stress_ratios(const MacroCurve& c, double bearing) {
   for (std::size_t k = 0; k < out.size(); ++k)
     if (pressure(k) > bearing * largest)
       out[k] = q_of({{c.stress_x[k], c.stress_y[k], c.stress_axial[k]}}, shear_squares(c, k)) / pressure(k);
+  return out;
+}
+
+std::vector<std::size_t> points_of_stages(const MacroCurve& c, bool sliding) {
+  const auto is_in = [&](std::size_t k) { return (slides(c.test) || point_slides(c, k)) == sliding; };
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < c.strain.size(); ++k)
+    if (is_in(k) || (k + 1 < c.strain.size() && is_in(k + 1))) out.push_back(k);
+  return out.size() < 2 ? std::vector<std::size_t>{} : out;
+}
+
+std::vector<double> values_at(const std::vector<double>& values, const std::vector<std::size_t>& points) {
+  std::vector<double> out;
+  for (const std::size_t k : points)
+    if (k < values.size()) out.push_back(values[k]);
   return out;
 }
 

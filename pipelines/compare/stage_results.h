@@ -48,6 +48,7 @@ struct StageResult {
   double volumetric_end = kNaN;
   double axial_end = kNaN;  ///< stress at the end [Pa]
   double lateral_end = kNaN;
+  double lateral_ratio = kNaN;  ///< K0: lateral over axial stress at the end; where x and y stand
   /// Secant between two stresses [Pa]: those of the record; without any from half the stress at the end to the end
   /// (constrained, bulk, axial; from the begin where that is more), from the begin to half of the largest change
   /// (Young, shear, undrained: E50), and over the whole stage where the stress falls. NaN where the stage does not go
@@ -89,6 +90,7 @@ struct StageMeans {
   std::optional<MeanError> volumetric_end;
   std::optional<MeanError> axial_end;
   std::optional<MeanError> lateral_end;
+  std::optional<MeanError> lateral_ratio;
   std::optional<MeanError> modulus;
   std::optional<MeanError> modulus_from;
   std::optional<MeanError> modulus_to;
@@ -119,6 +121,7 @@ void stage_numbers(auto&& visit) {
   visit("volumetric_strain_end", &M::volumetric_end, &R::volumetric_end);
   visit("axial_stress_end", &M::axial_end, &R::axial_end);
   visit("lateral_stress_end", &M::lateral_end, &R::lateral_end);
+  visit("K0_end", &M::lateral_ratio, &R::lateral_ratio);
   visit("q_over_p_peak", &M::ratio_peak, &R::ratio_peak);
   visit("axial_strain_at_peak", &M::ratio_peak_strain, &R::ratio_peak_strain);
   visit("q_over_p_end", &M::ratio_end, &R::ratio_end);
@@ -132,14 +135,35 @@ void stage_numbers(auto&& visit) {
 /// MPa", "upper half of the stress", "first half of the largest stress", "whole stage".
 std::string modulus_interval(const StageMeans& stage);
 
-/// "constrained modulus 6.5e+08 +- 2e+07 Pa from 2.5e+06 to 5e+06 Pa of axial stress (upper half of the stress)", or
+/// "constrained modulus 650 +- 20 MPa from 2.5 MPa to 5 MPa of axial stress (upper half of the stress)", or
 /// why it is not determined; empty where the stage has none.
 std::string modulus_text(const StageMeans& stage);
+
+/// A tangent modulus of a stage that is to be judged [Pa].
+struct NamedTangent {
+  std::string stage;
+  const char* where = "";  ///< "first" or "last" recorded point
+  double value = kNaN;
+};
+
+/// What is wrong with tangents below 0, why, and what to do; empty where there are none.
+std::string negative_tangents_text(const std::vector<NamedTangent>& tangents, const std::string& of = "");
+
+/// Tangents that no packing can have below 0: at the begin of every stage that is driven, and at the end of those that
+/// compress (constrained, bulk). Without those that samples do not tell from 0.
+std::vector<NamedTangent> tangents_of(const std::vector<StageMeans>& stages);
 
 std::vector<StageMeans> stage_means(const std::vector<MacroCurve>& curves, const std::string& engine);
 
 /// Share of the largest p below which a point has no strength to speak of.
 inline constexpr double kBearingShare = 0.01;
+
+/// Recorded points of stages that slide, or those of all others, in both cases with the point that each part begins at;
+/// empty where that are fewer than two. Tests that slide as a whole have only the former.
+std::vector<std::size_t> points_of_stages(const MacroCurve& curve, bool sliding);
+
+/// The values at these points.
+std::vector<double> values_at(const std::vector<double>& values, const std::vector<std::size_t>& points);
 
 /// sigma_z - sigma_x of all recorded points; of stages that slide 2 sigma_xz, the difference of the principal stresses
 /// where sigma_x = sigma_z.

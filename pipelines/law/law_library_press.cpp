@@ -175,7 +175,8 @@ PressTestLaw law_of_press_test(const LawLibrary& library, const std::string& pat
     throw InputError(fmt::format("{}: says mu = {:g}, but {:g} was given", path, card.spec.friction, *friction));
   if (!friction && !is_known(card.spec.friction))
     throw InputError(path +
-                     ": the library needs the friction of the grains: a comment \"# mu = 0.3\", or mu beside it");
+                     ": the library needs the friction of the grains: write a comment \"# mu = 0.3\" into the table, "
+                     "or give --mu 0.3 (law get), or mu = 0.3 in [library] of a scene");
   out.question = press_question(card, friction.value_or(card.spec.friction), path);
   out.answer = ask_by_press_test(library, out.question);
   LibraryMatter matter;

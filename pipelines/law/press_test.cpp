@@ -8,10 +8,26 @@
 
 namespace softgrain {
 
+namespace {
+
+/// What the file must say and does not is told with an example.
+std::vector<ForceCurves> curves_with_comments(const std::string& path, const ForceCurveOptions& options) {
+  try {
+    return read_force_curve_files({path}, options);
+  } catch (const InputError& e) {
+    const std::string what = e.what();
+    if (what.find("write a comment") == std::string::npos) throw;
+    throw InputError(what + "; press_test.csv, beside the scenes that softgrain examples lists, is an example");
+  }
+}
+
+}  // namespace
+
 LawCard card_of_press_test(const std::string& path) {
   ForceCurveOptions options;
   options.unloading = Unloading::fit;
-  ExperimentFit fit = fit_experiment(read_force_curve_files({path}, options), {}, true);
+  options.by_options = false;
+  ExperimentFit fit = fit_experiment(curves_with_comments(path, options), {}, true);
   const auto unusable =
       std::ranges::find_if(fit.card.pairs, [](const PairLaw& law) { return !has_numbers(law.status); });
   if (unusable != fit.card.pairs.end())

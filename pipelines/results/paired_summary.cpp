@@ -25,6 +25,7 @@ std::string line_of(const PairedNumber& n) {
                   number(n.a, 5), number(n.b, 5), number(n.difference, 3));
   if (!std::isfinite(n.error))
     return text + fmt::format(" (no error: {})\n", n.unknown.empty() ? "too few samples" : n.unknown);
+  if (n.error == 0.0 && n.pairs > 0) return text + " +- 0 (exact: the packings behind it are the same in both)\n";
   text += fmt::format(" +- {} (95 %: {} to {})", number(n.error, 2), number(n.low, 3), number(n.high, 3));
   if (n.pairs > 0 && std::isfinite(n.unpaired_error) && n.error > 0.0)
     text +=
@@ -67,12 +68,16 @@ Estimate with_error_parts(double value, const std::vector<ErrorPart>& parts) {
   double square = 0.0;
   double scatter = 0.0;
   double all = 0.0;
+  bool exact = !parts.empty();
   for (const ErrorPart& p : parts) {
+    if (p == kExactPart) continue;
+    exact = false;
     if (!(p.degrees >= 1.0)) return student_estimate(value, kInfinity, 0.0);
     square += p.error * p.error;
     scatter += std::pow(p.error, 4) / p.degrees;
     all += p.degrees;
   }
+  if (exact) return {value, 0.0, value, value};
   return student_estimate(value, std::sqrt(square), scatter > 0.0 ? square * square / scatter : all);
 }
 

@@ -71,12 +71,16 @@ PairedNumber paired_number(const std::string& name, const std::string& unit, con
 struct ErrorPart {
   double error = 0.0;
   double degrees = 0.0;
+  friend bool operator==(const ErrorPart&, const ErrorPart&) = default;
 };
+
+/// A part that is 0 however few samples there are: what it would come from is the same in both.
+inline constexpr ErrorPart kExactPart{0.0, kInfinity};
 
 /// A value with independent parts of its error, added in squares, and Student's interval with
 ///   (sum s_k)^2/(sum s_k^2/f_k)
 /// degrees of freedom, s the squared parts, f their degrees (Welch 1947, doi:10.1093/biomet/34.1-2.28). Not known, so
-/// infinite, where a part has fewer than one degree.
+/// infinite, without parts and where one has fewer than one degree; 0 where all are kExactPart.
 Estimate with_error_parts(double value, const std::vector<ErrorPart>& parts);
 
 /// Mean of `a` less mean of `b`, independent samples, with Welch's interval. Of fewer than two samples of either the

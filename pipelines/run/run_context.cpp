@@ -10,10 +10,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
+#include <span>
 #include <system_error>
 
+#include "common/core/text.h"
 #include "common/dynamics/thread_choice.h"
 #include "common/io/json_record.h"
+#include "common/io/scene.h"
 #include "common/io/text_file.h"
 #include "pipelines/law/terminal_plot.h"
 #include "pipelines/results/summary.h"
@@ -69,6 +73,45 @@ nlohmann::json earlier_run(const std::string& run_file, const std::string& summa
   if (!run.empty()) return run;
   const nlohmann::json summary = read_object(summary_file);
   return summary.value("provenance", nlohmann::json::object());
+}
+
+/// "macro.strain is 0.03 there and 0.04 now": keys in which two scenes differ, the first ones.
+std::string changed_keys(const std::string& before, const std::string& now) {
+  constexpr std::size_t kMostShown = 4;
+  std::map<std::string, std::string> of_before;
+  std::map<std::string, std::string> of_now;
+  try {
+    of_before = flat_scene(before, kRunFile);
+    of_now = flat_scene(now, "scene");
+  } catch (const InputError&) {  // of an earlier version, say
+    return "its text is another";
+  }
+  std::vector<std::string> changes;
+  for (const auto& [key, value] : of_before) {
+    const auto found = of_now.find(key);
+    if (found == of_now.end())
+      changes.push_back(fmt::format("{} is {} there and not given now", key, value));
+    else if (found->second != value)
+      changes.push_back(fmt::format("{} is {} there and {} now", key, value, found->second));
+  }
+  for (const auto& [key, value] : of_now)
+    if (!of_before.contains(key)) changes.push_back(fmt::format("{} is not given there and {} now", key, value));
+  if (changes.empty()) return "its text is another, of the same values";
+  std::string text = join_text(std::span(changes).first(std::min(changes.size(), kMostShown)), "; ");
+  if (changes.size() > kMostShown) text += fmt::format("; and {} more", changes.size() - kMostShown);
+  return text;
+}
+
+/// In what a run differs from the earlier one that it would go on with; empty: in nothing.
+std::string difference_from(const nlohmann::json& before, const nlohmann::json& now) {
+  const auto differs = [&](const char* key) { return before.contains(key) && before[key] != now[key]; };
+  if (differs("scene"))
+    return before["scene"].is_string()
+               ? changed_keys(before["scene"].get<std::string>(), now["scene"].get<std::string>())
+               : "its text is another";
+  for (const auto& [key, what] : {std::pair{"seed", "its seed"}, {"engine", "its engine"}, {"bands", "--bands"}})
+    if (differs(key)) return fmt::format("{} is {} there and {} now", what, before[key].dump(), now[key].dump());
+  return differs("beside") ? "its law or data file is another" : "";
 }
 
 /// What the log has of the scene, as it is used: the whole text, but of thousands of bodies their number of lines.
@@ -185,16 +228,11 @@ void RunContext::begin(const Scene& scene, std::uint64_t seed, const std::string
                            {"bands", options_.bands}};
   if (!part_ && resume()) {
     const nlohmann::json before = earlier_run(path(kRunFile), path("summary.json"));
-    for (const auto& [key, what] : {std::pair{"scene", "text"},
-                                    {"seed", "seed"},
-                                    {"beside", "law or data file"},
-                                    {"engine", "engine"},
-                                    {"bands", "--bands"}})
-      if (before.contains(key) && before[key] != now[key])
-        throw FingerprintMismatch(
-            fmt::format("{}: belongs to another scene (its {} is another); run without --resume to start anew, or "
-                        "choose another --out",
-                        directory_, what));
+    if (const std::string difference = difference_from(before, now); !difference.empty())
+      throw FingerprintMismatch(
+          fmt::format("{}: belongs to another scene ({}); give what it has to go on with it, run without --resume to "
+                      "start anew, or choose another --out",
+                      directory_, difference));
     if (options_.member && has_ended(read_object(path("summary.json")))) throw AlreadyFinished();
   }
   write_text_atomic(path(kRunFile), now.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");

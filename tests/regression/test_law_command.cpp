@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "common/data/multi_contact_replicates.h"
+#include "common/io/text_file.h"
 #include "pipelines/law/fitted_law.h"
 #include "pipelines/law/law_difference.h"
 #include "pipelines/law/named_laws.h"
@@ -61,6 +62,34 @@ TEST(LawCommand, GetLeavesWhatItIsMadeFromAlone) {
     EXPECT_NE(outcome.output.find("would be overwritten"), std::string::npos) << outcome.output;
     EXPECT_EQ(read_text(own), text);
   }
+}
+
+/// `--out` takes the place of what the same command wrote and of nothing else.
+TEST(LawCommand, OutLeavesOtherFilesAlone) {
+  const test::TemporaryDirectory directory;
+  const auto expect = [](const std::string& arguments, int status, const std::string& words) {
+    const test::ProgramOutcome outcome = run_the_program(arguments);
+    EXPECT_EQ(outcome.status, status) << outcome.output;
+    EXPECT_NE(outcome.output.find(words), std::string::npos) << outcome.output;
+  };
+  const std::string get = "law get --mu 0.3 --exponent 3.5 --ratio 10 --solid-fraction 0.7 --out '";
+  const std::string notes = directory.file("notes.toml");
+  write_text_atomic(notes, "title = \"mine\"\n");
+  expect(get + notes + "'", 2, "notes.toml is there already, is no table that law get wrote");
+  EXPECT_EQ(read_text(notes), "title = \"mine\"\n");
+  const std::string measured = directory.file("measured.toml");
+  write_text_atomic(measured, read_text(kRoot + "/" + kTable));
+  expect(get + measured + "'", 2, "would be overwritten");
+  EXPECT_EQ(read_text(measured), read_text(kRoot + "/" + kTable));
+  write_text_atomic(directory.file("run.h5"), "results");
+  expect(get + directory.file("run.toml") + "'", 2, "run.h5 is there already");
+  EXPECT_EQ(read_text(directory.file("run.h5")), "results");
+  for (int k = 0; k < 2; ++k) expect(get + directory.file("law.toml") + "'", 0, "written: ");
+  const std::string card = "law export '" + kRoot + "/" + kCard + "' --to ";
+  expect(card + "csv --out '" + notes + "'", 2, "notes.toml: is there already, is no csv export");
+  for (const char* format : {"lammps-table", "csv", "json"})
+    for (int k = 0; k < 2; ++k)
+      expect(card + format + " --out '" + directory.file(std::string("law.") + format) + "'", 0, "written: ");
 }
 
 TEST(FittedLaw, OfARunDirectoryIsToldByItsContent) {

@@ -122,6 +122,35 @@ TEST(CommandLine, BadOptionsAreBadInput) {
   expect("microsim x.toml --law l.toml", 2, "--law: microsim has no such option; commands with it are run,");
 }
 
+TEST(CommandLine, AnOptionWithoutItsValueSaysWhatItTakes) {
+  expect("law get --press-test", 2,
+         "--press-test: nothing follows it; give --press-test TABLE: Press test of one soft particle");
+  expect("law get --mu 0.3 --own --out a.toml", 2, "--own: nothing follows it; give --own TABLE: Law table");
+  expect("run x.toml --threads", 2, "--threads: nothing follows it; give --threads N: Threads to use");
+  expect("run x.toml --set", 2, "--set: nothing follows it; give --set KEY=VALUE: ");
+  expect("law eval l.toml --delta", 2, "--delta: nothing follows it; give --delta D1 D2 ...: ");
+}
+
+/// A copy of a scene that comes with the program looks for its law beside it.
+TEST(CommandLine, AFileThatACopiedSceneLacksIsTheOneOfTheProgram) {
+  const test::TemporaryDirectory directory;
+  const std::string scene = directory.file("press_test_macro.toml");
+  const std::string shipped = std::string(SOFTGRAIN_SOURCE_DIR) + "/pipelines/";
+  write_text_atomic(scene, read_text(shipped + "press_test_macro.toml"));
+  const std::string missing = directory.file("press_test_unloading.csv") + ": no such file";
+  for (const char* words :
+       {": no such file; one of this name comes with the program: ", "/pipelines/press_test_unloading.csv; ",
+        "paths in a scene are relative to its own folder", "softgrain examples NAME --out FILE"})
+    expect("check '" + scene + "'", 4, words);
+  expect("check '" + scene + "'", 4, missing);
+  // What the command line names itself is not that of a scene.
+  expect("check nowhere/quickstart.toml", 4,
+         "/pipelines/quickstart.toml (softgrain examples quickstart --out FILE copies it)");
+  expect("check quickstart", 4, "/pipelines/quickstart.toml (softgrain examples quickstart");
+  const Outcome absent = program("check absent_scene.toml");
+  EXPECT_EQ(absent.output.find("relative"), std::string::npos) << absent.output;
+}
+
 TEST(CommandLine, MissingSceneIsFileTroubleAndMakesNothing) {
   const std::string name = "absent_" + std::to_string(::getpid());
   for (const char* command : {"run", "macrosim"}) {

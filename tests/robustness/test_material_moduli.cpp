@@ -33,7 +33,8 @@ E = "10 MPa"
   std::vector<std::string> stresses;
   for (std::size_t at = outcome.output.find(": axial stress "); at != std::string::npos;
        at = outcome.output.find(": axial stress ", at + 1))
-    stresses.push_back(outcome.output.substr(at, outcome.output.find('E', at) - at));
+    stresses.push_back(outcome.output.substr(outcome.output.find('(', at),
+                                             outcome.output.find('E', at) - outcome.output.find('(', at)));
   ASSERT_EQ(stresses.size(), 2U) << outcome.output;
   EXPECT_EQ(stresses[0], stresses[1]) << outcome.output;
   const nlohmann::json summary = summary_of(directory.file("out"));

@@ -112,6 +112,8 @@ TEST_F(PressTestMacro, MistakesAreRefused) {
   const ProgramOutcome modulus = macro("modulus", file("few.csv"), "");
   EXPECT_EQ(modulus.status, 2);
   EXPECT_NE(modulus.output.find("E of the grains is needed"), std::string::npos) << modulus.output;
+  EXPECT_EQ(modulus.output.find("--modulus"), std::string::npos) << "no option of this command: " << modulus.output;
+  EXPECT_NE(modulus.output.find("press_test.csv"), std::string::npos) << modulus.output;
   const ProgramOutcome absent = macro("absent", file("absent.csv"), "");
   EXPECT_EQ(absent.status, 4) << absent.output;
 }

@@ -181,6 +181,11 @@ TEST_F(RunDirectory, ResumeOfAFinishedRunRefusesAnotherSceneSeedOrLaw) {
   expect(macro("--resume --law '" + file("stiffer.toml") + "'"), 2, words);
   expect(macro("--resume --seed 7"), 2, words);
   expect(macro("--resume --set macro.strain=0.04"), 2, words);
+  // What changed, from what to what, and what can be done.
+  expect(macro("--resume --set macro.strain=0.04"), 2, {"macro.strain is ", " there and 0.04 now", "another --out"});
+  expect(macro("--resume --set title=other"), 2, {"title is ", "other now"});
+  expect(macro("--resume --seed 7"), 2, {"its seed is ", " there and 7 now"});
+  expect(macro("--resume --law '" + file("stiffer.toml") + "'"), 2, {"its law or data file is another"});
   EXPECT_EQ(read_text(out("macro.h5")), macro_file);
   EXPECT_EQ(read_text(out("summary.json")), summary);
   const double stress = load_macro(out("macro.h5")).at(0).stress_axial.back();

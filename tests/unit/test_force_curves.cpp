@@ -196,6 +196,38 @@ TEST_F(ForceCurveFile, WrongFilesAreNamedWithTheirLine) {
   expect_refused(replaced(kGood, "Fn [mN]", "h [m]"), {"both name hn"});
 }
 
+/// As test benches and scripts write titles.
+TEST_F(ForceCurveFile, UnitsBehindNamesWithoutBracketsCount) {
+  const ForceCurves good = read(kGood);
+  const auto same = [&](const std::string& header) {
+    const ForceCurves curves = read(replaced(kGood, "hn [mm], Fn [mN]", header));
+    ASSERT_EQ(curves.samples.size(), 1U) << header;
+    ASSERT_EQ(curves.samples[0].normal.size(), good.samples[0].normal.size()) << header;
+    for (std::size_t k = 0; k < good.samples[0].normal.size(); ++k) {
+      EXPECT_EQ(curves.samples[0].normal[k].delta, good.samples[0].normal[k].delta) << header;
+      EXPECT_EQ(curves.samples[0].normal[k].force, good.samples[0].normal[k].force) << header;
+    }
+  };
+  for (const char* header :
+       {"displacement_mm, force_mN", "Displacement (mm), Force (mN)", "Displacement mm, Load mN", "h/mm, F/mN",
+        "overlap in mm, normal force in mN", "displacement_in_mm, Fn_1_mN", "Overlap [mm], F_N [mN]"})
+    same(header);
+  // A name that is known as it stands has no unit: F_N may be the normal force. N is no unit in small letters.
+  expect_refused(replaced(kGood, "Fn [mN]", "F_N"), {"data.csv:6", "\"F_N\": no unit"});
+  expect_refused(replaced(kGood, "Fn [mN]", "force_n"), {"data.csv:6", "\"force_n\" (write it as \"Fn [N]\")"});
+  expect_refused(replaced(kGood, "Fn [mN]", "force_mm"), {"data.csv:6", "write it as \"Fn [N]\""});
+}
+
+TEST_F(ForceCurveFile, WithoutOptionsOnlyCommentsAreAskedFor) {
+  ForceCurveOptions o;
+  o.by_options = false;
+  for (const char* comment : {"# kind = soft-solid", "# Rs: 16 mm", "# E = \"0.5 MPa\""}) {
+    const std::string message = refused(replaced(kGood, comment, ""), o);
+    EXPECT_EQ(message.find("--"), std::string::npos) << message;
+    EXPECT_NE(message.find("write a comment \"# "), std::string::npos) << message;
+  }
+}
+
 TEST_F(ForceCurveFile, UnloadingCanBeLeftOut) {
   ForceCurveOptions o;
   o.unloading = Unloading::drop;

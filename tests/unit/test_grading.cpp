@@ -328,4 +328,28 @@ TEST(GradingScene, EveryFormIsRead) {
   EXPECT_THROW((void)read("form = \"classes\"\n"), InputError);
 }
 
+/// --set grains.sizes.file of a scene with values: what stands beside it, and the setting that replaces both.
+TEST(GradingScene, AFileBesideValuesIsToldWithTheSettingThatReplacesThem) {
+  const auto refused = [](const std::string& sizes) {
+    const Scene scene = Scene::parse("[grains.sizes]\n" + sizes, "s.toml", {"grains.sizes.file=own.csv"});
+    try {
+      (void)scene.read([](const SceneTable& root) {
+        const SceneTable t = root.table("grains").table("sizes");
+        t.check([&] { (void)read_grading(t); });
+        return 0;
+      });
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  const std::string curve = refused("form = \"sieve-curve\"\nopenings = [1e-3, 4e-3]\npassing = [0.0, 1.0]\n");
+  EXPECT_NE(curve.find("s.toml:3: openings = [ 0.001, 0.004 ]: goes without file"), std::string::npos) << curve;
+  EXPECT_EQ(curve.find("passing ="), std::string::npos) << "said once: " << curve;
+  EXPECT_NE(curve.find("--set 'grains.sizes={form=\"sieve-curve\",file=\"own.csv\"}'"), std::string::npos) << curve;
+  const std::string list = refused("form = \"list\"\nradii = [1e-3]\ncounts = [1]\n");
+  EXPECT_NE(list.find("radii = "), std::string::npos) << list;
+  EXPECT_NE(list.find("--set 'grains.sizes={form=\"list\",file=\"own.csv\"}'"), std::string::npos) << list;
+}
+
 }  // namespace

@@ -183,6 +183,8 @@ TEST_F(KeysThatCount, KeysOfAnotherTestOrLawAreRefused) {
   refused(macro + "test = \"shear\"\npreload_steps = 3\n", "goes with preload");
   refused(macro + "twin_speed = 1e-4\n", "goes with a resolved twin");
   refused(comparison_stages() + "band_estimator = \"draws\"\n", "goes with bands");
+  EXPECT_NO_THROW((void)comparison(comparison_stages() + "bands = 0\nband_estimator = \"draws\"\n", "name = \"a\"\n"))
+      << "0 switches bands off, whatever else is said of them";
   refused(comparison_stages() + "[scene.law]\ncard = \"law.toml\"\n", "every [[scene]] has a law of its own");
   refused(macro + "solid_fill = 0.3\n", "goes with construction = \"voids\"");
   const std::string between = "modulus_stress = [\"1 kPa\", \"2 kPa\"]\n";

@@ -181,8 +181,18 @@ density = 4000
 sizes = { form = "power-law", exponent = 3.5, radius_min = "0.4 mm", radius_max = "1 mm" }
 )";
   EXPECT_NE(refusal(densities, "count = 900").find("every [[constituent]] gives its own"), std::string::npos);
-  EXPECT_NE(refusal("[check]\ngrains = 0\nsamples = 2\n").find("there is no check with grains = 0"), std::string::npos);
   EXPECT_NE(refusal("[levels]\ncut_diameters = []\n").find("at least one is needed"), std::string::npos);
+}
+
+/// --set check.grains=0 alone switches the check of a scene off.
+TEST(RecipeScene, OneNumberSwitchesTheCheckOff) {
+  const RecipeScene with =
+      read_recipe("[levels]\nratio = 2\n[check]\ngrains = 20000\nsamples = 2\n", "count = 900\nratio = 8");
+  const RecipeScene without =
+      read_recipe("[levels]\nratio = 2\n[check]\ngrains = 0\nsamples = 2\n", "count = 900\nratio = 8");
+  EXPECT_TRUE(with.checked.has_value());
+  EXPECT_FALSE(without.checked.has_value());
+  EXPECT_EQ(without.material.variants.size() + 1, with.material.variants.size());
 }
 
 TEST(RecipeScene, RefusesSharesThatDoNotAddUp) {

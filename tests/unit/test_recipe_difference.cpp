@@ -76,6 +76,28 @@ TEST(ErrorParts, AddInSquaresWithTheDegreesOfEach) {
   }
 }
 
+/// What is the same in both has no error, however few samples there are; beside another part it adds nothing.
+TEST(ErrorParts, OfWhatIsTheSameInBothAreExactlyZero) {
+  const Estimate exact = with_error_parts(0.0, {kExactPart, kExactPart});
+  EXPECT_EQ(exact.standard_error, 0.0);
+  EXPECT_EQ(exact.low, 0.0);
+  EXPECT_EQ(exact.high, 0.0);
+  const Estimate beside = with_error_parts(2.0, {kExactPart, {3.0, 4.0}});
+  EXPECT_EQ(beside.high, with_error_parts(2.0, {{3.0, 4.0}}).high);
+  // One sample of each: nothing tells its error, though its scatter is 0.
+  EXPECT_TRUE(std::isinf(with_error_parts(2.0, {{0.0, 0.0}}).standard_error));
+}
+
+TEST(PairedSummaryText, SaysThatADifferenceIsExact) {
+  PairedSummary s;
+  PairedNumber n = unpaired_number("K0", "", {0.5, 0.1, 0.0, 0.0}, {0.5, 0.1, 0.0, 0.0});
+  n.error = n.low = n.high = 0.0;
+  n.pairs = 1;
+  s.paired = true;
+  s.numbers = {n};
+  EXPECT_NE(paired_text(s).find("difference 0 +- 0 (exact: "), std::string::npos) << paired_text(s);
+}
+
 TEST(PairedSummaryText, SaysThreeNumbersAndHowTheyWerePaired) {
   PairedSummary s;
   s.reason = "the runs differ in seed";

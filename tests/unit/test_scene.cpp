@@ -98,6 +98,20 @@ TEST(Scene, UnknownKeyWithoutNearOneListsTheKnown) {
             "scene.toml:1: unknown key 'zzzzzz' at the top level; known keys are beta");
 }
 
+/// A word from the command line may ask for other keys than the scene has beside it.
+TEST(Scene, UnknownKeyBesideASettingSaysHowToReplaceTheTable) {
+  const Scene scene = Scene::parse("[sizes]\nform = \"fuller\"\nzzz = 2.0\n", "scene.toml", {"sizes.form=list"});
+  (void)scene.root().table("sizes").text("form");
+  EXPECT_EQ(message_of([&] { scene.root().finish(); }),
+            "scene.toml:3: unknown key 'zzz' in [sizes]; known keys are form; with --set sizes.form it may no longer "
+            "fit: --set 'sizes={...}' replaces the whole table");
+  const Scene file_alone = Scene::parse("[sizes]\nform = \"fuller\"\nzzz = 2.0\n", "scene.toml", {"seed=1"});
+  (void)file_alone.root().table("sizes").text("form");
+  (void)file_alone.root().number("seed", Unit::none);
+  EXPECT_EQ(message_of([&] { file_alone.root().finish(); }),
+            "scene.toml:3: unknown key 'zzz' in [sizes]; known keys are form");
+}
+
 TEST(Scene, WhatSoftgrainDoesNotModelIsSaidBesideTheNearestKey) {
   const Scene scene = parse("beta = 2.0\n[packing]\naspect_ratio = 2.0\nbata = 1.0\nfluid_viscosity = 1e-3\n");
   (void)scene.root().number("beta", Unit::none);

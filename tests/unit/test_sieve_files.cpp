@@ -11,6 +11,7 @@
 #include "common/core/error.h"
 #include "common/packing/grading_indices.h"
 #include "common/packing/grading_scene.h"
+#include "common/packing/sieve_size.h"
 
 namespace {
 
@@ -133,6 +134,19 @@ TEST(SieveFiles, TheBestFullerCurveOfAFullerCurveIsItself) {
     EXPECT_NEAR(i.cu, i.d60 / i.d10, 1e-12);
     EXPECT_NEAR(i.cc, i.d30 * i.d30 / (i.d60 * i.d10), 1e-12);
   }
+}
+
+/// Numbers without a unit are told by their openings: those of ISO 565 that are rounded in their own way, and the names
+/// of EN 12620 (32 for 31.5 mm), are openings too.
+TEST(SieveFiles, OpeningsOfStandardsTellTheUnit) {
+  using Numbers = std::vector<std::string>;
+  for (const Numbers& numbers :
+       {Numbers{"0.063", "2", "5.6", "11.2", "22.4", "31.5"}, Numbers{"0.063", "2", "11", "22", "32"},
+        Numbers{"0.032", "0.5", "12"}, Numbers{"0.022", "0.036", "13.2", "26.5"}})
+    EXPECT_EQ(unit_of_numbers(numbers), "mm") << numbers.front() << ", " << numbers.back();
+  EXPECT_EQ(unit_of_numbers({"22", "32", "36", "63", "500"}), "um");
+  for (const Numbers& numbers : {Numbers{"0.063", "3.2"}, Numbers{"0.063", "0.132"}, Numbers{"0.063", "34"}})
+    EXPECT_FALSE(unit_of_numbers(numbers)) << numbers.back();
 }
 
 }  // namespace

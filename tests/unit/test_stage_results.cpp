@@ -6,11 +6,14 @@
 
 #include "common/core/vec.h"
 #include "common/data/macro_band.h"
+#include "common/io/text_file.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/compare/macro_scores.h"
 #include "pipelines/compare/stage_match.h"
 #include "pipelines/compare/stage_results.h"
+#include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/macro/summary.h"
+#include "pipelines/report/report.h"
 #include "pipelines/results/summary.h"
 #include "tests/support/temporary_directory.h"
 
@@ -39,7 +42,8 @@ struct Elastic {
   }
 };
 
-TEST(StageResults, UndrainedAndSlidingStages) {
+/// Four points of undrained compression and five of a slide.
+Elastic pressed_and_slid() {
   Elastic e;
   e.curve.engine = "law";
   e.curve.test = MacroTest::stages;
@@ -56,8 +60,16 @@ TEST(StageResults, UndrainedAndSlidingStages) {
     c.stress_xy.push_back(0.0);
     c.stress_yz.push_back(0.0);
     c.stress_deviator.push_back(c.stress_axial[k] - c.stress_x[k]);
+    for (auto* none : {&c.stress_axial_contacts, &c.coordination, &c.residual}) none->push_back(0.0);
   }
   c.stress_xz[8] *= 2.0;  // a peak
+  return e;
+}
+
+TEST(StageResults, UndrainedAndSlidingStages) {
+  const Elastic e = pressed_and_slid();
+  const MacroCurve& c = e.curve;
+  using K = StageKind;
   const auto results = stage_results(c);
   ASSERT_EQ(results.size(), 2U);
   EXPECT_EQ(modulus_of(K::undrained), Modulus::undrained);
@@ -83,6 +95,83 @@ TEST(StageResults, UndrainedAndSlidingStages) {
   EXPECT_FALSE(json_of(means[0]).contains("shear_strain_end"));
   EXPECT_EQ(deviators(c)[4], c.stress_deviator[4]);
   EXPECT_EQ(deviators(c).back(), 2.0 * c.stress_xz.back());
+}
+
+/// Each part begins where the one before it ends.
+TEST(StageResults, PointsAreThoseOfStagesThatSlideOrOfTheOthers) {
+  MacroCurve c = pressed_and_slid().curve;
+  EXPECT_EQ(points_of_stages(c, false), (std::vector<std::size_t>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(points_of_stages(c, true), (std::vector<std::size_t>{4, 5, 6, 7, 8, 9}));
+  EXPECT_EQ(values_at(c.shear_strain, points_of_stages(c, true)).size(), 6U);
+  c.test = MacroTest::direct_shear;
+  EXPECT_EQ(points_of_stages(c, true).size(), c.strain.size());
+  EXPECT_TRUE(points_of_stages(c, false).empty());
+}
+
+/// In the report of a material with several stages, those that slide have figures of their own.
+TEST(StageResults, ReportsDrawStagesThatSlideOverTheirShearStrain) {
+  const test::TemporaryDirectory directory;
+  const auto page = [&](const MacroCurve& c) {
+    save_macro({c}, directory.file("material.h5"));
+    write_text_atomic(
+        directory.file("summary.json"),
+        R"({"status": "good", "kind": "material", "variants": [{"name": "material", "file": "material.h5"}]})");
+    write_report(directory.path());
+    return read_text(directory.file("report.html"));
+  };
+  const auto has = [](const std::string& html, const std::string& text) {
+    return html.find(text) != std::string::npos;
+  };
+  const MacroCurve both = pressed_and_slid().curve;
+  const std::string html = page(both);
+  for (const char* id : {"material-axial", "material-axial-sliding", "material-ratio-sliding"})
+    EXPECT_TRUE(has(html, std::string("id=\"") + id + "-clip\"")) << id;
+  const std::string parts = report::stage_parts({both}, MacroTest::stages);
+  for (const char* id : {"macro-stages-ratio", "macro-stages-ratio-sliding", "macro-stages-volume-sliding"})
+    EXPECT_TRUE(has(parts, std::string("id=\"") + id + "-clip\"")) << id;
+  EXPECT_TRUE(has(html, "shear strain [%]"));
+  EXPECT_TRUE(has(html, "axial stress [kPa]")) << "stages have stresses in Pa";
+  MacroCurve pressed = both;
+  pressed.stages[1] = {"b", StageKind::undrained, StageKind::undrained};
+  EXPECT_FALSE(has(page(pressed), "material-axial-sliding"));
+}
+
+/// K0 is that of stages without lateral strain, per sample.
+TEST(StageResults, KZeroIsLateralOverAxialStressWhereXAndYStand) {
+  Elastic e;
+  e.curve.engine = "law";
+  e.curve.test = MacroTest::stages;
+  using K = StageKind;
+  e.curve.stages = {
+      {"a", K::oedometric, K::oedometric}, {"b", K::unload, K::oedometric}, {"c", K::isotropic, K::isotropic}};
+  e.add(0, {});
+  for (int k = 1; k <= 4; ++k) e.add(0, {{0.0, 0.0, 0.01 * k}});
+  for (int k = 1; k <= 2; ++k) e.add(1, {{0.0, 0.0, 0.04 - 0.01 * k}});
+  for (int k = 1; k <= 2; ++k) e.add(2, {{0.01 * k, 0.01 * k, 0.02 + 0.01 * k}});
+  const auto means = stage_means({e.curve}, "law");
+  ASSERT_EQ(means.size(), 3U);
+  ASSERT_TRUE(means[0].lateral_ratio.has_value());
+  EXPECT_NEAR(means[0].lateral_ratio->mean, e.curve.stress_x[4] / e.curve.stress_axial[4], 1e-12);
+  EXPECT_NEAR(means[1].lateral_ratio->mean, e.curve.stress_x[6] / e.curve.stress_axial[6], 1e-12);
+  EXPECT_FALSE(means[2].lateral_ratio.has_value());
+  EXPECT_TRUE(json_of(means[0]).contains("K0_end"));
+  EXPECT_FALSE(json_of(means[2]).contains("K0_end"));
+}
+
+TEST(StageResults, NegativeTangentsAreAWarningThatSaysWhatToDo) {
+  StageMeans s;
+  s.record = {"reload", StageKind::reload, StageKind::oedometric};
+  s.modulus_begin = MeanError{1, -3e6, 0.0, 0.0};
+  s.modulus_end = MeanError{2, -2e6, 1e6, 1e6};  // not told from 0: "not determined" elsewhere
+  const std::string text = negative_tangents_text(tangents_of({s}));
+  EXPECT_EQ(text.find("negative tangent modulus (reload, first point: -3 MPa): "), 0U) << text;
+  EXPECT_NE(text.find("take fewer steps in the stage"), std::string::npos) << text;
+  s.modulus_begin->mean = 3e6;
+  EXPECT_EQ(negative_tangents_text(tangents_of({s})), "");
+  // Behind a peak the stress may fall.
+  s.record = {"shear", StageKind::shear, StageKind::shear};
+  s.modulus_end = MeanError{1, -2e6, 0.0, 0.0};
+  EXPECT_EQ(negative_tangents_text(tangents_of({s})), "");
 }
 
 /// What sweeps, compare and Python read of a stage that slides.
@@ -233,7 +322,7 @@ TEST(StageResults, ModuliAreSecantsBetweenTheStressesOfTheirStage) {
 
 TEST(StageResults, IntervalsAreSaidAndWhereThereIsNoModulus) {
   const auto of = [](const MacroCurve& c) { return modulus_text(stage_means({c}, "law")[0]); };
-  EXPECT_NE(of(stiffening()).find("from 5e+04 to 1e+05 Pa of axial stress (upper half of the stress)"),
+  EXPECT_NE(of(stiffening()).find(" MPa from 50 kPa to 100 kPa of axial stress (upper half of the stress)"),
             std::string::npos)
       << of(stiffening());
   EXPECT_EQ(

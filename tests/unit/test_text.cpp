@@ -107,6 +107,8 @@ TEST(PressureText, TakesThePrefixThatFits) {
   EXPECT_EQ(pressure_text(-1.5e6), "-1.5 MPa");
   EXPECT_EQ(pressure_text(7e10), "70 GPa");
   EXPECT_EQ(pressure_text(5e4), "50 kPa");
+  EXPECT_EQ(pressure_text(MeanError{2, 6.5e8, 2.8e7, 2e7}), "650 +- 20 MPa");
+  EXPECT_EQ(pressure_text(MeanError{1, 470.0, 0.0, 0.0}), "470 Pa");
   EXPECT_EQ(pressure_text(20.0), "20 Pa");
   EXPECT_EQ(pressure_text(123456.0, 3), "123 kPa");
   EXPECT_EQ(pressure_text(123456.0, 2), "120 kPa");

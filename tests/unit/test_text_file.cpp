@@ -47,6 +47,22 @@ TEST_F(TextFile, FailedWriteLeavesTheOldStateAndNoTemporary) {
   EXPECT_THROW(write_text_atomic(path("absent/a.txt"), "text"), IoError);
 }
 
+TEST_F(TextFile, AMissingFolderIsNamed) {
+  const auto refused = [](const std::string& file) {
+    try {
+      write_text_atomic(file, "text");
+    } catch (const IoError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused(path("absent/a.txt")), path("absent/a.txt") + ": there is no folder " + path("absent") +
+                                               "; make it first, or choose another place");
+  write_text_atomic(path("file"), "text");
+  EXPECT_EQ(refused(path("file/a.txt")), path("file/a.txt") + ": " + path("file") + " is no folder");
+  EXPECT_EQ(refused("/proc/a.txt").find(".tmp"), std::string::npos) << refused("/proc/a.txt");
+}
+
 TEST_F(TextFile, ReadingNamesTheFile) {
   try {
     (void)read_text(path("absent.txt"));

@@ -140,6 +140,7 @@ void read_file(const Scene& scene, const SceneTable& t, InverseSetup& s) {
   if (t.has("contact") || !said_by_comments(CsvFile::read(path)).kind) options.kind = s.kind;
   options.shell_radius = s.measure.spec.shell_radius;
   options.youngs_modulus = s.measure.spec.youngs_modulus;
+  options.by_options = false;
   options.kind_from = "contact of [target],";
   options.radius_from = "shell_radius of [packing],";
   options.modulus_from = "E of [material],";

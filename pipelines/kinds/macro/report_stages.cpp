@@ -31,14 +31,36 @@ std::vector<double> volumetric_strains(const MacroCurve& c) {
   return out;
 }
 
+/// Where a quantity stands that curves do not hold, for add_curves().
+constexpr Stress kPlace = &MacroCurve::stress_deviator;
+
+/// Curves with the quantity, as far as stages slide, over the shear strain, or as far as they do not.
+std::vector<MacroCurve> part_of_stages(std::vector<MacroCurve> curves, bool sliding) {
+  for (MacroCurve& c : curves) {
+    const std::vector<std::size_t> points = points_of_stages(c, sliding);
+    c.*kPlace = values_at(c.*kPlace, points);
+    c.strain = values_at(sliding ? c.shear_strain : c.strain, points);
+  }
+  return curves;
+}
+
+/// A quantity over the strain that drives the stages: where some slide, in two figures.
 template <class Quantity>
-std::string over_strain(const std::vector<MacroCurve>& curves, const char* id, const char* title, const char* label,
-                        const char* caption, Quantity&& of) {
-  const MacroTest test = curves.empty() ? MacroTest::stages : curves.front().test;
-  Plot plot({.id = id, .title = title, .x = {.label = strain_label(test)}, .y = {.label = label}, .height = 310.0});
-  constexpr Stress kPlace = &MacroCurve::stress_deviator;
-  add_curves(plot, with_column(curves, kPlace, of), kPlace, 1.0);
-  return plot.empty() ? "" : figure(plot.svg(), caption);
+std::vector<std::string> over_strain(const std::vector<MacroCurve>& curves, const std::string& id, const char* title,
+                                     const char* label, const char* caption, Quantity&& of) {
+  const std::vector<MacroCurve> all = with_column(curves, kPlace, of);
+  std::vector<std::string> figures;
+  for (const bool sliding : {false, true}) {
+    const char* strain = strain_label(sliding ? MacroTest::simple_shear : MacroTest::stages);
+    Plot plot({.id = sliding ? id + "-sliding" : id,
+               .title = std::string(title) + (sliding ? " that slide" : ""),
+               .x = {.label = strain},
+               .y = {.label = label},
+               .height = 310.0});
+    add_curves(plot, part_of_stages(all, sliding), kPlace, 1.0);
+    if (!plot.empty()) figures.push_back(figure(plot.svg(), caption));
+  }
+  return figures;
 }
 
 std::string cell(const std::optional<MeanError>& m, double unit = 1.0) {
@@ -63,22 +85,18 @@ std::string sliding_figure(std::vector<MacroCurve> curves) {
   std::erase_if(curves, [](const MacroCurve& c) {
     return c.shear_strain.size() != c.strain.size() || c.stress_xz.size() != c.strain.size();
   });
-  for (MacroCurve& c : curves) c.strain = c.shear_strain;
-  constexpr Stress kPlace = &MacroCurve::stress_deviator;
   Plot plot({.id = "macro-sliding-ratio",
              .title = "Shear stress over normal stress",
              .x = {.label = "shear strain [%]"},
              .y = {.label = "σxz/σz"},
              .height = 310.0});
-  add_curves(plot,
-             with_column(std::move(curves), kPlace,
-                         [](const MacroCurve& c) {
-                           std::vector<double> out;
-                           for (std::size_t k = 0; k < c.strain.size(); ++k)
-                             out.push_back(c.stress_axial[k] > 0.0 ? c.stress_xz[k] / c.stress_axial[k] : kNaN);
-                           return out;
-                         }),
-             kPlace, 1.0);
+  const auto ratio = [](const MacroCurve& c) {
+    std::vector<double> out;
+    for (std::size_t k = 0; k < c.strain.size(); ++k)
+      out.push_back(c.stress_axial[k] > 0.0 ? c.stress_xz[k] / c.stress_axial[k] : kNaN);
+    return out;
+  };
+  add_curves(plot, part_of_stages(with_column(std::move(curves), kPlace, ratio), true), kPlace, 1.0);
   return plot.empty() ? "" : figure(plot.svg(), "The friction that is mobilised on planes normal to z.");
 }
 
@@ -122,19 +140,16 @@ std::string tables_of_stages(const std::vector<MacroCurve>& curves) {
                                     slope_cell(s.modulus, modulus.factor), holds ? "–" : between(s, stress.factor),
                                     slope_cell(s.modulus_begin, modulus.factor), slope_cell(s.poisson_begin)};
                           }};
-  const StageTable ends{{"axial strain [%]", "volume lost [%]", "axial stress" + stress_unit,
-                         "lateral stress" + stress_unit, "q/p", "largest q/p"},
-                        [&](const StageMeans& s) -> std::vector<std::string> {
-                          const std::string where =
-                              s.ratio_peak_strain ? " at " + format_number(100.0 * s.ratio_peak_strain->mean, 3) + " %"
-                                                  : "";
-                          return {cell(s.strain_end, 0.01),
-                                  cell(s.volumetric_end, 0.01),
-                                  cell(s.axial_end, stress.factor),
-                                  cell(s.lateral_end, stress.factor),
-                                  cell(s.ratio_end),
-                                  cell(s.ratio_peak) + where};
-                        }};
+  const StageTable ends{
+      {"axial strain [%]", "volume lost [%]", "axial stress" + stress_unit, "lateral stress" + stress_unit, "K0", "q/p",
+       "largest q/p"},
+      [&](const StageMeans& s) -> std::vector<std::string> {
+        const std::string where =
+            s.ratio_peak_strain ? " at " + format_number(100.0 * s.ratio_peak_strain->mean, 3) + " %" : "";
+        return {cell(s.strain_end, 0.01),           cell(s.volumetric_end, 0.01), cell(s.axial_end, stress.factor),
+                cell(s.lateral_end, stress.factor), cell(s.lateral_ratio),        cell(s.ratio_end),
+                cell(s.ratio_peak) + where};
+      }};
   const StageTable sliding{
       {"shear strain [%]", "σxz/σz at the end", "largest σxz/σz", "angle of friction [°]"},
       [](const StageMeans& s) -> std::vector<std::string> {
@@ -155,7 +170,8 @@ std::string tables_of_stages(const std::vector<MacroCurve>& curves) {
              "secant is taken between two values of that stress (p of bulk, "
              "(σz − σx)/2 of shear), which modulus_stress of the scene chooses. The tangent is that of a parabola "
              "through the first points; of an unloading it is the unloading modulus. The second table has what there "
-             "is at the end of each stage, and the largest q/p with the axial strain where it is; q = √(3J₂), p the "
+             "is at the end of each stage, K0 = σx/σz where x and y stand, and the largest q/p with the axial strain "
+             "where it is; q = √(3J₂), p the "
              "mean stress. Mean over usable samples ± standard error; one sample has none.");
 }
 
@@ -163,12 +179,16 @@ std::string tables_of_stages(const std::vector<MacroCurve>& curves) {
 
 std::string stage_parts(const std::vector<MacroCurve>& curves, MacroTest test) {
   std::string out;
-  if (test == MacroTest::stages)
-    out += figure_row(
-        {over_strain(curves, "macro-stages-ratio", "Stress ratio, stages", "q/p",
-                     "q/p, the strength that is mobilised.", [](const MacroCurve& c) { return stress_ratios(c); }),
-         over_strain(curves, "macro-stages-volume", "Volume, stages", "volume lost [%]",
-                     "Loss of volume since the start; where it falls, the packing dilates.", volumetric_strains)});
+  if (test == MacroTest::stages) {
+    const auto ratios =
+        over_strain(curves, "macro-stages-ratio", "Stress ratio, stages", "q/p", "q/p, the strength that is mobilised.",
+                    [](const MacroCurve& c) { return stress_ratios(c); });
+    const auto volumes =
+        over_strain(curves, "macro-stages-volume", "Volume, stages", "volume lost [%]",
+                    "Loss of volume since the start; where it falls, the packing dilates.", volumetric_strains);
+    for (std::size_t k = 0; k < std::max(ratios.size(), volumes.size()); ++k)
+      out += figure_row({k < ratios.size() ? ratios[k] : "", k < volumes.size() ? volumes[k] : ""});
+  }
   return out + figure_row({sliding_figure(curves)}) + tables_of_stages(curves);
 }
 

@@ -28,8 +28,8 @@ std::string lateral_ratio(const MacroCurve& c) {
 
 /// A slope whose error is as large as itself is none.
 std::string modulus_text(const MeanError& m) {
-  if (is_told_from_zero(m.n, m.mean, m.error)) return with_error(m) + " Pa";
-  return fmt::format("not determined ({} Pa, {} samples)", with_error(m), m.n);
+  if (is_told_from_zero(m.n, m.mean, m.error)) return pressure_text(m);
+  return fmt::format("not determined ({}, {} samples)", pressure_text(m), m.n);
 }
 
 /// Moduli and strength of one stage of one engine.
@@ -38,7 +38,8 @@ std::string stage_line(const std::string& engine, const StageMeans& s) {
   if (const std::string modulus = modulus_text(s); !modulus.empty()) line += " " + modulus + ",";
   if (s.modulus_begin && s.record.kind != StageKind::hold)
     line += fmt::format(" tangent at its beginning {},", modulus_text(*s.modulus_begin));
-  if (s.axial_end) line += fmt::format(" axial stress {} Pa,", with_error(*s.axial_end));
+  if (s.axial_end) line += fmt::format(" axial stress {},", pressure_text(*s.axial_end));
+  if (s.lateral_ratio) line += fmt::format(" K0 {},", with_error(*s.lateral_ratio, {.value = {3}}));
   if (s.ratio_peak) line += fmt::format(" q/p {} at most,", with_error(*s.ratio_peak));
   if (s.ratio_end) line += fmt::format(" {} at its end,", with_error(*s.ratio_end));
   if (s.friction_peak) line += fmt::format(" shear over normal stress {} at most,", with_error(*s.friction_peak));
@@ -91,6 +92,8 @@ MacroRunSummary summarise(const MacroScene& scene, const LawIdentity& law, const
   summary.runs.macro = summary_of(curves, "law");
   if (resolved) summary.runs.resolved = summary_of(curves, "shelled");
   if (has_twin(scene.setup, Twin::free)) summary.runs.free = summary_of(curves, "free");
+  if (std::string text = negative_tangents_text(tangents_of(summary.runs.macro->stages)); !text.empty())
+    summary.head.warnings.push_back(std::move(text));
   if (const std::string assumed = assumed_text(scene.setup); !assumed.empty()) summary.head.remarks.push_back(assumed);
   for (std::string& one : scene.law.remarks()) summary.head.remarks.push_back(std::move(one));
   if (resolved && usable) compare_with_twin(curves, summary);

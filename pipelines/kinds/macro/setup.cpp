@@ -478,7 +478,9 @@ MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
 }
 
 void refuse_idle_keys(const SceneTable& macro, bool twins, bool bands) {
-  if (!bands) macro.refuse({"band_estimator"}, "goes with bands, the number of draws of the law");
+  // bands = 0 switches them off, by --set of a scene that has some, say.
+  if (!bands && !macro.has("bands"))
+    macro.refuse({"band_estimator"}, "goes with bands, the number of draws of the law");
   if (!twins)
     macro.refuse({"twin_relaxation", "twin_speed", "twin_step_factor", "twin_settle_time"},
                  "goes with a resolved twin: resolved = true");

@@ -74,59 +74,92 @@ std::string line_figure(const std::vector<Variant>& variants, PlotOptions option
   return plot.empty() ? "" : figure(plot.svg(), caption);
 }
 
-/// Whether the strain of all tests is a shear strain, while z stands still or dilates.
-bool all_slide(const std::vector<Variant>& variants) {
-  return std::ranges::all_of(variants, [](const Variant& v) {
-    return std::ranges::all_of(v.curves, [](const MacroCurve& c) { return slides(c.test); });
-  });
+/// Values at the points of a curve that belong to stages that slide, or to the others.
+Column only_stages(const Column& column, bool sliding) {
+  return [=](const MacroCurve& c) { return values_at(column(c), points_of_stages(c, sliding)); };
 }
 
-/// What drives the tests: the strain of z, or the shear strain of tests that all slide.
-Column strain_of(const std::vector<Variant>& variants) {
-  if (all_slide(variants)) return [](const MacroCurve& c) { return scaled(c.shear_strain, 100.0); };
-  return [](const MacroCurve& c) { return scaled(c.strain_z, 100.0); };
+/// A quantity over what drives the stages: over the strain of z, and where stages slide, as z stands still or dilates
+/// then, in a figure of its own over the shear strain.
+std::vector<std::string> figures_over_strain(const std::vector<Variant>& variants, const PlotOptions& options,
+                                             const char* caption, const Column& y) {
+  std::vector<std::string> figures;
+  for (const bool sliding : {false, true}) {
+    PlotOptions own = options;
+    if (sliding) {
+      own.id += "-sliding";
+      own.title += ", stages that slide";
+    }
+    own.x = {.label = strain_label(sliding ? MacroTest::simple_shear : MacroTest::stages)};
+    const Column strain = [=](const MacroCurve& c) { return scaled(sliding ? c.shear_strain : c.strain_z, 100.0); };
+    std::string one =
+        line_figure(variants, std::move(own), caption, only_stages(strain, sliding), only_stages(y, sliding));
+    if (!one.empty()) figures.push_back(std::move(one));
+  }
+  return figures;
 }
 
-AxisOptions axis_of_strain(const std::vector<Variant>& variants) {
-  return {.label = strain_label(all_slide(variants) ? MacroTest::simple_shear : MacroTest::stages)};
+/// How stresses of figures are given: of tests in stages, whose stresses are those of a laboratory, in Pa, else over E.
+struct StressScale {
+  double factor = 0.0;  ///< [Pa]; 0: E of each curve
+  std::string text;
+
+  [[nodiscard]] double of(const MacroCurve& c) const { return factor > 0.0 ? factor : c.start.youngs_modulus; }
+  [[nodiscard]] std::string label(const std::string& what) const {
+    return factor > 0.0 ? what + " [" + text + "]" : what == "p" ? "p/E" : what + " over E";
+  }
+};
+
+StressScale stress_scale(const std::vector<Variant>& variants) {
+  double largest = 0.0;
+  for (const Variant& v : variants)
+    for (const MacroCurve& c : v.curves) {
+      if (c.test != MacroTest::stages) return {};
+      for (const double s : c.stress_axial) largest = std::max(largest, std::abs(s));
+    }
+  const SiPrefix prefix = si_prefix(largest);
+  return {prefix.factor, prefix.symbol + "Pa"};
 }
 
-std::string state_figure(const std::vector<Variant>& variants) {
+std::string state_figure(const std::vector<Variant>& variants, const StressScale& unit) {
   return line_figure(
       variants,
       {.id = "material-state",
        .title = "Mean stress over solid fraction",
        .x = {.label = "solid fraction"},
-       .y = {.label = "p/E", .scale = Scale::logarithmic}},
+       .y = {.label = unit.label("p"), .scale = Scale::logarithmic}},
       "Full volume of all grains over that of the cell; p the mean stress from the contacts. One line per sample.",
       [](const MacroCurve& c) { return more_of(c, kSolidFraction); },
-      [](const MacroCurve& c) { return scaled(mean_stresses(c), 1.0 / c.start.youngs_modulus); });
+      [unit](const MacroCurve& c) { return scaled(mean_stresses(c), 1.0 / unit.of(c)); });
 }
 
-std::string stress_figure(const std::vector<Variant>& variants) {
-  return line_figure(variants,
-                     {.id = "material-axial",
-                      .title = "Axial stress",
-                      .x = axis_of_strain(variants),
-                      .y = {.label = "axial stress over E"}},
-                     "Nominal strain from the start of the test.", strain_of(variants),
-                     [](const MacroCurve& c) { return scaled(c.stress_axial, 1.0 / c.start.youngs_modulus); });
+std::vector<std::string> stress_figures(const std::vector<Variant>& variants, const StressScale& unit) {
+  return figures_over_strain(
+      variants, {.id = "material-axial", .title = "Axial stress", .x = {}, .y = {.label = unit.label("axial stress")}},
+      "Nominal strain from the start of the test.",
+      [unit](const MacroCurve& c) { return scaled(c.stress_axial, 1.0 / unit.of(c)); });
 }
 
-std::string ratio_figure(const std::vector<Variant>& variants) {
-  return line_figure(
-      variants, {.id = "material-ratio", .title = "Stress ratio", .x = axis_of_strain(variants), .y = {.label = "q/p"}},
-      "q = √(3J₂), p the mean stress.", strain_of(variants), [](const MacroCurve& c) { return stress_ratios(c); });
+std::vector<std::string> ratio_figures(const std::vector<Variant>& variants) {
+  return figures_over_strain(variants,
+                             {.id = "material-ratio", .title = "Stress ratio", .x = {}, .y = {.label = "q/p"}},
+                             "q = √(3J₂), p the mean stress.", [](const MacroCurve& c) { return stress_ratios(c); });
 }
 
-std::string rattler_figure(const std::vector<Variant>& variants) {
-  return line_figure(variants,
-                     {.id = "material-rattlers",
-                      .title = "Rattlers",
-                      .x = axis_of_strain(variants),
-                      .y = {.label = "share of the grains [%]"}},
-                     "Grains with fewer than four contacts (with friction: two) to grains that do not rattle.",
-                     strain_of(variants), [](const MacroCurve& c) { return scaled(more_of(c, kRattlers), 100.0); });
+std::vector<std::string> rattler_figures(const std::vector<Variant>& variants) {
+  return figures_over_strain(
+      variants, {.id = "material-rattlers", .title = "Rattlers", .x = {}, .y = {.label = "share of the grains [%]"}},
+      "Grains with fewer than four contacts (with friction: two) to grains that do not rattle.",
+      [](const MacroCurve& c) { return scaled(more_of(c, kRattlers), 100.0); });
+}
+
+/// All figures, two in a row.
+std::string in_rows(const std::vector<std::string>& figures) {
+  std::string out;
+  for (std::size_t k = 0; k < figures.size(); k += 2)
+    out += figure_row(k + 1 < figures.size() ? std::vector<std::string>{figures[k], figures[k + 1]}
+                                             : std::vector<std::string>{figures[k]});
+  return out;
 }
 
 /// Shares at start and end, mean over samples.
@@ -305,8 +338,12 @@ std::string prediction_part(const RunData& run) {
 std::string material_section(const RunData& run) {
   const std::vector<Variant> variants = variants_of(run);
   if (variants.empty()) return "";
-  std::string body = figure_row({state_figure(variants), stress_figure(variants)});
-  body += figure_row({ratio_figure(variants), rattler_figure(variants)});
+  const StressScale unit = stress_scale(variants);
+  std::vector<std::string> figures{state_figure(variants, unit)};
+  for (std::vector<std::string> more :
+       {stress_figures(variants, unit), ratio_figures(variants), rattler_figures(variants)})
+    figures.insert(figures.end(), more.begin(), more.end());
+  std::string body = in_rows(figures);
   body += equation_part(variants, run);
   body += prediction_part(run);
   for (std::size_t k = 0; k < variants.size(); ++k) {
@@ -328,6 +365,17 @@ namespace {
 
 using namespace report;
 
+/// ", axial stress 1.00 ± 0.01 MPa (1.4×10⁻⁵ E) and K0 0.45 ± 0.01 at the end of loading".
+std::string end_text(const StageMeans& stage, double modulus) {
+  const SiPrefix unit = si_prefix(stage.axial_end->mean);
+  const auto mean_text = [](const MeanError& m, double factor) {
+    return format_with_error(m.mean / factor, m.n > 1 ? m.error / factor : 0.0);
+  };
+  return fmt::format(", axial stress {} {}Pa ({} E){} at the end of {}", mean_text(*stage.axial_end, unit.factor),
+                     unit.symbol, format_number(stage.axial_end->mean / modulus, 3),
+                     stage.lateral_ratio ? " and K0 " + mean_text(*stage.lateral_ratio, 1.0) : "", stage.record.name);
+}
+
 std::vector<HeadLine> lines_of(const RunData& run) {
   std::vector<HeadLine> lines;
   const auto summary = run.summary_as<MaterialSummary>();
@@ -341,10 +389,7 @@ std::vector<HeadLine> lines_of(const RunData& run) {
         v.rolling_friction ? fmt::format(", mu_r = {:g}", *v.rolling_friction) : "", format_number(v.size_ratio, 3),
         format_with_error(v.solid_fraction_start->mean, v.solid_fraction_start->error));
     if (v.runs.density) text += "; " + density_text(*v.runs.density);
-    if (last.axial_end)
-      text += fmt::format(", axial stress {} E at the end of {}",
-                          format_with_error(last.axial_end->mean / modulus, last.axial_end->error / modulus),
-                          last.record.name);
+    if (last.axial_end) text += end_text(last, modulus);
     lines.emplace_back(v.name == "material" ? "Material" : "Material " + v.name, text + ".");
   }
   if (lines.size() > 4) return {{"Material", fmt::format("{} variants.", lines.size())}};

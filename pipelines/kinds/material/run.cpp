@@ -332,10 +332,12 @@ std::string console_summary(const MaterialSummary& s) {
     if (v.runs.density) text += "  " + density_text(*v.runs.density) + "\n";
     for (const StageMeans& m : v.runs.stages) {
       if (m.axial_end && m.ratio_end)
-        text +=
-            fmt::format("  {}: axial stress {:.4g} E, lateral {:.4g} E, q/p {:.3f}{}\n", m.record.name,
-                        m.axial_end->mean / modulus_of(s, v), m.lateral_end->mean / modulus_of(s, v), m.ratio_end->mean,
-                        m.friction_end ? fmt::format(", shear over normal stress {:.3f}", m.friction_end->mean) : "");
+        text += fmt::format(
+            "  {}: axial stress {} ({:.4g} E), lateral {}{}, q/p {:.3f}{}\n", m.record.name,
+            pressure_text(m.axial_end->mean, 4), m.axial_end->mean / modulus_of(s, v),
+            pressure_text(m.lateral_end->mean, 4),
+            m.lateral_ratio ? ", K0 " + with_error(*m.lateral_ratio, {.value = {3}}) : "", m.ratio_end->mean,
+            m.friction_end ? fmt::format(", shear over normal stress {:.3f}", m.friction_end->mean) : "");
       if (const std::string modulus = modulus_text(m); !modulus.empty()) text += "    " + modulus + "\n";
     }
   }
@@ -350,6 +352,10 @@ MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantR
   for (const VariantResult& r : results) {
     s.variants.push_back(summary_of(r));
     s.head.files[r.variant->name] = run.path(r.file);
+    if (std::string text = negative_tangents_text(tangents_of(s.variants.back().runs.stages),
+                                                  results.size() > 1 ? r.variant->name + "," : "");
+        !text.empty())
+      s.head.warnings.push_back(std::move(text));
     for (const MacroCurve& c : r.curves)
       if (!c.usable || !(c.stress_axial.back() > 0.0))
         s.head.mark_unusable(fmt::format("{}, sample {}: {}", r.variant->name, c.sample,

@@ -103,18 +103,23 @@ bool RecipePair::lateral_shared() const {
 /// more than for the other, as K0 changes from mixture to mixture.
 std::vector<ErrorPart> RecipePair::ratio_parts() const {
   std::vector<ErrorPart> out;
+  const double moved = onsets_.moved(0, levels());
   if (!lateral_shared())
     for (const MixRun* run : {&a_, &b_}) {
       const MeanError samples = mean_error(end_ratios(run->results[lateral_packing(run->scene, levels())]));
       out.push_back({samples.error, static_cast<double>(samples.n) - 1.0});
     }
+  if (moved == 0.0) {  // mixtures that differ in nothing are off alike
+    out.push_back(kExactPart);
+    return out;
+  }
   const auto means = [](const MixRun& run) {
     std::vector<double> values;
     for (const VariantResult& r : run.results) values.push_back(mean_error(end_ratios(r)).mean);
     return values;
   };
   const NeighbourSlope slope = neighbour_slope(a_.scene, means(a_), b_.scene, means(b_));
-  double change = slope.value * onsets_.moved(0, levels());
+  double change = slope.value * moved;
   const double most =
       std::hypot(a_.summary.recipe.lateral_ratio.standard_error, b_.summary.recipe.lateral_ratio.standard_error);
   if (most < change) change = most;  // NaN where a run does not know it
@@ -198,12 +203,13 @@ std::optional<PairedNumber> RecipePair::modulus_difference(const OnsetPair& whol
   if (!std::isfinite(at_a) || !std::isfinite(at_b)) return std::nullopt;
   std::vector<ErrorPart> parts;
   for (const ErrorPart& p : ratio_parts())
-    parts.push_back({std::abs(at(with_more_ratio(law_b, p.error), false) - at_b), p.degrees});
+    parts.push_back(
+        p == kExactPart ? p : ErrorPart{std::abs(at(with_more_ratio(law_b, p.error), false) - at_b), p.degrees});
   for (const bool is_a : {true, false}) {
     const auto [all, own] = factor_packings(is_a);
     const double of_mean = std::sqrt(own) / all;
     const double moved = at(with_more_factor(is_a ? law_a : law_b, of_mean), is_a);
-    parts.push_back({std::abs(moved - (is_a ? at_a : at_b)), all - 1.0});
+    parts.push_back(own == 0.0 ? kExactPart : ErrorPart{std::abs(moved - (is_a ? at_a : at_b)), all - 1.0});
   }
   return number(
       fmt::format("constrained modulus over E, material law, from {:.3g} to {:.3g} E", stresses[0], stresses[1]),

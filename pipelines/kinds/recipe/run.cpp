@@ -121,6 +121,12 @@ class RecipeRun {
       throw UnusableResult(
           "no packing came to the end of all stages; a lower stress, more max_passes ([test]) or more "
           "grains ([grains] count) may do");
+    std::vector<NamedTangent> tangents;
+    for (const RecipeStageSummary& s : out().staged->stages) {
+      tangents.push_back({s.name, "first", s.tangent_begin.predicted.value});
+      tangents.push_back({s.name, "last", s.tangent_end.predicted.value});
+    }
+    if (std::string text = negative_tangents_text(tangents); !text.empty()) head().warnings.push_back(std::move(text));
     write_text_atomic(run_.path("recipe_stages.csv"), as_csv(stages_table(*out().staged)));
     head().files["stages"] = run_.path("recipe_stages.csv");
   }

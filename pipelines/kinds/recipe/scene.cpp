@@ -185,9 +185,9 @@ void read_rest(const SceneTable& root, RecipeScene& out) {
                                   "grains of the check; it holds the coarsest levels: as many as possible with at "
                                   "least 60 grains above a third of the largest radius; 0: no check"},
                                  0, 10000000, out.check.grains);
-  if (out.check.grains == 0)
-    check.refuse({"samples"}, "there is no check with grains = 0: leave out samples, or give grains above 0");
-  out.check.samples = check.count({"samples", "samples of the check"}, 1, 1000, out.check.samples);
+  // Read even without a check, so that --set check.grains=0 alone switches it off.
+  out.check.samples =
+      check.count({"samples", "samples of the check; without a check they do not count"}, 1, 1000, out.check.samples);
   const SceneTable macro = root.table_or_empty({"macro", "level 1, which is loaded with the cell law"});
   out.macro.grains =
       macro.count({"grains", "grains of level 1, which is loaded with the cell law"}, 40, 100000, out.macro.grains);
