@@ -73,14 +73,16 @@ struct PressedParticle {
     }
   }
 
-  /// Force on a wall over E R^2.
-  double at_depth(double depth, BodyStiffness* stiffness = nullptr) {
-    s.particles.sphere[1].x[0] = -kSoftRadius * (1.0 - depth);
-    s.particles.sphere[2].x[0] = kSoftRadius * (1.0 - depth);
+  /// Force on the second wall over E R^2.
+  double at_depths(double first, double second, BodyStiffness* stiffness = nullptr) {
+    s.particles.sphere[1].x[0] = -kSoftRadius * (1.0 - first);
+    s.particles.sphere[2].x[0] = kSoftRadius * (1.0 - second);
     BodyStiffness ignored;
     force_pass(s, 0.0, stiffness != nullptr ? *stiffness : ignored);
     return s.particles.force[2][0] / (kSoftModulus * kSoftRadius * kSoftRadius);
   }
+
+  double at_depth(double both) { return at_depths(both, both); }
 
   System3 s;
 };
@@ -126,8 +128,9 @@ TEST(UnloadingRatio, UnloadingIsSteeperByTheRatio) {
     const double down = top - pressure(kDeepest - kStep);
     EXPECT_NEAR(down / up, ratio, 2e-3 * ratio);
     BodyStiffness k;
-    (void)pressed.at_depth(0.17, &k);
-    const double slope = (pressed.at_depth(0.17 + kStep) - pressed.at_depth(0.17 - kStep)) / (2.0 * kStep);
+    (void)pressed.at_depths(0.17, 0.17, &k);
+    const double slope =
+        (pressed.at_depths(0.17, 0.17 + kStep) - pressed.at_depths(0.17, 0.17 - kStep)) / (2.0 * kStep);
     const double kt_ratio = synthetic::law_entry().slide_plane.kt_ratio.value;
     EXPECT_NEAR(k.translation[2] / (kSoftModulus * kSoftRadius), slope * (1.0 + kt_ratio), 1e-4 * slope);
   }
