@@ -9,6 +9,7 @@
 #include "common/core/error.h"
 #include "common/core/particles.h"
 #include "common/core/text.h"
+#include "common/data/rows.h"
 #include "macrosim/curve_notes.h"
 
 namespace softgrain {
@@ -191,105 +192,79 @@ void require_same_grains(const CellCard& card, const MacroSpec& spec) {
 
 namespace {
 
+// What stands in a row of each data set.
+
+constexpr auto kSite = [](auto&& visit, auto& s) {
+  visit(s.x);
+  visit(s.r);
+};
+constexpr auto kContent = [](auto&& visit, auto& c) {
+  visit(c.solid);
+  visit(c.pores);
+};
+constexpr auto kPeriods = [](auto&& visit, auto& periods) { visit(periods); };
+constexpr auto kFace = [](auto&& visit, auto& f) {
+  visit(f.key.i);
+  visit(f.key.j);
+  visit(f.key.periods);
+  visit(f.slides);
+};
+constexpr auto kFaceSpring = [](auto&& visit, auto& f) {
+  visit(f.force);
+  visit(f.separation);
+  visit(f.stiffness);
+};
+constexpr auto kRoom = [](auto&& visit, auto& state) {
+  visit(state.low);
+  visit(state.high);
+};
+constexpr auto kCriticalPores = [](auto&& visit, auto& c) { visit(c.critical); };
+constexpr auto kStress = [](auto&& visit, auto& state) { visit(state.stress); };
+constexpr auto kFaceShape = [](auto&& visit, auto& f) { visit(f.shape); };
+constexpr auto kSpringForces = [](auto&& visit, auto& forces) { visit(forces); };
+
 /// What a law with memory knows beyond the springs of faces.
-void write_memory(const h5::Group& group, const CellState& state) {
-  const h5::Group memory = group.create("memory");
-  std::vector<double> critical;
-  for (const CellContent& c : state.content) critical.push_back(c.critical);
-  std::vector<double> shape;
-  for (const FaceSpring& f : state.springs.springs) shape.push_back(f.shape);
-  std::vector<double> parts;
-  for (const SpringForces& forces : state.springs.parts)
-    for (const Vec3& v : forces) parts.insert(parts.end(), {v[0], v[1], v[2]});
-  std::vector<double> stress;
-  for (int k = 0; k < 3; ++k)
-    for (int l = 0; l < 3; ++l) stress.push_back(state.stress[k][l]);
-  memory.write("critical_pores", critical);
-  memory.write("stress", stress);
+void write_memory(const h5::Group& memory, const CellState& state) {
+  write_rows(memory, "critical_pores", state.content, kCriticalPores);
+  write_row(memory, "stress", state, kStress);
   memory.write("strength", state.strength);
   memory.write("next_pores", state.next_pores);
-  memory.write("face_shape", shape);
-  memory.write("spring_forces", parts, {shape.size(), 3 * kFaceSprings});
+  write_rows(memory, "face_shape", state.springs.springs, kFaceShape);
+  write_rows(memory, "spring_forces", state.springs.parts, kSpringForces);
 }
 
 void read_memory(const h5::Group& memory, CellState& state) {
-  const auto critical = memory.doubles("critical_pores");
-  const auto shape = memory.doubles("face_shape");
-  const auto parts = memory.doubles("spring_forces");
-  const auto stress = memory.doubles("stress");
+  read_rows(memory, "critical_pores", state.content, kCriticalPores);
+  read_row(memory, "stress", state, kStress);
   state.strength = memory.doubles("strength");
   state.next_pores = memory.doubles("next_pores");
-  std::vector<FaceSpring>& springs = state.springs.springs;
-  if (stress.size() != 9 || critical.size() != state.content.size() || shape.size() != springs.size() ||
-      parts.size() != 3 * kFaceSprings * springs.size())
-    throw IoError("cells: arrays of wrong length");
-  for (int k = 0; k < 9; ++k) state.stress[k / 3][k % 3] = stress[static_cast<std::size_t>(k)];
-  for (std::size_t i = 0; i < critical.size(); ++i) state.content[i].critical = critical[i];
-  for (std::size_t f = 0; f < springs.size(); ++f) {
-    springs[f].shape = shape[f];
-    SpringForces& forces = state.springs.parts.emplace_back();
-    for (std::size_t k = 0; k < 3 * kFaceSprings; ++k)
-      forces[k / 3][static_cast<int>(k % 3)] = parts[3 * kFaceSprings * f + k];
-  }
+  read_rows(memory, "face_shape", state.springs.springs, kFaceShape);
+  state.springs.parts.resize(state.springs.springs.size());
+  read_rows(memory, "spring_forces", state.springs.parts, kSpringForces);
 }
 
 }  // namespace
 
 void write_cell_state(const h5::Group& group, const CellState& state) {
-  std::vector<double> sites;
-  std::vector<double> content;
-  std::vector<std::int64_t> periods;
-  for (const auto& s : state.sites) sites.insert(sites.end(), {s.x[0], s.x[1], s.x[2], s.r});
-  for (const CellContent& c : state.content) content.insert(content.end(), {c.solid, c.pores});
-  for (const auto& p : state.periods) periods.insert(periods.end(), p.begin(), p.end());
-  std::vector<std::int64_t> faces;
-  std::vector<double> springs;
-  for (const FaceSpring& f : state.springs.springs) {
-    faces.insert(faces.end(), {f.key.i, f.key.j, f.key.periods[0], f.key.periods[1], f.key.periods[2], f.slides});
-    for (const Vec3& v : {f.force, f.separation}) springs.insert(springs.end(), {v[0], v[1], v[2]});
-    springs.push_back(f.stiffness);
-  }
-  const std::vector<double> box{state.low[0], state.low[1], state.low[2], state.high[0], state.high[1], state.high[2]};
-  group.write("room", box);
-  group.write("sites", sites, {state.sites.size(), 4});
-  group.write("content", content, {state.content.size(), 2});
-  group.write("periods", periods, {state.periods.size(), 3});
-  const std::size_t count = state.springs.springs.size();
-  group.write("faces", faces, {count, 6});
-  group.write("face_springs", springs, {count, 7});
-  if (!state.strength.empty()) write_memory(group, state);
+  write_row(group, "room", state, kRoom);
+  write_rows(group, "sites", state.sites, kSite);
+  write_rows(group, "content", state.content, kContent);
+  write_rows(group, "periods", state.periods, kPeriods);
+  write_rows(group, "faces", state.springs.springs, kFace);
+  write_rows(group, "face_springs", state.springs.springs, kFaceSpring);
+  if (!state.strength.empty()) write_memory(group.create("memory"), state);
 }
 
 CellState read_cell_state(const h5::Group& group) {
-  const auto box = group.doubles("room");
-  const auto sites = group.doubles("sites");
-  const auto content = group.doubles("content");
-  const auto periods = group.integers("periods");
-  const auto faces = group.integers("faces");
-  const auto springs = group.doubles("face_springs");
-  const std::size_t n = sites.size() / 4;
-  if (box.size() != 6 || sites.size() != 4 * n || content.size() != 2 * n || periods.size() != 3 * n ||
-      faces.size() % 6 != 0 || springs.size() != faces.size() / 6 * 7)
-    throw IoError("cells: arrays of wrong length");
   CellState out;
-  out.low = {{box[0], box[1], box[2]}};
-  out.high = {{box[3], box[4], box[5]}};
-  const auto whole = [](std::int64_t x) { return static_cast<std::int32_t>(x); };
-  for (std::size_t i = 0; i < n; ++i) {
-    out.sites.push_back({{{sites[4 * i], sites[4 * i + 1], sites[4 * i + 2]}}, sites[4 * i + 3]});
-    out.content.push_back({content[2 * i], content[2 * i + 1]});
-    out.periods.push_back({whole(periods[3 * i]), whole(periods[3 * i + 1]), whole(periods[3 * i + 2])});
-  }
-  for (std::size_t f = 0; 6 * f < faces.size(); ++f) {
-    const auto* k = &faces[6 * f];
-    const auto* v = &springs[7 * f];
-    FaceSpring spring{{whole(k[0]), whole(k[1]), {whole(k[2]), whole(k[3]), whole(k[4])}},
-                      {{v[0], v[1], v[2]}},
-                      v[6],
-                      {{v[3], v[4], v[5]}},
-                      k[5] != 0};
-    out.springs.springs.push_back(spring);
-  }
+  read_row(group, "room", out, kRoom);
+  out.sites = records_in_rows<Sphere<3>>(group, "sites", kSite);
+  out.content.resize(out.sites.size());
+  read_rows(group, "content", out.content, kContent);
+  out.periods.resize(out.sites.size());
+  read_rows(group, "periods", out.periods, kPeriods);
+  out.springs.springs = records_in_rows<FaceSpring>(group, "faces", kFace);
+  read_rows(group, "face_springs", out.springs.springs, kFaceSpring);
   if (group.has("memory")) read_memory(group.open("memory"), out);
   return out;
 }

@@ -9,6 +9,7 @@
 #include "common/core/particles.h"
 #include "common/data/attributes.h"
 #include "common/data/fields.h"
+#include "common/data/rows.h"
 #include "common/neighbours/spatial_order.h"
 #include "macrosim/box.h"
 #include "macrosim/grain_materials.h"
@@ -143,80 +144,66 @@ namespace {
 
 constexpr auto kWalls = static_cast<std::int64_t>(std::tuple_size_v<decltype(Box::plane)>);
 
+// What stands in a row of each data set.
+
+constexpr auto kBox = [](auto&& visit, auto& packing) {
+  visit(packing.low);
+  visit(packing.high);
+};
+constexpr auto kBody = [](auto&& visit, auto& b) {
+  visit(b.x);
+  visit(b.r);
+};
+constexpr auto kSoft = [](auto&& visit, auto& b) { visit(b.soft); };
+constexpr auto kMaterial = [](auto&& visit, auto& b) { visit(b.material); };
+constexpr auto kSpringBodies = [](auto&& visit, auto& s) {
+  visit(s.i);
+  visit(s.j);
+};
+constexpr auto kSpring = [](auto&& visit, auto& s) { visit(s.spring); };
+constexpr auto kRoll = [](auto&& visit, auto& s) { visit(s.roll); };
+
 void write_springs(const h5::Group& group, const std::vector<BodySpring>& springs) {
   if (springs.empty()) return;
-  std::vector<std::int64_t> pairs;
-  std::vector<double> values;
-  std::vector<double> rolls;
-  for (const BodySpring& s : springs) {
-    pairs.insert(pairs.end(), {s.i, s.j});
-    values.insert(values.end(), {s.spring[0], s.spring[1], s.spring[2]});
-    rolls.insert(rolls.end(), {s.roll[0], s.roll[1], s.roll[2]});
-  }
-  group.write("spring_bodies", pairs);
-  group.write("springs", values, {springs.size(), 3});
-  if (any_rolls(springs)) group.write("rolls", rolls, {springs.size(), 3});
+  group.write("spring_bodies", flat_rows<std::int64_t>(springs, kSpringBodies));
+  write_rows(group, "springs", springs, kSpring);
+  if (any_rolls(springs)) write_rows(group, "rolls", springs, kRoll);
 }
 
 void read_springs(const h5::Group& group, MacroPacking& packing) {
   if (!group.has("springs")) return;
-  const auto pairs = group.integers("spring_bodies");
-  const auto values = group.doubles("springs");
-  const std::vector<double> rolls =
-      group.has("rolls") ? group.doubles("rolls") : std::vector<double>(values.size(), 0.0);
+  packing.springs = records_in_rows<BodySpring>(group, "spring_bodies", kSpringBodies);
+  read_rows(group, "springs", packing.springs, kSpring);
+  if (group.has("rolls")) read_rows(group, "rolls", packing.springs, kRoll);
   const auto bodies = static_cast<std::int64_t>(packing.bodies.size());
-  if (2 * values.size() != 3 * pairs.size() || rolls.size() != values.size())
-    throw IoError("macro packing: springs of wrong length");
-  for (std::size_t k = 0; 2 * k < pairs.size(); ++k) {
-    if (pairs[2 * k] < 0 || pairs[2 * k] >= bodies || pairs[2 * k + 1] < 0 || pairs[2 * k + 1] >= bodies + kWalls)
+  for (const BodySpring& s : packing.springs)
+    if (s.i < 0 || s.i >= bodies || s.j < 0 || s.j >= bodies + kWalls)
       throw IoError("macro packing: a spring of bodies that are not there");
-    packing.springs.push_back({static_cast<std::int32_t>(pairs[2 * k]),
-                               static_cast<std::int32_t>(pairs[2 * k + 1]),
-                               {{values[3 * k], values[3 * k + 1], values[3 * k + 2]}},
-                               {{rolls[3 * k], rolls[3 * k + 1], rolls[3 * k + 2]}}});
-  }
 }
 
 }  // namespace
 
 void write_macro_packing(const h5::Group& group, const MacroPacking& packing) {
-  std::vector<double> rows;
-  std::vector<std::int64_t> soft;
-  for (const MacroBody& b : packing.bodies) {
-    rows.insert(rows.end(), {b.x[0], b.x[1], b.x[2], b.r});
-    soft.push_back(b.soft ? 1 : 0);
-  }
-  const std::vector<double> corners{packing.low[0],  packing.low[1],  packing.low[2],
-                                    packing.high[0], packing.high[1], packing.high[2]};
-  group.write("box", corners);
-  group.write("bodies", rows, {packing.bodies.size(), 4});
-  group.write("soft", soft);
-  if (std::ranges::any_of(packing.bodies, [](const MacroBody& b) { return b.material != 0; })) {
-    std::vector<std::int64_t> material;
-    for (const MacroBody& b : packing.bodies) material.push_back(b.material);
-    group.write("material", material);
-  }
+  write_row(group, "box", packing, kBox);
+  write_rows(group, "bodies", packing.bodies, kBody);
+  write_rows(group, "soft", packing.bodies, kSoft);
+  if (std::ranges::any_of(packing.bodies, [](const MacroBody& b) { return b.material != 0; }))
+    write_rows(group, "material", packing.bodies, kMaterial);
   write_springs(group, packing.springs);
   write_attributes(group, packing.cost);
   write_density_search(group, packing.density);
 }
 
 MacroPacking read_macro_packing(const h5::Group& group) {
-  const auto corners = group.doubles("box");
-  const auto rows = group.doubles("bodies");
-  const auto soft = group.integers("soft");
-  if (corners.size() != 6 || rows.size() != 4 * soft.size()) throw IoError("macro packing: arrays of wrong length");
-  MacroPacking packing{{{corners[0], corners[1], corners[2]}}, {{corners[3], corners[4], corners[5]}}, {}};
-  for (std::size_t k = 0; k < soft.size(); ++k)
-    packing.bodies.push_back({{{rows[4 * k], rows[4 * k + 1], rows[4 * k + 2]}}, rows[4 * k + 3], soft[k] != 0});
+  MacroPacking packing;
+  read_row(group, "box", packing, kBox);
+  packing.bodies = records_in_rows<MacroBody>(group, "soft", kSoft);
+  read_rows(group, "bodies", packing.bodies, kBody);
   if (group.has("material")) {
-    const auto material = group.integers("material");
-    if (material.size() != packing.bodies.size()) throw IoError("macro packing: arrays of wrong length");
-    for (std::size_t k = 0; k < material.size(); ++k) {
-      if (material[k] < 0 || material[k] >= static_cast<std::int64_t>(GrainMaterials::kMost))
+    read_rows(group, "material", packing.bodies, kMaterial);
+    for (const MacroBody& b : packing.bodies)
+      if (b.material < 0 || b.material >= static_cast<std::int64_t>(GrainMaterials::kMost))
         throw IoError("macro packing: no such material");
-      packing.bodies[k].material = static_cast<std::int32_t>(material[k]);
-    }
   }
   read_springs(group, packing);
   if (group.has_attribute("loop_passes")) read_attributes(group, packing.cost);

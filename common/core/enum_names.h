@@ -73,4 +73,21 @@ std::vector<const char*> all_enum_names() {
 template <class T, class R>
 concept Of = std::is_same_v<std::remove_const_t<T>, R>;
 
+/// visit(name, member, Means{text, unit}): what a member is, for people; unit: "" of texts and choices, "1" of plain
+/// numbers.
+struct Means {
+  const char* text;
+  const char* unit = "";
+};
+
+/// Visitors with a member kDescribes want all members, those too that this record does not have.
+template <class Visit>
+concept Describes = requires { std::remove_cvref_t<Visit>::kDescribes; };
+
+/// Whether a member of a record may be without a value.
+template <class T>
+inline constexpr bool is_optional = false;
+template <class T>
+inline constexpr bool is_optional<std::optional<T>> = true;
+
 }  // namespace softgrain

@@ -21,11 +21,6 @@ inline constexpr IfAny kIfAny{};
 
 namespace attributes {
 
-template <class T>
-inline constexpr bool is_optional = false;
-template <class T>
-inline constexpr bool is_optional<std::optional<T>> = true;
-
 template <class Wanted, class... Options>
 inline constexpr bool has_option = (std::is_same_v<std::remove_cvref_t<Options>, Wanted> || ...);
 

@@ -153,6 +153,7 @@ struct ColumnForm {
   const char* unknown = nullptr;  ///< said of a number that is outside the limits; null: the number and the limits
 
   void take(const Limits& allowed) { limits = allowed; }
+  void take(const Means&) {}  // for people
   void take(Later) { later = true; }
   void take(AsRows) { width = 3; }
   void take(const UpTo& known) {
@@ -301,5 +302,29 @@ std::vector<T> take(const std::vector<T>& all, Slices& slices, std::int64_t leng
   const auto first = all.begin() + static_cast<std::ptrdiff_t>(slices.next(length));
   return {first, first + static_cast<std::ptrdiff_t>(length)};
 }
+
+/// A list within records: the elements of all records one after the other, and a column with the length of each.
+template <class Record, class T>
+struct ListColumn {
+  const char* name;  ///< name of the column of lengths
+  std::vector<T> Record::*list;
+
+  /// Writes the lengths.
+  void write(const h5::Group& group, const std::vector<Record>& records) const {
+    write_column(group, name, "1", records, [this](const Record& r) { return (r.*list).size(); });
+  }
+  /// The elements of all records.
+  [[nodiscard]] std::vector<T> joined(const std::vector<Record>& records) const {
+    std::vector<T> all;
+    for (const Record& r : records) all.insert(all.end(), (r.*list).begin(), (r.*list).end());
+    return all;
+  }
+  /// Gives every record its own. Throws IoError unless the lengths add up to all there are.
+  void read(const h5::Group& group, std::vector<Record>& records, const std::vector<T>& all) const {
+    Slices slices(all.size());
+    read_integers(group, name, records, [&](Record& r, std::int64_t length) { r.*list = take(all, slices, length); });
+    slices.finish();
+  }
+};
 
 }  // namespace softgrain

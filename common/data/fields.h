@@ -53,9 +53,13 @@ void fields(auto&& visit, Of<PackingRun> auto& r) {
   visit("packing", r.packing, "1");
   fields(visit, r.normal_cost, "normal_");
   fields(visit, r.tangential_cost, "tangential_");
+  visit("kind", r.kind, "1", UpTo{PairKind::soft_soft, "kind of a run out of range"});
 }
 
 void fields(auto&& visit, Of<MultiContactPartner> auto& p) {
+  std::int32_t on = p.on + 1;  // 0: the centre
+  visit("on", on, "1", Limits{0.0, 999.0}, kLater);
+  if constexpr (!std::is_const_v<std::remove_reference_t<decltype(p)>>) p.on = on - 1;
   visit("kind", p.kind, "1", UpTo{PartnerKind::soft, "kind of a neighbour out of range"});
   visit("smooth", p.smooth, "1", kLater);
   visit("ratio", p.ratio, "1", Limits::not_negative());

@@ -3,7 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <span>
 #include <sstream>
+#include <stdexcept>
+#include <string_view>
 
 #include "common/core/error.h"
 #include "common/core/limits.h"
@@ -43,83 +47,53 @@ void fields(auto&& visit, Of<MacroCurve> auto& c) {
   fields(later, c.preparation, "preparation_");
 }
 
-void fields(auto&& visit, Of<MacroStart> auto& s) {
-  visit("start", s.bodies);
-  visit("radius_min", s.radius_min, kNotNegative);
-  visit("radius_max", s.radius_max, kNotNegative);
-  visit("youngs_modulus", s.youngs_modulus, kNotNegative);
-  visit("friction", s.friction, kNotNegative);
-  visit("wall_friction", s.wall_friction, kNotNegative);
-  visit("poisson_ratio", s.poisson_ratio, Limits{kPoissonLowest, kPoissonHighest});
-  visit("size_x", s.size_x, kNotNegative, kLater);
-  visit("size_y", s.size_y, kNotNegative, kLater);
-  visit("size_z", s.size_z, kNotNegative, kLater);
-}
-
 namespace {
 
 constexpr const char* kMacroFormat = "macro curves";
 
-struct Column {
-  const char* name;
-  const char* unit;
-  std::vector<double> MacroCurve::*values;
-  Limits limits{};
-};
-
-constexpr Column kColumns[] = {{"strain", "1", &MacroCurve::strain, {-kInfinity, 1.0}},
-                               {"stress_axial", "Pa", &MacroCurve::stress_axial},
-                               {"stress_lateral", "Pa", &MacroCurve::stress_lateral},
-                               {"stress_axial_contacts", "Pa", &MacroCurve::stress_axial_contacts},
-                               {"coordination", "1", &MacroCurve::coordination, kNotNegative},
-                               {"residual", "1", &MacroCurve::residual, kNotNegative}};
+constexpr MacroColumn kColumns[] = {{"strain", "1", &MacroCurve::strain, {-kInfinity, 1.0}},
+                                    {"stress_axial", "Pa", &MacroCurve::stress_axial},
+                                    {"stress_lateral", "Pa", &MacroCurve::stress_lateral},
+                                    {"stress_axial_contacts", "Pa", &MacroCurve::stress_axial_contacts},
+                                    {"coordination", "1", &MacroCurve::coordination, kNotNegative},
+                                    {"residual", "1", &MacroCurve::residual, kNotNegative}};
 
 /// May be absent.
-constexpr Column kOptionalColumns[] = {{"residual_largest", "1", &MacroCurve::residual_largest, kNotNegative},
-                                       {"stress_x", "Pa", &MacroCurve::stress_x},
-                                       {"stress_y", "Pa", &MacroCurve::stress_y},
-                                       {"stress_deviator", "Pa", &MacroCurve::stress_deviator},
-                                       {"fabric", "1", &MacroCurve::fabric},
-                                       {"fabric_bodies", "1", &MacroCurve::fabric_bodies},
-                                       {"coordination_bodies", "1", &MacroCurve::coordination_bodies, kNotNegative},
-                                       {"law_asked", "1", &MacroCurve::law_evaluations, kNotNegative},
-                                       {"law_beyond", "1", &MacroCurve::law_beyond, kNotNegative},
-                                       {"law_largest", "1", &MacroCurve::law_largest, kNotNegative},
-                                       {"stage", "1", &MacroCurve::stage, kNotNegative},
-                                       {"strain_x", "1", &MacroCurve::strain_x},
-                                       {"strain_y", "1", &MacroCurve::strain_y},
-                                       {"strain_z", "1", &MacroCurve::strain_z},
-                                       {"shear_strain", "1", &MacroCurve::shear_strain},
-                                       {"stress_xy", "Pa", &MacroCurve::stress_xy},
-                                       {"stress_xz", "Pa", &MacroCurve::stress_xz},
-                                       {"stress_yz", "Pa", &MacroCurve::stress_yz},
-                                       {"stress_asymmetry", "1", &MacroCurve::stress_asymmetry, kNotNegative},
-                                       {"inertial_number", "1", &MacroCurve::inertial_number, kNotNegative}};
+constexpr MacroColumn kOptionalColumns[] = {
+    {"residual_largest", "1", &MacroCurve::residual_largest, kNotNegative},
+    {"stress_x", "Pa", &MacroCurve::stress_x},
+    {"stress_y", "Pa", &MacroCurve::stress_y},
+    {"stress_deviator", "Pa", &MacroCurve::stress_deviator},
+    {"fabric", "1", &MacroCurve::fabric},
+    {"fabric_bodies", "1", &MacroCurve::fabric_bodies},
+    {"coordination_bodies", "1", &MacroCurve::coordination_bodies, kNotNegative},
+    {"law_asked", "1", &MacroCurve::law_evaluations, kNotNegative},
+    {"law_beyond", "1", &MacroCurve::law_beyond, kNotNegative},
+    {"law_largest", "1", &MacroCurve::law_largest, kNotNegative},
+    {"stage", "1", &MacroCurve::stage, kNotNegative},
+    {"strain_x", "1", &MacroCurve::strain_x},
+    {"strain_y", "1", &MacroCurve::strain_y},
+    {"strain_z", "1", &MacroCurve::strain_z},
+    {"shear_strain", "1", &MacroCurve::shear_strain},
+    {"stress_xy", "Pa", &MacroCurve::stress_xy},
+    {"stress_xz", "Pa", &MacroCurve::stress_xz},
+    {"stress_yz", "Pa", &MacroCurve::stress_yz},
+    {"stress_asymmetry", "1", &MacroCurve::stress_asymmetry, kNotNegative},
+    {"inertial_number", "1", &MacroCurve::inertial_number, kNotNegative}};
 
-struct TensorColumn {
-  const char* name;  ///< "_xx", "_yy" and so on follow
-  TensorColumns MacroCurve::*values;
+constexpr MacroColumn kBodyForces{"body_forces", "N", &MacroCurve::body_forces};
 
-  [[nodiscard]] std::string of(std::size_t component) const {
-    return fmt::format("{}_{}", name, kTensorComponents[component]);
-  }
-};
-
-constexpr TensorColumn kTensors[] = {{"fabric_tensor", &MacroCurve::fabric_tensor},
-                                     {"fabric_strong", &MacroCurve::fabric_strong}};
-constexpr Column kBodyForces{"body_forces", "N", &MacroCurve::body_forces};
-
-void write_quantity(const h5::Group& group, const MacroCurve& curve, const Column& c) {
+void write_quantity(const h5::Group& group, const MacroCurve& curve, const MacroColumn& c) {
   group.write(c.name, std::span<const double>(curve.*c.values));
   group.attribute_of(c.name, "unit", c.unit);
 }
 
-void write_if_any(const h5::Group& group, const MacroCurve& curve, const Column& c) {
+void write_if_any(const h5::Group& group, const MacroCurve& curve, const MacroColumn& c) {
   if (!(curve.*c.values).empty()) write_quantity(group, curve, c);
 }
 
 void write_tensors(const h5::Group& group, const MacroCurve& curve) {
-  for (const TensorColumn& t : kTensors)
+  for (const MacroTensor& t : kMacroTensors)
     for (std::size_t k = 0; k < kTensorComponents.size(); ++k) {
       const std::vector<double>& values = (curve.*t.values)[k];
       if (values.empty()) continue;
@@ -129,7 +103,7 @@ void write_tensors(const h5::Group& group, const MacroCurve& curve) {
 }
 
 void read_tensors(const h5::Group& group, MacroCurve& curve, std::size_t points) {
-  for (const TensorColumn& t : kTensors)
+  for (const MacroTensor& t : kMacroTensors)
     for (std::size_t k = 0; k < kTensorComponents.size(); ++k)
       if (group.has(t.of(k))) (curve.*t.values)[k] = read_numbers(group, t.of(k), "1", {points});
 }
@@ -142,6 +116,8 @@ void write_force_distribution(const h5::Group& group, const MacroCurve& curve) {
     write_histogram(group.create(kForceDistribution), *distribution);
 }
 
+constexpr const char* kStages = "stages";
+constexpr const char* kModulusStresses = "modulus_stresses";
 constexpr const char* kStageAxes = "stage_stress_axes";
 
 /// One line per stage: the axes that go by stress, or none; nothing where they are not known.
@@ -169,96 +145,127 @@ void read_stage_axes(const h5::Group& group, std::vector<StageRecord>& stages) {
   }
 }
 
-/// One line per stage: its kind, the kind whose way it goes, its name.
-void write_stage_records(const h5::Group& group, const std::vector<StageRecord>& stages) {
-  if (stages.empty()) return;
+// Lines of words, one for each stage.
+
+constexpr auto kStageWords = [](auto&& visit, auto& s) {
+  visit(s.kind);
+  visit(s.way);
+  visit(s.name);
+};
+constexpr auto kModulusWords = [](auto&& visit, auto& s) {
+  visit(s.modulus_stress[0]);
+  visit(s.modulus_stress[1]);
+};
+
+std::string lines_of(const std::vector<StageRecord>& stages, const auto& list) {
   std::string text;
-  for (const StageRecord& s : stages) text += fmt::format("{} {} {}\n", to_string(s.kind), to_string(s.way), s.name);
-  group.attribute("stages", text);
-  write_stage_axes(group, stages);
-  std::string stresses;
-  bool any = false;
   for (const StageRecord& s : stages) {
-    stresses += fmt::format("{:.17g} {:.17g}\n", s.modulus_stress[0], s.modulus_stress[1]);
-    any = any || s.modulus_stress[1] > 0.0;
+    std::string line;
+    const auto word = [&line](const auto& value) {
+      using Value = std::remove_cvref_t<decltype(value)>;
+      if (!line.empty()) line += " ";
+      if constexpr (std::is_same_v<Value, std::string>)
+        line += value;
+      else if constexpr (NamedEnum<Value>)
+        line += to_string(value);
+      else
+        line += fmt::format("{:.17g}", value);
+    };
+    list(word, s);
+    text += line + "\n";
   }
-  if (any) group.attribute("modulus_stresses", stresses);
+  return text;
 }
 
-/// One line per stage, two stresses; files without them are those of tests that do not name any.
+/// A text is the rest of its line. False where the line does not say what it should.
+bool read_line(const std::string& line, StageRecord& stage, const auto& list) {
+  std::istringstream words(line);
+  bool good = true;
+  const auto word = [&](auto& value) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, std::string>) {
+      std::getline(words >> std::ws, value);
+    } else if constexpr (NamedEnum<Value>) {
+      std::string text;
+      words >> text;
+      const auto known = parse_enum<Value>(text);
+      good = good && known;
+      if (known) value = *known;
+    } else {
+      good = good && words >> value;
+    }
+  };
+  list(word, stage);
+  return good;
+}
+
+void write_stage_records(const h5::Group& group, const std::vector<StageRecord>& stages) {
+  if (stages.empty()) return;
+  group.attribute(kStages, lines_of(stages, kStageWords));
+  write_stage_axes(group, stages);
+  if (std::ranges::any_of(stages, [](const StageRecord& s) { return s.modulus_stress[1] > 0.0; }))
+    group.attribute(kModulusStresses, lines_of(stages, kModulusWords));
+}
+
+/// Files without them are those of tests that do not name any.
 void read_modulus_stresses(const h5::Group& group, std::vector<StageRecord>& stages) {
-  if (!group.has_attribute("modulus_stresses")) return;
-  std::istringstream numbers(group.text("modulus_stresses"));
-  for (StageRecord& s : stages)
-    if (!(numbers >> s.modulus_stress[0] >> s.modulus_stress[1]))
-      throw IoError("attribute 'modulus_stresses': two numbers for each of the stages are needed");
+  if (!group.has_attribute(kModulusStresses)) return;
+  std::istringstream lines(group.text(kModulusStresses));
+  for (StageRecord& s : stages) {
+    std::string line;
+    std::getline(lines, line);
+    if (!read_line(line, s, kModulusWords))
+      throw IoError(fmt::format("attribute '{}': two numbers for each of the stages are needed", kModulusStresses));
+  }
 }
 
 std::vector<StageRecord> read_stage_records(const h5::Group& group) {
   std::vector<StageRecord> stages;
-  if (!group.has_attribute("stages")) return stages;
-  std::istringstream lines(group.text("stages"));
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    std::string kind;
-    std::string way;
-    StageRecord record;
-    words >> kind >> way >> std::ws;
-    std::getline(words, record.name);
-    const auto known_kind = parse_enum<StageKind>(kind);
-    const auto known_way = parse_enum<StageKind>(way);
-    if (!known_kind || !known_way) throw IoError("attribute 'stages': unknown kind in '" + line + "'");
-    record.kind = *known_kind;
-    record.way = *known_way;
-    stages.push_back(record);
-  }
+  if (!group.has_attribute(kStages)) return stages;
+  std::istringstream lines(group.text(kStages));
+  for (std::string line; std::getline(lines, line);)
+    if (!read_line(line, stages.emplace_back(), kStageWords))
+      throw IoError(fmt::format("attribute '{}': unknown kind in '{}'", kStages, line));
   read_modulus_stresses(group, stages);
   read_stage_axes(group, stages);
   return stages;
 }
 
-void read_column(const h5::Group& group, MacroCurve& curve, const Column& c, std::size_t length) {
+void read_column(const h5::Group& group, MacroCurve& curve, const MacroColumn& c, std::size_t length) {
   curve.*c.values = read_numbers(group, c.name, c.unit, {length}, c.limits);
 }
 
-constexpr const char* kRollingFriction = "rolling_friction";
-constexpr const char* kRollingStiffness = "rolling_stiffness_ratio";
 /// The law of cells, which is no form of a multi-contact law.
 const std::string kCellForm = "cell";
 
-/// Numbers of the law beside its form.
-void law_attributes(auto&& visit, Of<LawIdentity> auto& law) {
-  visit("law_hash", law.hash);
-  visit("law_solid_fraction", law.solid_fraction, kNotNegative);
-  visit("law_youngs_modulus", law.youngs_modulus, kNotNegative);
-  visit("law_poisson_ratio", law.poisson_ratio, Limits{});
-  visit("law_friction", law.friction, Limits{});
-}
+constexpr const char* kLawForm = "law_form";
 
 void write_origin(const h5::Group& group, const MacroCurve& curve) {
   if (!curve.start.bodies.empty()) {
     write_attributes(group, curve.start);
-    if (const RollingResistance& rolling = curve.start.rolling; rolling.friction > 0.0) {
-      group.attribute(kRollingFriction, rolling.friction);
-      group.attribute(kRollingStiffness, rolling.stiffness);
-    }
+    if (curve.start.rolling.friction > 0.0) rolling_fields(AttributeWriter{group}, curve.start.rolling);
   }
   if (curve.law.hash.empty()) return;
-  group.attribute("law_form", curve.law.form ? to_string(*curve.law.form) : kCellForm);
-  law_attributes(AttributeWriter{group}, curve.law);
+  group.attribute(kLawForm, curve.law.form ? to_string(*curve.law.form) : kCellForm);
+  const AttributeWriter write{group};
+  law_fields([&](const char* name, const char*, const auto& value, const auto&...) { write(name, value); }, curve.law,
+             curve.law.solid_fraction);
 }
 
 /// Either may be absent.
 void read_origin(const h5::Group& group, MacroCurve& curve) {
   if (group.has_attribute("start")) {
     read_attributes(group, curve.start);
-    if (group.has_attribute(kRollingFriction))
-      curve.start.rolling = {read_attribute(group, kRollingFriction, kNotNegative),
-                             read_attribute(group, kRollingStiffness, kNotNegative)};
+    const auto rolling = [&](const char* name, double& value, const Limits& limits, const auto&...) {
+      if (group.has_attribute(name)) value = read_attribute(group, name, limits);
+    };
+    rolling_fields(rolling, curve.start.rolling);
   }
-  if (!group.has_attribute("law_form")) return;
-  if (group.text("law_form") != kCellForm) curve.law.form = read_word<LawForm>(group, "law_form");
-  law_attributes(AttributeReader{group}, curve.law);
+  if (!group.has_attribute(kLawForm)) return;
+  if (group.text(kLawForm) != kCellForm) curve.law.form = read_word<LawForm>(group, kLawForm);
+  const AttributeReader read{group};
+  law_fields([&](const char* name, const char*, auto& value, const auto&... options) { read(name, value, options...); },
+             curve.law, curve.law.solid_fraction);
 }
 
 }  // namespace
@@ -279,6 +286,22 @@ std::optional<DensitySearch> read_density_search(const h5::Group& group) {
   DensitySearch search;
   read_attributes(group, search);
   return search;
+}
+
+std::string MacroColumn::header() const {
+  return std::string_view(unit) == "1" ? name : fmt::format("{} [{}]", name, unit);
+}
+
+std::string MacroTensor::of(std::size_t component) const {
+  return fmt::format("{}_{}", name, kTensorComponents[component]);
+}
+
+const MacroColumn& macro_column(std::vector<double> MacroCurve::*values) {
+  for (const std::span<const MacroColumn> columns :
+       {std::span<const MacroColumn>(kColumns), std::span<const MacroColumn>(kOptionalColumns)})
+    for (const MacroColumn& column : columns)
+      if (column.values == values) return column;
+  throw std::out_of_range("a member of MacroCurve that is no column");
 }
 
 std::string identity_text(const LawIdentity& law) {
@@ -329,8 +352,8 @@ void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
   write_stage_records(group, curve.stages);
   write_density_search(group, curve.density);
   write_origin(group, curve);
-  for (const Column& c : kColumns) write_quantity(group, curve, c);
-  for (const Column& c : kOptionalColumns) write_if_any(group, curve, c);
+  for (const MacroColumn& c : kColumns) write_quantity(group, curve, c);
+  for (const MacroColumn& c : kOptionalColumns) write_if_any(group, curve, c);
   write_tensors(group, curve);
   write_if_any(group, curve, kBodyForces);
   write_force_distribution(group, curve);
@@ -349,8 +372,8 @@ MacroCurve read_macro_curve(const h5::Group& group) {
   curve.density = read_density_search(group);
   read_origin(group, curve);
   const std::size_t points = group.doubles(kColumns[0].name).size();
-  for (const Column& c : kColumns) read_column(group, curve, c, points);
-  for (const Column& c : kOptionalColumns)
+  for (const MacroColumn& c : kColumns) read_column(group, curve, c, points);
+  for (const MacroColumn& c : kOptionalColumns)
     if (group.has(c.name)) read_column(group, curve, c, points);
   read_tensors(group, curve, points);
   if (group.has("more")) {

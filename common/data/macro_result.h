@@ -11,6 +11,7 @@
 #include "common/core/cost.h"
 #include "common/core/law_range.h"
 #include "common/core/material.h"
+#include "common/data/columns.h"
 #include "common/io/hdf5_file.h"
 #include "common/io/provenance.h"
 
@@ -31,6 +32,15 @@ struct LawIdentity {
 /// "directional law at solid fraction 0.7048, for grains of nu = 0.3, mu = 0.3, used with E = 5e+05 Pa; hash
 /// 0123456789abcdef".
 std::string identity_text(const LawIdentity& law);
+
+/// Numbers of a law with their names as attributes of curves and in summaries. `fraction`: as solid_fraction.
+void law_fields(auto&& visit, Of<LawIdentity> auto& law, auto& fraction) {
+  visit("law_hash", "hash", law.hash);
+  visit("law_solid_fraction", "solid_fraction", fraction, Limits::not_negative());
+  visit("law_youngs_modulus", "E", law.youngs_modulus, Limits::not_negative());
+  visit("law_poisson_ratio", "nu", law.poisson_ratio, Limits{});
+  visit("law_friction", "mu", law.friction, Limits{});
+}
 
 /// Material that a law is for, in the words of check, summaries and reports; empty for a twin.
 inline constexpr const char* kMatterInShells =
@@ -167,6 +177,32 @@ struct MacroStart {
   friend bool operator==(const MacroStart&, const MacroStart&) = default;
 };
 
+/// visit(name, member, Compared{what}): two curves that differ in it cannot be compared; what it is called then.
+struct Compared {
+  const char* what;
+};
+
+void fields(auto&& visit, Of<MacroStart> auto& s) {
+  const Limits not_negative = Limits::not_negative();
+  visit("start", s.bodies);
+  visit("radius_min", s.radius_min, not_negative);
+  visit("radius_max", s.radius_max, not_negative);
+  visit("youngs_modulus", s.youngs_modulus, not_negative, Compared{"E of the grains [Pa]"});
+  visit("friction", s.friction, not_negative, Compared{"mu of the grains"});
+  visit("wall_friction", s.wall_friction, not_negative, Compared{"mu of the walls"});
+  visit("poisson_ratio", s.poisson_ratio, Limits{kPoissonLowest, kPoissonHighest}, Compared{"nu of the grains"});
+  visit("size_x", s.size_x, not_negative, kLater);
+  visit("size_y", s.size_y, not_negative, kLater);
+  visit("size_z", s.size_z, not_negative, kLater);
+}
+
+/// Rolling resistance of the grains, where they have one.
+void rolling_fields(auto&& visit, Of<RollingResistance> auto& rolling) {
+  visit("rolling_friction", rolling.friction, Limits::not_negative(), Compared{"mu_r of the grains"});
+  if (rolling.friction > 0.0)
+    visit("rolling_stiffness_ratio", rolling.stiffness, Limits::not_negative(), Compared{"kr_ratio of the grains"});
+}
+
 /// Components of a symmetric tensor in the order in which files and reports have them.
 inline constexpr std::array<const char*, 6> kTensorComponents{"xx", "yy", "zz", "xy", "xz", "yz"};
 
@@ -252,6 +288,31 @@ struct MacroCurve {
 
   [[nodiscard]] std::optional<Twin> twin() const { return parse_enum<Twin>(engine); }  ///< empty: made by a law
 };
+
+/// A quantity of a curve, one value per point, as files have it.
+struct MacroColumn {
+  const char* name;
+  const char* unit;
+  std::vector<double> MacroCurve::*values;
+  Limits limits{};
+
+  /// "stress_xy [Pa]"; the name alone of a plain number.
+  [[nodiscard]] std::string header() const;
+};
+
+/// That of a member of MacroCurve. Throws std::out_of_range for one that files do not have as a column.
+const MacroColumn& macro_column(std::vector<double> MacroCurve::*values);
+
+/// A tensor of a curve: its name, which "_xx", "_yy" and so on follow.
+struct MacroTensor {
+  const char* name;
+  TensorColumns MacroCurve::*values;
+
+  [[nodiscard]] std::string of(std::size_t component) const;
+};
+
+inline constexpr std::array<MacroTensor, 2> kMacroTensors{
+    {{"fabric_tensor", &MacroCurve::fabric_tensor}, {"fabric_strong", &MacroCurve::fabric_strong}}};
 
 /// Numbers of a row of `places`.
 constexpr std::size_t place_numbers(std::int64_t bodies) { return 6 + 3 * static_cast<std::size_t>(bodies); }

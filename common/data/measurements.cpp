@@ -28,6 +28,10 @@ namespace {
 
 constexpr const char* kMeasurementsFormat = "soft-particle measurements";
 
+constexpr const char* kRelaxationNumber = "relaxation";
+constexpr ListColumn kNormalPoints{"normal_points", &PackingRun::normal};
+constexpr ListColumn kTangentialPoints{"tangential_points", &PackingRun::tangential};
+
 template <class Record>
 std::vector<Record> read_points(const h5::Group& group) {
   std::vector<Record> points(column_length(group, "converged"));
@@ -58,19 +62,12 @@ void write_runs(const h5::Group& root, const Measurements& data) {
   }
   group.attribute("kinds", "0 soft-solid, 1 soft-soft");
   write_records(group, runs);
-  write_column(group, "kind", "1", runs, [](const auto& r) { return r.kind == PairKind::soft_solid ? 0 : 1; });
-  write_column(group, "relaxation", "1", runs,
+  write_column(group, kRelaxationNumber, "1", runs,
                [&](const auto& r) { return std::find(names.begin(), names.end(), r.relaxation) - names.begin(); });
-  write_column(group, "normal_points", "1", runs, [](const auto& r) { return r.normal.size(); });
-  write_column(group, "tangential_points", "1", runs, [](const auto& r) { return r.tangential.size(); });
-  std::vector<NormalPoint> normal;
-  std::vector<TangentialPoint> tangential;
-  for (const PackingRun& run : runs) {
-    normal.insert(normal.end(), run.normal.begin(), run.normal.end());
-    tangential.insert(tangential.end(), run.tangential.begin(), run.tangential.end());
-  }
-  write_records(root.create("normal"), normal);
-  write_records(root.create("tangential"), tangential);
+  kNormalPoints.write(group, runs);
+  kTangentialPoints.write(group, runs);
+  write_records(root.create("normal"), kNormalPoints.joined(runs));
+  write_records(root.create("tangential"), kTangentialPoints.joined(runs));
 }
 
 std::vector<std::string> read_relaxations(const h5::Group& group) {
@@ -95,21 +92,11 @@ std::vector<PackingRun> read_runs(const h5::Group& root, std::size_t packings) {
   const std::vector<std::string> names = read_relaxations(group);
   read_records(group, runs);
   for (const PackingRun& run : runs) (void)below(run.packing, packings, "packing of a run");
-  read_integers(group, "kind", runs, [](auto& r, auto v) {
-    r.kind = below(v, 2, "kind of a run") == 0 ? PairKind::soft_solid : PairKind::soft_soft;
-  });
-  read_integers(group, "relaxation", runs, [&](auto& r, auto v) {
+  read_integers(group, kRelaxationNumber, runs, [&](auto& r, auto v) {
     r.relaxation = names[static_cast<std::size_t>(below(v, names.size(), "relaxation of a run"))];
   });
-  const auto normal = read_points<NormalPoint>(root.open("normal"));
-  const auto tangential = read_points<TangentialPoint>(root.open("tangential"));
-  Slices normal_slices(normal.size());
-  Slices tangential_slices(tangential.size());
-  read_integers(group, "normal_points", runs, [&](auto& r, auto v) { r.normal = take(normal, normal_slices, v); });
-  read_integers(group, "tangential_points", runs,
-                [&](auto& r, auto v) { r.tangential = take(tangential, tangential_slices, v); });
-  normal_slices.finish();
-  tangential_slices.finish();
+  kNormalPoints.read(group, runs, read_points<NormalPoint>(root.open("normal")));
+  kTangentialPoints.read(group, runs, read_points<TangentialPoint>(root.open("tangential")));
   return runs;
 }
 

@@ -38,20 +38,21 @@ struct MomentRow {
 
 void fields(auto&& visit, Of<MomentRow> auto& r) { visit("moment", r.moment, "E Rs^3"); }
 
+constexpr ListColumn kPartners{"partner_count", &MultiContactConfiguration::partners};
+constexpr ListColumn kStages{"stage_count", &MultiContactConfiguration::stages};
+constexpr ListColumn kStageOverlaps{"overlaps", &MultiContactStage::overlap};
+constexpr ListColumn kPoints{"point_count", &MultiContactRun::points};
+
 void write_partners(const h5::Group& group, const std::vector<MultiContactConfiguration>& configurations) {
-  std::vector<MultiContactPartner> all;
-  for (const auto& c : configurations) all.insert(all.end(), c.partners.begin(), c.partners.end());
+  const std::vector<MultiContactPartner> all = kPartners.joined(configurations);
   const h5::Group g = group.create("partners");
   g.attribute("kinds", "0 plane, 1 solid, 2 soft");
-  write_column(g, "on", "1", all, [](const auto& p) { return std::int64_t{p.on} + 1; });  // 0: the centre
   write_records(g, all);
 }
 
 std::vector<MultiContactPartner> read_partners(const h5::Group& group) {
   const h5::Group g = group.open("partners");
   std::vector<MultiContactPartner> all(column_length(g, "kind"));
-  if (g.has("on"))
-    read_integers(g, "on", all, [](auto& p, auto v) { p.on = static_cast<std::int32_t>(below(v, 1000, "on")) - 1; });
   read_records(g, all);
   for (const MultiContactPartner& p : all) {
     constexpr double kUnit = 1e-6;
@@ -63,21 +64,18 @@ std::vector<MultiContactPartner> read_partners(const h5::Group& group) {
 }
 
 void write_stages(const h5::Group& group, const std::vector<MultiContactConfiguration>& configurations) {
-  std::vector<MultiContactStage> all;
-  for (const auto& c : configurations) all.insert(all.end(), c.stages.begin(), c.stages.end());
+  const std::vector<MultiContactStage> all = kStages.joined(configurations);
   const h5::Group g = group.create("stages");
   for (std::size_t k = 0; k < all.size(); ++k) g.attribute("name_" + std::to_string(k), to_string(all[k].move));
   write_records(g, all);
-  write_column(g, "overlaps", "1", all, [](const auto& s) { return s.overlap.size(); });
-  std::vector<double> overlaps;
-  for (const auto& s : all) overlaps.insert(overlaps.end(), s.overlap.begin(), s.overlap.end());
-  g.write("overlap", std::span<const double>(overlaps));
+  kStageOverlaps.write(g, all);
+  g.write("overlap", kStageOverlaps.joined(all));
   g.attribute_of("overlap", "unit", "Rs");
 }
 
 std::vector<MultiContactStage> read_stages(const h5::Group& group) {
   const h5::Group g = group.open("stages");
-  std::vector<MultiContactStage> all(column_length(g, "overlaps"));
+  std::vector<MultiContactStage> all(column_length(g, kStageOverlaps.name));
   for (std::size_t k = 0; k < all.size(); ++k) {
     const std::string name = g.text("name_" + std::to_string(k));
     const auto move = parse_enum<MultiContactMove>(name);
@@ -86,10 +84,7 @@ std::vector<MultiContactStage> read_stages(const h5::Group& group) {
     all[k].move = *move;
   }
   read_records(g, all);
-  const std::vector<double> overlaps = read_numbers(g, "overlap", "Rs", {g.doubles("overlap").size()}, kOverlaps);
-  Slices slices(overlaps.size());
-  read_integers(g, "overlaps", all, [&](auto& s, auto v) { s.overlap = take(overlaps, slices, v); });
-  slices.finish();
+  kStageOverlaps.read(g, all, read_numbers(g, "overlap", "Rs", {g.doubles("overlap").size()}, kOverlaps));
   return all;
 }
 
@@ -97,8 +92,8 @@ void write_configurations(const h5::Group& root, const std::vector<MultiContactC
   const h5::Group g = root.create("configurations");
   for (std::size_t k = 0; k < all.size(); ++k) g.attribute("name_" + std::to_string(k), all[k].name);
   write_records(g, all);
-  write_column(g, "partner_count", "1", all, [](const auto& c) { return c.partners.size(); });
-  write_column(g, "stage_count", "1", all, [](const auto& c) { return c.stages.size(); });
+  kPartners.write(g, all);
+  kStages.write(g, all);
   write_partners(g, all);
   write_stages(g, all);
 }
@@ -122,14 +117,8 @@ std::vector<MultiContactConfiguration> read_configurations(const h5::Group& root
   std::vector<MultiContactConfiguration> all(column_length(g, "centre_free"));
   for (std::size_t k = 0; k < all.size(); ++k) all[k].name = g.text("name_" + std::to_string(k));
   read_records(g, all);
-  const std::vector<MultiContactPartner> partners = read_partners(g);
-  const std::vector<MultiContactStage> stages = read_stages(g);
-  Slices partner_slices(partners.size());
-  Slices stage_slices(stages.size());
-  read_integers(g, "partner_count", all, [&](auto& c, auto v) { c.partners = take(partners, partner_slices, v); });
-  read_integers(g, "stage_count", all, [&](auto& c, auto v) { c.stages = take(stages, stage_slices, v); });
-  partner_slices.finish();
-  stage_slices.finish();
+  kPartners.read(g, all, read_partners(g));
+  kStages.read(g, all, read_stages(g));
   for (const MultiContactConfiguration& c : all) {
     if (c.partners.empty() || c.stages.empty())
       throw IoError("configuration '" + c.name + "' has no neighbours, or no stages");
@@ -297,19 +286,14 @@ MultiContactMeasurements mean_over_orientations(const MultiContactMeasurements& 
 
 void write_multi_contact_runs(const h5::Group& group, const std::vector<MultiContactRun>& runs) {
   write_records(group, runs);
-  write_column(group, "point_count", "1", runs, [](const auto& r) { return r.points.size(); });
-  std::vector<MultiContactPoint> points;
-  for (const MultiContactRun& run : runs) points.insert(points.end(), run.points.begin(), run.points.end());
-  write_points(group, points);
+  kPoints.write(group, runs);
+  write_points(group, kPoints.joined(runs));
 }
 
 std::vector<MultiContactRun> read_multi_contact_runs(const h5::Group& group) {
   std::vector<MultiContactRun> runs(column_length(group, "configuration"));
   read_records(group, runs);
-  const std::vector<MultiContactPoint> points = read_points(group);
-  Slices slices(points.size());
-  read_integers(group, "point_count", runs, [&](auto& r, auto v) { r.points = take(points, slices, v); });
-  slices.finish();
+  kPoints.read(group, runs, read_points(group));
   return runs;
 }
 

@@ -29,9 +29,9 @@ struct LeftOut {};
 inline constexpr LeftOut kLeftOut{};
 
 /// [low, high] of two members under one name, for use in fields().
-void range_field(auto&& visit, const std::string& name, auto& low, auto& high) {
+void range_field(auto&& visit, const std::string& name, auto& low, auto& high, const auto&... options) {
   std::array values{low, high};
-  visit(name, values);
+  visit(name, values, options...);
   if constexpr (!std::is_const_v<std::remove_reference_t<decltype(low)>>) {
     low = values[0];
     high = values[1];
@@ -40,10 +40,6 @@ void range_field(auto&& visit, const std::string& name, auto& low, auto& high) {
 
 namespace json_record {
 
-template <class T>
-inline constexpr bool is_optional = false;
-template <class T>
-inline constexpr bool is_optional<std::optional<T>> = true;
 template <class T>
 inline constexpr bool is_list = false;
 template <class T>
@@ -72,7 +68,7 @@ bool is_left_out(const T& member, const Options&...) {
 template <class T>
 nlohmann::json json_of(const T& value) {
   using nlohmann::json;
-  if constexpr (json_record::is_optional<T>) {
+  if constexpr (is_optional<T>) {
     return value ? json_of(*value) : json(nullptr);
   } else if constexpr (json_record::is_list<T> || json_record::is_array<T>) {
     json out = json::array();
@@ -106,7 +102,7 @@ bool read_json(const nlohmann::json& at, T& value) {
   if constexpr (std::is_same_v<T, nlohmann::json>) {
     value = at;
     return true;
-  } else if constexpr (json_record::is_optional<T>) {
+  } else if constexpr (is_optional<T>) {
     value.reset();
     typename T::value_type inner{};
     if (at.is_null() || !read_json(at, inner)) return at.is_null();

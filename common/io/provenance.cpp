@@ -1,5 +1,7 @@
 #include "common/io/provenance.h"
 
+#include <type_traits>
+
 #include "common/core/error.h"
 #include "softgrain_build.h"
 
@@ -17,14 +19,13 @@ void write_provenance(const h5::Group& root, const Provenance& provenance) {
   const h5::Group group = root.create("provenance");
   group.attribute("schema_version", std::int64_t{kSchemaVersion});
   group.attribute("program", "softgrain");
-  group.attribute("version", provenance.version);
-  group.attribute("commit", provenance.commit);
-  group.attribute("compiler", provenance.compiler);
-  group.attribute("threads", static_cast<std::int64_t>(provenance.threads));
-  group.attribute("seed", static_cast<std::int64_t>(provenance.seed));
-  group.attribute("command", provenance.command);
-  if (!provenance.kind.empty()) group.attribute("kind", provenance.kind);
-  group.attribute("scene", provenance.scene);
+  const auto write = [&group](const char* name, const auto& value) {
+    if constexpr (std::is_integral_v<std::remove_cvref_t<decltype(value)>>)
+      group.attribute(name, static_cast<std::int64_t>(value));
+    else
+      group.attribute(name, value);
+  };
+  fields(write, provenance, !provenance.kind.empty());
 }
 
 void write_format(const h5::Group& root, const std::string& format) {

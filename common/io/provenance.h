@@ -22,13 +22,15 @@ struct Provenance {
   std::string scene;    ///< whole scene, overrides applied
 };
 
-void fields(auto&& visit, Of<Provenance> auto& p) {
+/// `with_kind`: as files have it; the summary of a run has its kind elsewhere.
+void fields(auto&& visit, Of<Provenance> auto& p, bool with_kind = false) {
   visit("version", p.version);
   visit("commit", p.commit);
   visit("compiler", p.compiler);
   visit("threads", p.threads);
   visit("seed", p.seed);
   visit("command", p.command);
+  if (with_kind) visit("kind", p.kind);
   visit("scene", p.scene);
 }
 

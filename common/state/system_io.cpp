@@ -1,11 +1,14 @@
 #include "common/state/system_io.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
+#include <tuple>
 
 #include "common/core/error.h"
 #include "common/data/attributes.h"
+#include "common/data/rows.h"
 #include "common/neighbours/verlet_list.h"
 
 namespace softgrain {
@@ -64,27 +67,77 @@ std::vector<std::int32_t> read_slots(const h5::Group& g, const std::string& name
   return out;
 }
 
+/// Size of the list of ids: that of the grains, or none where ids equal slots.
+struct Ids {
+  std::int32_t grains = 0;
+};
+
+/// Size of an array that some systems have.
+struct SomeHave {
+  std::size_t size = 0;
+};
+
+/// Writes the arrays of a state; what says how they are read back follows them.
+struct StateWriter {
+  const h5::Group& g;
+
+  void operator()(const std::string& name, const std::vector<double>& values, const auto&...) const {
+    g.write(name, values);
+  }
+  void operator()(const std::string& name, const std::vector<double>& values, const SomeHave&) const {
+    if (!values.empty()) g.write(name, values);
+  }
+  void operator()(const std::string& name, const std::vector<std::int32_t>& values, const auto&...) const {
+    write_slots(g, name, values);
+  }
+  template <int D>
+  void operator()(const std::string& name, const std::vector<Sphere<D>>& values, const auto&...) const {
+    std::vector<Vec<D + 1>> spheres(values.size());
+    for (std::size_t u = 0; u < spheres.size(); ++u) {
+      for (int k = 0; k < D; ++k) spheres[u][k] = values[u].x[k];
+      spheres[u][D] = values[u].r;
+    }
+    write_vectors(g, name, spheres);
+  }
+  template <class V>
+  requires requires(V one) { one.v; }
+  void operator()(const std::string& name, const std::vector<V>& values, const auto&...) const {
+    write_vectors(g, name, values);
+  }
+  template <int D>
+  void operator()(const std::string& name, const Matrix<D>& matrix) const {
+    write_vectors(g, name, std::vector<Vec<D>>{matrix.row.begin(), matrix.row.end()});
+  }
+  template <std::size_t kLength>
+  void operator()(const std::string& name, const std::array<bool, kLength>& flags) const {
+    g.write(name, std::vector<Count>(flags.begin(), flags.end()));
+  }
+};
+
+/// The arrays of bodies, in the order of the file: how many there are of each, and within which limits indices lie.
+template <int D>
+void body_arrays(auto&& visit, auto& p, Count materials) {
+  const auto bodies = static_cast<std::size_t>(p.size());
+  const auto planes = static_cast<std::size_t>(p.planes);
+  visit("sphere", p.sphere, bodies);
+  visit("velocity", p.velocity, bodies);
+  visit("spin", p.spin, bodies);
+  visit("force", p.force, bodies);
+  visit("torque", p.torque, bodies);
+  visit("inverse_mass", p.inverse_mass, bodies);
+  visit("inverse_inertia", p.inverse_inertia, bodies);
+  visit("material", p.material, bodies, Count{0}, materials);
+  visit("shell", p.shell, bodies, Count{-1}, Count{p.size()});
+  visit("id", p.id, Ids{p.grains});
+  visit("plane_normal", p.plane_normal, planes);
+  visit("plane_load", p.plane_load, planes);
+  visit("largest_volume", p.largest_volume, SomeHave{bodies});
+}
+
 template <int D>
 void write_bodies(const h5::Group& g, const Particles<D>& p) {
-  std::vector<Vec<D + 1>> spheres(p.sphere.size());
-  for (std::size_t u = 0; u < spheres.size(); ++u) {
-    for (int k = 0; k < D; ++k) spheres[u][k] = p.sphere[u].x[k];
-    spheres[u][D] = p.sphere[u].r;
-  }
   g.write("counts", std::vector<Count>{p.grains, p.shells, p.planes});
-  write_vectors(g, "sphere", spheres);
-  write_vectors(g, "velocity", p.velocity);
-  write_vectors(g, "spin", p.spin);
-  write_vectors(g, "force", p.force);
-  write_vectors(g, "torque", p.torque);
-  g.write("inverse_mass", p.inverse_mass);
-  g.write("inverse_inertia", p.inverse_inertia);
-  write_slots(g, "material", p.material);
-  write_slots(g, "shell", p.shell);
-  write_slots(g, "id", p.id);
-  write_vectors(g, "plane_normal", p.plane_normal);
-  g.write("plane_load", p.plane_load);
-  if (!p.largest_volume.empty()) g.write("largest_volume", p.largest_volume);
+  body_arrays<D>(StateWriter{g}, p, 0);
 }
 
 template <int D>
@@ -134,64 +187,71 @@ void require_shells(const Particles<D>& p) {
   }
 }
 
+/// Reads them into members of the right length. Throws IoError.
+struct StateReader {
+  const h5::Group& g;
+
+  void operator()(const std::string& name, std::vector<double>& values, std::size_t size) const {
+    values = read_numbers(g, name, size);
+  }
+  void operator()(const std::string& name, std::vector<double>& values, const SomeHave& some) const {
+    values = g.has(name) ? read_numbers(g, name, some.size) : std::vector<double>{};
+  }
+  void operator()(const std::string& name, std::vector<std::int32_t>& values, std::size_t size, Count low,
+                  Count high) const {
+    values = read_slots(g, name, size, low, high);
+  }
+  void operator()(const std::string&, std::vector<std::int32_t>& values, const Ids& ids) const {
+    values = read_ids(g, ids.grains);
+  }
+  template <int D>
+  void operator()(const std::string& name, std::vector<Sphere<D>>& values, std::size_t size) const {
+    const auto spheres = read_vectors<D + 1>(g, name, size);
+    values.resize(size);
+    for (std::size_t u = 0; u < size; ++u) {
+      for (int k = 0; k < D; ++k) values[u].x[k] = spheres[u][k];
+      values[u].r = spheres[u][D];
+    }
+  }
+  template <class V>
+  requires requires(V one) { one.v; }
+  void operator()(const std::string& name, std::vector<V>& values, std::size_t size) const {
+    values = read_vectors<static_cast<int>(std::tuple_size_v<decltype(V{}.v)>), V>(g, name, size);
+  }
+  template <int D>
+  void operator()(const std::string& name, Matrix<D>& matrix) const {
+    const auto rows = read_vectors<D>(g, name, D);
+    std::copy(rows.begin(), rows.end(), matrix.row.begin());
+  }
+  template <std::size_t kLength>
+  void operator()(const std::string& name, std::array<bool, kLength>& flags) const {
+    const auto values = read_slots(g, name, kLength, 0, 2);
+    for (std::size_t k = 0; k < kLength; ++k) flags[k] = values[k] != 0;
+  }
+};
+
 template <int D>
 void read_bodies(const h5::Group& g, Particles<D>& p, Count materials) {
-  constexpr int kTurns = static_cast<int>(sizeof(Rot<D>) / sizeof(double));
   read_counts(g, p);
-  const auto n = static_cast<std::size_t>(p.size());
-  const auto spheres = read_vectors<D + 1>(g, "sphere", n);
-  p.sphere.resize(n);
-  for (std::size_t u = 0; u < n; ++u) {
-    for (int k = 0; k < D; ++k) p.sphere[u].x[k] = spheres[u][k];
-    p.sphere[u].r = spheres[u][D];
-  }
+  body_arrays<D>(StateReader{g}, p, materials);
   require_places(p);
-  p.velocity = read_vectors<D, Stored<D>>(g, "velocity", n);
-  p.spin = read_vectors<kTurns, Stored<kTurns>>(g, "spin", n);
-  p.force = read_vectors<D, Stored<D>>(g, "force", n);
-  p.torque = read_vectors<kTurns, Stored<kTurns>>(g, "torque", n);
-  p.inverse_mass = read_numbers(g, "inverse_mass", n);
-  p.inverse_inertia = read_numbers(g, "inverse_inertia", n);
-  p.material = read_slots(g, "material", n, 0, materials);
-  p.shell = read_slots(g, "shell", n, -1, p.size());
   require_shells(p);
-  p.id = read_ids(g, p.grains);
-  p.plane_normal = read_vectors<D>(g, "plane_normal", static_cast<std::size_t>(p.planes));
-  p.plane_load = read_numbers(g, "plane_load", static_cast<std::size_t>(p.planes));
-  p.largest_volume = g.has("largest_volume") ? read_numbers(g, "largest_volume", n) : std::vector<double>{};
   const auto is_volume = [](double volume) { return volume >= 0.0 && volume <= kMostLength; };
   if (!std::all_of(p.largest_volume.begin(), p.largest_volume.end(), is_volume)) damaged("largest_volume");
 }
 
-template <int D>
-std::vector<Vec<D>> rows(const Matrix<D>& m) {
-  return {m.row.begin(), m.row.end()};
-}
-
-template <int D>
-Matrix<D> read_matrix(const h5::Group& g, const std::string& name) {
-  const auto values = read_vectors<D>(g, name, D);
-  Matrix<D> m;
-  for (std::size_t k = 0; k < D; ++k) m.row[k] = values[k];
-  return m;
-}
-
-template <int D>
-void write_cell(const h5::Group& g, const Cell<D>& cell) {
-  write_vectors(g, "edges", rows(cell.edges));
-  write_vectors(g, "velocity_gradient", rows(cell.velocity_gradient));
-  g.write("periodic", std::vector<Count>(cell.periodic.begin(), cell.periodic.end()));
+void cell_parts(auto&& visit, auto& cell) {
+  visit("edges", cell.edges);
+  visit("velocity_gradient", cell.velocity_gradient);
+  visit("periodic", cell.periodic);
 }
 
 template <int D>
 void read_cell(const h5::Group& g, Cell<D>& cell) {
-  cell.edges = read_matrix<D>(g, "edges");
+  cell_parts(StateReader{g}, cell);
   for (int r = 0; r < D; ++r)
     for (int c = 0; c < D; ++c)
       if (r == c ? !is_length(cell.edges[r][c]) : !(std::abs(cell.edges[r][c]) <= kMostLength)) damaged("edges");
-  cell.velocity_gradient = read_matrix<D>(g, "velocity_gradient");
-  const auto periodic = read_slots(g, "periodic", D, 0, 2);
-  for (std::size_t k = 0; k < D; ++k) cell.periodic[k] = periodic[k] != 0;
 }
 
 void neighbour_counts(auto&& visit, auto& n) {
@@ -200,52 +260,67 @@ void neighbour_counts(auto&& visit, auto& n) {
   visit("hasty", n.short_lived, kLater);
 }
 
+/// What the list was built with; nothing before the first build.
+void build_arrays(auto&& visit, auto& n, std::size_t listed) {
+  visit("reference", n.reference, listed);
+  visit("skin", n.skin, listed);
+  visit("reference_edges", n.reference_edges);
+}
+
 template <int D>
 void write_neighbours(const h5::Group& g, const NeighbourState<D>& n) {
-  write_vectors(g, "reference", n.reference);
-  g.write("skin", n.skin);
-  write_vectors(g, "reference_edges", rows(n.reference_edges));
+  build_arrays(StateWriter{g}, n, n.skin.size());
   neighbour_counts(AttributeWriter{g}, n);
 }
 
 template <int D>
 void read_neighbours(const h5::Group& g, NeighbourState<D>& n, std::size_t bodies) {
-  const std::size_t listed = g.doubles("skin").size();  // none before the first build
+  const std::size_t listed = g.doubles("skin").size();
   if (listed != 0 && listed != bodies) damaged("skin");
-  n.reference = read_vectors<D>(g, "reference", listed);
-  n.skin = read_numbers(g, "skin", listed);
+  build_arrays(StateReader{g}, n, listed);
   if (!std::all_of(n.skin.begin(), n.skin.end(), is_length)) damaged("skin");
-  n.reference_edges = read_matrix<D>(g, "reference_edges");
   n.short_lived = 0;
   neighbour_counts(AttributeReader{g}, n);
 }
 
+/// The pairs, with the limits of their indices.
 template <int D>
-void write_contacts(const h5::Group& g, const ContactList<D>& list) {
-  write_slots(g, "i", list.i);
-  write_slots(g, "j", list.j);
-  write_slots(g, "image", list.image);
-  std::vector<Count> sections;
-  for (const ContactSection& s : list.sections)
-    sections.insert(sections.end(), {s.begin, s.end, static_cast<Count>(s.geometry), s.law});
-  g.write("sections", sections, {list.sections.size(), 4});
-  write_vectors(g, "spring", list.spring);
-  g.write("memory", list.memory);
-  if (list.has_roll) write_vectors(g, "roll", list.roll);
+void pair_arrays(auto&& visit, auto& list, std::size_t pairs, const Particles<D>& p) {
+  visit("i", list.i, pairs, Count{0}, Count{p.grains});
+  visit("j", list.j, pairs, Count{0}, Count{p.size()});
+  visit("image", list.image, pairs, Count{0}, Count{image_count<D>()});
+}
+
+constexpr auto kSection = [](auto&& visit, auto& s) {
+  visit(s.begin);
+  visit(s.end);
+  visit(s.geometry);
+  visit(s.law);
+};
+
+/// The history of the pairs, as far as laws have one.
+void history_arrays(auto&& visit, auto& list) {
+  const auto pairs = static_cast<std::size_t>(list.size());
+  visit("spring", list.spring, list.has_spring ? pairs : 0);
+  visit("memory", list.memory, list.has_memory ? pairs : 0);
+  if (list.has_roll) visit("roll", list.roll, pairs);
+}
+
+template <int D>
+void write_contacts(const h5::Group& g, const ContactList<D>& list, const Particles<D>& p) {
+  pair_arrays(StateWriter{g}, list, list.i.size(), p);
+  write_rows(g, "sections", list.sections, kSection);
+  history_arrays(StateWriter{g}, list);
 }
 
 void read_sections(const h5::Group& g, std::vector<ContactSection>& sections, Count pairs, Count laws) {
-  const std::vector<Count> values = g.integers("sections");
-  if (values.size() % 4 != 0) damaged("sections");
+  sections = records_in_rows<ContactSection>(g, "sections", kSection);
   Count end = 0;
-  sections.clear();
-  for (std::size_t k = 0; k < values.size(); k += 4) {
-    const bool valid = values[k] == end && values[k + 1] > end && values[k + 2] >= 0 && values[k + 2] < 3 &&
-                       values[k + 3] >= 0 && values[k + 3] < laws;
-    if (!valid) damaged("sections");
-    end = values[k + 1];
-    sections.push_back({static_cast<std::int32_t>(values[k]), static_cast<std::int32_t>(end),
-                        static_cast<Geometry>(values[k + 2]), static_cast<std::int32_t>(values[k + 3])});
+  for (const ContactSection& s : sections) {
+    const auto geometry = static_cast<Count>(s.geometry);
+    if (s.begin != end || s.end <= end || geometry < 0 || geometry > 2 || s.law < 0 || s.law >= laws)
+      damaged("sections");
+    end = s.end;
   }
   if (end != pairs) damaged("sections");
 }
@@ -266,16 +341,11 @@ void require_partners(const ContactList<D>& list, const Particles<D>& p) {
 template <int D>
 void read_contacts(const h5::Group& g, System<D>& s) {
   ContactList<D>& list = s.contacts;
-  const std::size_t pairs = g.integers("i").size();
-  list.i = read_slots(g, "i", pairs, 0, s.particles.grains);
-  list.j = read_slots(g, "j", pairs, 0, s.particles.size());
-  list.image = read_slots(g, "image", pairs, 0, image_count<D>());
+  pair_arrays(StateReader{g}, list, g.integers("i").size(), s.particles);
   read_sections(g, list.sections, list.size(), s.laws.size());
   require_partners(list, s.particles);
   adopt_list(s);
-  list.spring = read_vectors<D, Stored<D>>(g, "spring", list.has_spring ? pairs : 0);
-  list.memory = read_numbers(g, "memory", list.has_memory ? pairs : 0);
-  if (list.has_roll) list.roll = read_vectors<D, Stored<D>>(g, "roll", pairs);
+  history_arrays(StateReader{g}, list);
 }
 
 void clock_and_counters(auto&& visit, auto& s) {
@@ -291,9 +361,9 @@ void clock_and_counters(auto&& visit, auto& s) {
 template <int D>
 void write_system(const h5::Group& group, const System<D>& s) {
   write_bodies(group.create("bodies"), s.particles);
-  write_cell(group.create("cell"), s.cell);
+  cell_parts(StateWriter{group.create("cell")}, s.cell);
   write_neighbours(group.create("neighbours"), s.neighbours);
-  write_contacts(group.create("contacts"), s.contacts);
+  write_contacts(group.create("contacts"), s.contacts, s.particles);
   write_vectors(group, "gravity", std::vector<Vec<D>>{s.gravity});
   group.attribute("dimension", Count{D});
   clock_and_counters(AttributeWriter{group}, s);

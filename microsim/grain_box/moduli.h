@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "common/core/enum_names.h"
 #include "common/core/vec.h"
 
 namespace softgrain {
@@ -39,6 +40,14 @@ struct PowerFit {
   double prefactor = 0.0;
   std::size_t points = 0;
 };
+
+void fields(auto&& visit, Of<PowerFit> auto& f) {
+  visit("exponent", f.exponent);
+  visit("standard_error", f.standard_error);
+  visit("prefactor", f.prefactor);
+  visit("points", f.points);
+}
+
 /// Fits the points with low <= x <= high and finite positive y.
 [[nodiscard]] PowerFit fit_power(const std::vector<double>& x, const std::vector<double>& y, double low, double high);
 

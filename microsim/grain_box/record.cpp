@@ -9,6 +9,7 @@
 #include "common/core/limits.h"
 #include "common/data/attributes.h"
 #include "common/data/columns.h"
+#include "common/data/rows.h"
 
 namespace softgrain {
 
@@ -107,22 +108,24 @@ std::vector<BoxFailure> read_failures(const h5::Group& g) {
   return failures;
 }
 
-void write_fit(const h5::Group& g, const std::string& name, const PowerFit& fit) {
-  g.attribute(name + "_exponent", fit.exponent);
-  g.attribute(name + "_standard_error", fit.standard_error);
-  g.attribute(name + "_prefactor", fit.prefactor);
-  g.attribute(name + "_points", static_cast<std::int64_t>(fit.points));
-}
+/// Ranges of the fits, low and high, a row each.
+constexpr auto kRanges = [](auto&& visit, auto& fit) {
+  visit(fit.low);
+  visit(fit.high);
+};
+constexpr auto kRadii = [](auto&& visit, auto& material) {
+  visit(material.radius_min);
+  visit(material.radius_max);
+};
 
 void write_fits(const h5::Group& g, const GrainBoxResult& result) {
+  const AttributeWriter write{g};
+  const auto write_fit = [&](const std::string& name, const PowerFit& fit) {
+    fields([&](const char* number, const auto& value) { write(name + "_" + number, value); }, fit);
+  };
   const GrainBoxFits fits = fit_growth(result);
-  write_fit(g, "K_low", fits.bulk_low);
-  write_fit(g, "K_high", fits.bulk_high);
-  write_fit(g, "G_low", fits.shear_low);
-  write_fit(g, "G_high", fits.shear_high);
-  const GrainBoxFit& range = result.spec.fit;
-  const double ranges[] = {range.low[0], range.low[1], range.high[0], range.high[1]};
-  g.write("ranges", std::span<const double>(ranges), {2, 2});
+  fields(write_fit, fits);
+  g.write("ranges", flat_rows<double>(std::span(&result.spec.fit, 1), kRanges), {2, 2});
   g.attribute_of("ranges", "unit", "Pa");
 }
 
@@ -130,8 +133,7 @@ void write_box_spec(const h5::Group& g, const GrainBoxSpec& spec) {
   write_attributes(g, spec);
   if (!spec.generation.lower_pressures.empty())
     g.write("generation_lower_pressures_Pa", std::span<const double>(spec.generation.lower_pressures));
-  const double radii[] = {spec.material.radius_min, spec.material.radius_max};
-  g.write("radii", std::span<const double>(radii));
+  write_row(g, "radii", spec.material, kRadii);
   g.attribute_of("radii", "unit", "m");
   g.write("increments", std::span<const double>(spec.loading.increments));
 }
@@ -145,16 +147,9 @@ GrainBoxSpec read_box_spec(const h5::Group& g) {
   if (spec.of.empty()) spec.of = spec.name;
   if (g.has("generation_lower_pressures_Pa"))
     spec.generation.lower_pressures = g.doubles("generation_lower_pressures_Pa");
-  if (g.has("radii")) {
-    const std::vector<double> radii = g.doubles("radii");
-    if (radii.size() != 2) throw IoError("data set 'radii' has a wrong length");
-    spec.material.radius_min = radii[0];
-    spec.material.radius_max = radii[1];
-  }
+  if (g.has("radii")) read_row(g, "radii", spec.material, kRadii);
   spec.loading.increments = g.doubles("increments");
-  const std::vector<double> ranges = g.open("fits").doubles("ranges");
-  if (ranges.size() != 4) throw IoError("data set 'ranges' has a wrong length");
-  spec.fit = {{ranges[0], ranges[1]}, {ranges[2], ranges[3]}};
+  read_row(g.open("fits"), "ranges", spec.fit, kRanges);
   return spec;
 }
 

@@ -87,6 +87,14 @@ struct GrainBoxFits {
   PowerFit shear_low;
   PowerFit shear_high;
 };
+
+void fields(auto&& visit, Of<GrainBoxFits> auto& f) {
+  visit("K_low", f.bulk_low);
+  visit("K_high", f.bulk_high);
+  visit("G_low", f.shear_low);
+  visit("G_high", f.shear_high);
+}
+
 [[nodiscard]] GrainBoxFits fit_growth(const GrainBoxResult& result);
 
 void write_state(const h5::Group& group, const GrainBoxState& state);

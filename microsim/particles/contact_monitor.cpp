@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/core/error.h"
+#include "common/data/rows.h"
 #include "common/dynamics/pair_loop.h"
 
 namespace softgrain {
@@ -32,6 +32,26 @@ double signed_overlap(const System<D>& s, std::size_t c) {
   if (j >= p.grains) return norm(a.x - b.x) - (b.r - a.r);
   return a.r + b.r - norm(a.x - b.x - s.cell.image_shift(s.contacts.image[c]));
 }
+
+// What stands in a row of each data set of a checkpoint.
+
+constexpr auto kPair = [](auto&& visit, auto& entry) {
+  visit(entry.first.first);
+  visit(entry.first.second);
+  visit(entry.second.count);
+};
+constexpr auto kNumbers = [](auto&& visit, auto& entry) {
+  auto& w = entry.second;
+  visit(w.duration);
+  visit(w.begin);
+  visit(w.seen);
+  visit(w.overlap);
+  for (auto* peak : {&w.force, &w.depth}) {
+    visit(peak->before);
+    visit(peak->last);
+    visit(peak->top);
+  }
+};
 
 }  // namespace
 
@@ -108,29 +128,18 @@ std::vector<ContactHistory> ContactMonitor::histories() const {
 }
 
 void ContactMonitor::save(const h5::Group& group) const {
-  std::vector<std::int64_t> pairs;
-  std::vector<double> numbers;
-  for (const auto& [key, w] : watched_) {
-    pairs.insert(pairs.end(), {key.first, key.second, w.count});
-    numbers.insert(numbers.end(), {w.duration, w.begin, w.seen, w.overlap, w.force.before, w.force.last, w.force.top,
-                                   w.depth.before, w.depth.last, w.depth.top});
-  }
-  group.write("pairs", pairs, {watched_.size(), 3});
-  group.write("numbers", numbers, {watched_.size(), 10});
+  const std::vector<Entry> entries(watched_.begin(), watched_.end());
+  write_rows(group, "pairs", entries, kPair);
+  write_rows(group, "numbers", entries, kNumbers);
 }
 
 void ContactMonitor::load(const h5::Group& group) {
-  const std::vector<std::int64_t> pairs = group.integers("pairs");
-  const std::vector<double> v = group.doubles("numbers");
-  if (pairs.size() % 3 != 0 || v.size() != pairs.size() / 3 * 10) throw IoError("saved contacts do not fit together");
+  auto entries = records_in_rows<Entry>(group, "pairs", kPair);
+  read_rows(group, "numbers", entries, kNumbers);
   watched_.clear();
+  watched_.insert(entries.begin(), entries.end());
   of_contact_.clear();
   build_ = 0;
-  for (std::size_t k = 0; k < pairs.size() / 3; ++k) {
-    const double* n = v.data() + 10 * k;
-    watched_[{static_cast<Slot>(pairs[3 * k]), static_cast<Slot>(pairs[3 * k + 1])}] =
-        Watched{pairs[3 * k + 2], n[0], n[1], n[2], n[3], {n[4], n[5], n[6]}, {n[7], n[8], n[9]}};
-  }
 }
 
 }  // namespace softgrain

@@ -55,6 +55,7 @@ class ContactMonitor {
     Peak depth;
   };
   using Key = std::pair<Slot, Slot>;
+  using Entry = std::pair<Key, Watched>;  ///< a pair and its history, as checkpoints hold them
 
   template <int D>
   void match_list(const ContactList<D>& contacts);

@@ -7,6 +7,7 @@
 #include "common/core/error.h"
 #include "common/core/limits.h"
 #include "common/core/vec.h"
+#include "common/data/rows.h"
 #include "common/dynamics/verlet.h"
 #include "common/io/scene.h"
 
@@ -73,14 +74,27 @@ std::string body(const System<D>& s, Slot slot) {
   return "particle " + std::to_string(id.empty() ? slot : id[at(slot)]);
 }
 
-void write_record(const h5::Group& g, const std::string& name, const GuardRecord& r) {
-  g.write(name, std::vector<double>{r.worst, static_cast<double>(r.count), r.first_time});
-}
+// What stands in a row of each data set of a checkpoint.
 
-GuardRecord read_record(const h5::Group& g, const std::string& name) {
-  const std::vector<double> v = g.doubles(name);
-  if (v.size() != 3) throw IoError("checkpoint: guard '" + name + "' has a wrong size");
-  return {v[0], static_cast<std::int64_t>(v[1]), v[2]};
+constexpr auto kRecord = [](auto&& visit, auto& r) {
+  visit(r.worst);
+  visit(r.count);
+  visit(r.first_time);
+};
+constexpr auto kLookCounts = [](auto&& visit, auto& report) {
+  visit(report.looks);
+  visit(report.laws.evaluations);
+  visit(report.laws.beyond);
+  visit(report.laws.rejected);
+  visit(report.laws.clamped);
+};
+
+/// The four records, by the names of their data sets.
+void guard_records(auto&& visit, auto& report) {
+  visit("overlap", report.overlap);
+  visit("energy", report.energy);
+  visit("escape", report.escape);
+  visit("wall_travel", report.wall_travel);
 }
 
 }  // namespace
@@ -243,30 +257,27 @@ void Guards<D>::look(const System<D>& s) {
 }
 
 template <int D>
+struct Guards<D>::Numbers {
+  void operator()(auto&& visit, auto& guards) const {
+    visit(guards.least_);
+    visit(guards.scale_);
+    visit(guards.report_.laws.max_range_ratio);
+  }
+};
+
+template <int D>
 void Guards<D>::save(const h5::Group& g) const {
-  write_record(g, "overlap", report_.overlap);
-  write_record(g, "energy", report_.energy);
-  write_record(g, "escape", report_.escape);
-  write_record(g, "wall_travel", report_.wall_travel);
-  const LawUse& l = report_.laws;
-  g.write("laws", std::vector<std::int64_t>{report_.looks, l.evaluations, l.beyond, l.rejected, l.clamped});
-  g.write("numbers", std::vector<double>{least_, scale_, l.max_range_ratio});
+  guard_records([&](const char* name, const GuardRecord& record) { write_row(g, name, record, kRecord); }, report_);
+  write_row(g, "laws", report_, kLookCounts);
+  write_row(g, "numbers", *this, Numbers{});
   g.attribute("energy_unwatched", report_.energy_unwatched);
 }
 
 template <int D>
 void Guards<D>::load(const h5::Group& g) {
-  report_.overlap = read_record(g, "overlap");
-  report_.energy = read_record(g, "energy");
-  report_.escape = read_record(g, "escape");
-  report_.wall_travel = read_record(g, "wall_travel");
-  const std::vector<std::int64_t> l = g.integers("laws");
-  const std::vector<double> n = g.doubles("numbers");
-  if (l.size() != 5 || n.size() != 3) throw IoError("checkpoint: guards have a wrong size");
-  report_.looks = l[0];
-  report_.laws = {l[1], l[2], n[2], l[3], l[4]};
-  least_ = n[0];
-  scale_ = n[1];
+  guard_records([&](const char* name, GuardRecord& record) { read_row(g, name, record, kRecord); }, report_);
+  read_row(g, "laws", report_, kLookCounts);
+  read_row(g, "numbers", *this, Numbers{});
   report_.energy_unwatched = g.text("energy_unwatched");
 }
 

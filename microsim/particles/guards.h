@@ -84,6 +84,8 @@ class Guards {
   void load(const h5::Group& group);
 
  private:
+  struct Numbers;
+
   void note(const GuardRule& rule, double value, double time, GuardRecord& record, const std::string& what);
   void look_at_energy(const System<D>& s, const ContactWatch<D>& watch);
   void look_at_grains(const System<D>& s, const ContactWatch<D>& watch);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/enum_names.h"
 #include "common/dynamics/stress_cell.h"
 #include "common/state/run_control.h"
 #include "microsim/powder/powder_contacts.h"
@@ -100,6 +101,18 @@ struct PowderStage {
   double bulk = 0.0;   ///< bulk modulus, as in PowderModuli; NaN: not defined
   double shear = 0.0;  ///< shear modulus, as in PowderModuli; NaN: not defined
 };
+
+/// Without the phase, by the names of summaries.
+void fields(auto&& visit, Of<PowderStage> auto& s) {
+  visit("pressure", s.pressure);
+  visit("time", s.time);
+  visit("Phi", s.fraction);
+  visit("z", s.coordination);
+  visit("mean_repulsive", s.mean_repulsive);
+  visit("mean_tensile", s.mean_tensile);
+  visit("bulk", s.bulk);
+  visit("shear", s.shear);
+}
 
 /// Everything a sample needs to go on.
 struct PowderState {

@@ -5,8 +5,7 @@
 
 #include "common/core/error.h"
 #include "common/data/attributes.h"
-#include "common/data/columns.h"
-#include "common/data/fields.h"
+#include "common/data/rows.h"
 #include "common/io/hdf5_file.h"
 #include "common/packing/grading_scene.h"
 #include "common/state/system_io.h"
@@ -99,27 +98,28 @@ PowderSpec read_powder_spec(const h5::Group& group) {
   return spec;
 }
 
-void fields(auto&& visit, Of<PowderPoint> auto& p) {
-  visit("phase", p.phase, "1");
-  visit("time", p.time, "T0");
-  visit("fraction", p.fraction, "1");
-  visit("coordination", p.coordination, "1");
-  visit("kinetic", p.kinetic, "1");
-  visit("stress_x", p.stress.v[0], "1");
-  visit("stress_y", p.stress.v[1], "1");
-}
+namespace {
 
-void fields(auto&& visit, Of<PowderStage> auto& s) {
-  visit("phase", s.phase, "1");
-  visit("pressure", s.pressure, "1");
-  visit("time", s.time, "T0");
-  visit("fraction", s.fraction, "1");
-  visit("coordination", s.coordination, "1");
-  visit("mean_repulsive", s.mean_repulsive, "1");
-  visit("mean_tensile", s.mean_tensile, "1");
-  visit("bulk", s.bulk, "1");
-  visit("shear", s.shear, "1");
-}
+// Rows of a point of the course and of a stage, with the words for people that stand beside them.
+
+constexpr const char* kPointWords = "phase, time [T0], Phi, z, kinetic energy per disk, stress x, stress y";
+constexpr auto kPointRow = [](auto&& visit, auto& p) {
+  visit(p.phase);
+  visit(p.time);
+  visit(p.fraction);
+  visit(p.coordination);
+  visit(p.kinetic);
+  visit(p.stress);
+};
+
+constexpr const char* kStageWords =
+    "phase, imposed pressure, time [T0], Phi, z, mean repulsive and mean tensile force, bulk and shear modulus";
+constexpr auto kStageRow = [](auto&& visit, auto& s) {
+  visit(s.phase);
+  fields([&visit](const char*, auto& member, const auto&...) { visit(member); }, s);
+};
+
+}  // namespace
 
 /// The numbers of a state beside its lists.
 void fields(auto&& visit, Of<PowderState> auto& s) {
@@ -138,23 +138,22 @@ void fields(auto&& visit, Of<PowderState> auto& s) {
 }
 
 void write_powder_state(const h5::Group& group, const PowderState& state) {
-  group.attribute("columns", std::string("phase, time [T0], Phi, z, kinetic energy per disk, stress x, stress y"));
-  group.write("course", rows_of(state.points), {state.points.size(), columns_of<PowderPoint>().size()});
-  group.attribute("stage_columns", std::string("phase, imposed pressure, time [T0], Phi, z, mean repulsive and mean "
-                                               "tensile force, bulk and shear modulus"));
-  group.write("stages", rows_of(state.stages), {state.stages.size(), columns_of<PowderStage>().size()});
+  group.attribute("columns", kPointWords);
+  write_rows(group, "course", state.points, kPointRow);
+  group.attribute("stage_columns", kStageWords);
+  write_rows(group, "stages", state.stages, kStageRow);
   write_attributes(group.create("progress"), state);
   if (!state.snapshots.time.empty()) write_trajectory(group.create("trajectory"), state.snapshots, powder_frames());
   write_system(group.create("system"), state.system);
 }
 
 std::vector<PowderPoint> read_course(const h5::Group& group) {
-  return records_of<PowderPoint>(group.doubles("course"));
+  return records_in_rows<PowderPoint>(group, "course", kPointRow);
 }
 
 std::vector<PowderStage> read_stages(const h5::Group& group) {
   if (!group.has("stages")) return {};
-  return records_of<PowderStage>(group.doubles("stages"));
+  return records_in_rows<PowderStage>(group, "stages", kStageRow);
 }
 
 void read_powder_state(const h5::Group& group, PowderState& state) {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 #include "common/data/soft_particle_schema.h"
 
@@ -43,6 +45,21 @@ void note_sizes(const SoftParticleSpec& candidate, const SoftParticleSpec& refer
 
 std::string radii(const MacroStart& s) { return fmt::format("{:.6g} to {:.6g} m", s.radius_min, s.radius_max); }
 
+/// Properties of grains that are compared, by what they are called.
+using Properties = std::vector<std::pair<const char*, double>>;
+
+Properties properties(const auto& each_field) {
+  Properties out;
+  each_field([&out](const char*, const auto& member, const auto&... options) {
+    const auto take = [&](const auto& option) {
+      if constexpr (std::is_same_v<std::remove_cvref_t<decltype(option)>, Compared>)
+        out.emplace_back(option.what, member);
+    };
+    (take(options), ...);
+  });
+  return out;
+}
+
 void note_start(const MacroCurve& candidate, const MacroCurve& reference, Differences& out) {
   const MacroStart& a = candidate.start;
   const MacroStart& b = reference.start;
@@ -58,13 +75,13 @@ void note_start(const MacroCurve& candidate, const MacroCurve& reference, Differ
     (candidate.twin().has_value() == reference.twin().has_value() ? out.said : out.obstacles)
         .emplace_back("bodies start elsewhere: another seed, sample or preparation");
   }
-  note(out.obstacles, "E of the grains [Pa]", a.youngs_modulus, b.youngs_modulus);
-  note(out.obstacles, "nu of the grains", a.poisson_ratio, b.poisson_ratio);
-  note(out.obstacles, "mu of the grains", a.friction, b.friction);
-  note(out.obstacles, "mu of the walls", a.wall_friction, b.wall_friction);
-  note(out.obstacles, "mu_r of the grains", a.rolling.friction, b.rolling.friction);
-  if (a.rolling.friction > 0.0 && b.rolling.friction > 0.0)
-    note(out.obstacles, "kr_ratio of the grains", a.rolling.stiffness, b.rolling.stiffness);
+  const auto note_each = [&](const Properties& of_a, const Properties& of_b) {
+    for (std::size_t k = 0; k < std::min(of_a.size(), of_b.size()); ++k)
+      note(out.obstacles, of_a[k].first, of_a[k].second, of_b[k].second);
+  };
+  note_each(properties([&](auto&& visit) { fields(visit, a); }), properties([&](auto&& visit) { fields(visit, b); }));
+  note_each(properties([&](auto&& visit) { rolling_fields(visit, a.rolling); }),
+            properties([&](auto&& visit) { rolling_fields(visit, b.rolling); }));
 }
 
 /// The law of one side is compared with the grains that the other side resolves.

@@ -17,10 +17,10 @@
 namespace softgrain {
 
 /// Every estimate x comes with x_standard_error and x_interval = [low, high] (95 %); null: not known.
-void estimate_fields(auto&& visit, const std::string& name, auto& e) {
-  visit(name, e.value);
-  visit(name + "_standard_error", e.standard_error);
-  range_field(visit, name + "_interval", e.low, e.high);
+void estimate_fields(auto&& visit, const std::string& name, auto& e, const Means& means = {"", "1"}) {
+  visit(name, e.value, means);
+  visit(name + "_standard_error", e.standard_error, Means{"its standard error", means.unit});
+  range_field(visit, name + "_interval", e.low, e.high, Means{"its 95 % interval", means.unit});
 }
 
 /// F(D) = a D^b + c above delta, D = hn/Rs, with a and c in `unit`. Stiffnesses also per degree of rotation (times

@@ -230,11 +230,7 @@ MeasuredSummary summary_of(const Measurements& data, const std::vector<std::stri
 void fields(auto&& visit, Of<LawIdentity> auto& law) {
   double fraction = law.solid_fraction > 0.0 ? law.solid_fraction : kNaN;  // of a card: none
   visit("form", law.form);
-  visit("solid_fraction", fraction);
-  visit("E", law.youngs_modulus);
-  visit("nu", law.poisson_ratio);
-  visit("mu", law.friction);
-  visit("hash", law.hash);
+  law_fields([&](const char*, const char* key, auto& member, const auto&...) { visit(key, member); }, law, fraction);
   std::string picture = picture_of(law);
   visit("picture", picture, kLeftOut);
   if constexpr (!std::is_const_v<std::remove_reference_t<decltype(law)>>)

@@ -119,17 +119,6 @@ void fields(auto&& visit, Of<ScatteringFit> auto& s) {
   visit("tie_cost", s.tie_cost);
 }
 
-void fields(auto&& visit, Of<PowderStage> auto& s) {
-  visit("pressure", s.pressure);
-  visit("time", s.time);
-  visit("Phi", s.fraction);
-  visit("z", s.coordination);
-  visit("mean_repulsive", s.mean_repulsive);
-  visit("mean_tensile", s.mean_tensile);
-  visit("bulk", s.bulk);
-  visit("shear", s.shear);
-}
-
 /// One sample. What is not defined is NaN, or absent.
 struct PackSummary {
   bool usable = false;

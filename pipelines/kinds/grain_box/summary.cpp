@@ -37,25 +37,30 @@ json point_json(const std::vector<const BoxPoint*>& points, double density) {
           {"mean_normal_force", p.mean_force}};
 }
 
+/// Means over `points` intervals or arrangements, as `of` says.
+json moduli_at_json(const ModuliAt& m, double pressure, const char* of) {
+  return {{"pressure", pressure},
+          {"K", number(m.bulk)},
+          {"K_error", number(m.bulk_error)},
+          {"G", number(m.shear)},
+          {"G_error", number(m.shear_error)},
+          {"mean_normal_force", number(m.force)},
+          {"mean_normal_force_error", number(m.force_error)},
+          {of, m.points}};
+}
+
 json moduli_json(const GrainBoxResult& result, const std::vector<double>& stresses) {
   json out = json::array();
-  for (const double stress : stresses) {
-    const ModuliAt m = moduli_at(result, stress);
-    if (m.points < 3) continue;
-    out.push_back({{"pressure", stress},
-                   {"K", number(m.bulk)},
-                   {"K_error", number(m.bulk_error)},
-                   {"G", number(m.shear)},
-                   {"G_error", number(m.shear_error)},
-                   {"mean_normal_force", number(m.force)},
-                   {"mean_normal_force_error", number(m.force_error)},
-                   {"intervals", m.points}});
-  }
+  for (const double stress : stresses)
+    if (const ModuliAt m = moduli_at(result, stress); m.points >= 3)
+      out.push_back(moduli_at_json(m, stress, "intervals"));
   return out;
 }
 
-json fit_json(const PowerFit& fit) {
-  return {{"exponent", number(fit.exponent)}, {"standard_error", number(fit.standard_error)}, {"points", fit.points}};
+json fits_json(const GrainBoxResult& result) {
+  json out = json_of(fit_growth(result));
+  for (json& fit : out) fit.erase("prefactor");  // that of the file, in units that depend on the exponent
+  return out;
 }
 
 json effort_json(const GrainBoxState& state) {
@@ -74,7 +79,6 @@ json effort_json(const GrainBoxState& state) {
 }
 
 json result_json(const GrainBoxResult& result, const std::vector<double>& stresses) {
-  const GrainBoxFits fits = fit_growth(result);
   json out = {{"name", result.spec.name},
               {"status", result.usable ? "good" : "not usable"},
               {"grains", result.spec.grains},
@@ -92,10 +96,7 @@ json result_json(const GrainBoxResult& result, const std::vector<double>& stress
               {"largest_wall_moment_ratio", largest_over_pressure(result, &BoxPoint::moment)},
               {"moduli", moduli_json(result, stresses)},
               {"effort", effort_json(result.state)}};
-  out["exponents"] = {{"K_low", fit_json(fits.bulk_low)},
-                      {"K_high", fit_json(fits.bulk_high)},
-                      {"G_low", fit_json(fits.shear_low)},
-                      {"G_high", fit_json(fits.shear_high)}};
+  out["exponents"] = fits_json(result);
   if (!result.usable) out["reason"] = result.reason;
   return out;
 }
@@ -114,15 +115,7 @@ nlohmann::json arrangements_json(const std::vector<GrainBoxResult>& results) {
   for (const OverArrangements& o : over_arrangements(results)) {
     json moduli = json::array();
     for (const ModuliAt& m : o.moduli)
-      if (m.points > 1)
-        moduli.push_back({{"pressure", m.pressure},
-                          {"K", number(m.bulk)},
-                          {"K_error", number(m.bulk_error)},
-                          {"G", number(m.shear)},
-                          {"G_error", number(m.shear_error)},
-                          {"mean_normal_force", number(m.force)},
-                          {"mean_normal_force_error", number(m.force_error)},
-                          {"arrangements", m.points}});
+      if (m.points > 1) moduli.push_back(moduli_at_json(m, m.pressure, "arrangements"));
     out.push_back({{"pack", o.pack},
                    {"arrangements", o.arrangements},
                    {"moduli", moduli},

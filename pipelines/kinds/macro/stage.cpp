@@ -10,6 +10,7 @@
 
 #include "common/core/parallel_tasks.h"
 #include "common/core/text.h"
+#include "common/data/attributes.h"
 #include "common/io/progress.h"
 #include "common/state/system_io.h"
 #include "macrosim/cell_specimen.h"
@@ -29,25 +30,29 @@ namespace softgrain {
 namespace {
 
 /// How far a test has come, beside its curve and the state of its bodies.
-template <class State>
-void write_place(const h5::Group& group, const State& state) {
-  group.attribute("increments", state.increments);
-  group.attribute("over", static_cast<std::int64_t>(state.over));
-  group.attribute("worst_increment", state.worst.number);
-  group.attribute("worst_end", static_cast<std::int64_t>(state.worst.rest.end));
-  group.attribute("worst_residual", state.worst.rest.residual);
+void place_fields(auto&& visit, auto& state) {
+  visit("increments", state.increments);
+  visit("over", state.over, kLater);
+  visit("worst_increment", state.worst.number, kLater);
+  auto end = static_cast<std::int64_t>(state.worst.rest.end);
+  visit("worst_end", end, kLater);
+  if constexpr (!std::is_const_v<std::remove_reference_t<decltype(state)>>)
+    state.worst.rest.end = static_cast<RelaxationEnd>(std::clamp<std::int64_t>(end, 0, 3));
+  visit("worst_residual", state.worst.rest.residual, kLater);
 }
 
-/// States of earlier versions do not have the last three: nothing is known of their increments then.
+template <class State>
+void write_place(const h5::Group& group, const State& state) {
+  place_fields(AttributeWriter{group}, state);
+}
+
+/// States of earlier versions do not have all of it: nothing is known of their increments then.
 template <class State>
 void read_place(const h5::Group& group, State& state) {
-  state.increments = group.integer("increments");
-  state.over = group.has_attribute("over") && group.integer("over") != 0;
-  state.worst = {{RelaxationEnd::converged, 0, 0.0}, state.increments};
-  if (!group.has_attribute("worst_increment")) return;
-  state.worst.number = group.integer("worst_increment");
-  state.worst.rest.end = static_cast<RelaxationEnd>(std::clamp<std::int64_t>(group.integer("worst_end"), 0, 3));
-  state.worst.rest.residual = group.number("worst_residual");
+  state.over = false;
+  state.worst = {{RelaxationEnd::converged, 0, 0.0}, 0};
+  place_fields(AttributeReader{group}, state);
+  if (!group.has_attribute("worst_increment")) state.worst.number = state.increments;
 }
 
 void write_progress(const h5::Group& group, const CompressionState& state) {

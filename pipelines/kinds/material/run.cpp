@@ -220,16 +220,9 @@ void reject_failures(const std::vector<VariantFailure>& failures, SummaryHead& h
 
 namespace {
 
-struct TensorName {
-  const char* name;
-  std::vector<double> MacroCurve::*values;
-};
-
 /// Beside the stresses of the axes; the shear strain of tests that slide.
-constexpr std::array kTensorNames{
-    TensorName{"stress_xy [Pa]", &MacroCurve::stress_xy}, TensorName{"stress_xz [Pa]", &MacroCurve::stress_xz},
-    TensorName{"stress_yz [Pa]", &MacroCurve::stress_yz}, TensorName{"stress_asymmetry", &MacroCurve::stress_asymmetry},
-    TensorName{"shear_strain", &MacroCurve::shear_strain}};
+constexpr std::array kShearColumns{&MacroCurve::stress_xy, &MacroCurve::stress_xz, &MacroCurve::stress_yz,
+                                   &MacroCurve::stress_asymmetry, &MacroCurve::shear_strain};
 
 /// Empty where it was not recorded, as by LAMMPS.
 std::string cell_of(const std::vector<double>& column, std::size_t k) {
@@ -243,9 +236,9 @@ TextTable points_of(const std::vector<VariantResult>& results) {
                    "stress_z [Pa]", "p/E", "q/p", "coordination", "residual"},
                   {}};
   for (const auto& [name, values] : results.front().curves.front().more) table.header.push_back(name);
-  for (const TensorName& t : kTensorNames) table.header.emplace_back(t.name);
-  for (const char* name : {"fabric_tensor", "fabric_strong"})
-    for (const char* component : kTensorComponents) table.header.push_back(fmt::format("{}_{}", name, component));
+  for (const auto column : kShearColumns) table.header.push_back(macro_column(column).header());
+  for (const MacroTensor& tensor : kMacroTensors)
+    for (std::size_t k = 0; k < kTensorComponents.size(); ++k) table.header.push_back(tensor.of(k));
   for (const VariantResult& r : results)
     for (const MacroCurve& c : r.curves) {
       const std::vector<double> p = mean_stresses(c);
@@ -258,9 +251,9 @@ TextTable points_of(const std::vector<VariantResult>& results) {
               p[k] / c.start.youngs_modulus, ratio[k], c.coordination[k], c.residual[k]})
           row.push_back(std::isfinite(x) ? fmt::format("{:.8g}", x) : "");
         for (const auto& [name, values] : c.more) row.push_back(fmt::format("{:.6g}", values[k]));
-        for (const TensorName& t : kTensorNames) row.push_back(cell_of(c.*t.values, k));
-        for (const TensorColumns* tensor : {&c.fabric_tensor, &c.fabric_strong})
-          for (const std::vector<double>& component : *tensor) row.push_back(cell_of(component, k));
+        for (const auto column : kShearColumns) row.push_back(cell_of(c.*column, k));
+        for (const MacroTensor& tensor : kMacroTensors)
+          for (const std::vector<double>& component : c.*tensor.values) row.push_back(cell_of(component, k));
         table.rows.push_back(std::move(row));
       }
     }
