@@ -104,8 +104,8 @@ MacroPacking make_cell_packing(const MacroSpec& spec, std::uint64_t seed, std::u
   const double fines = fines_volume(matter, coarse);
   const double room = matter.solid_fraction > 0.0
                           ? (coarse + fines) / matter.solid_fraction
-                          : room_at_pressure(fines_law_of(matter.card, spec.youngs_modulus, matter.preparation), fines, coarse,
-                                             spec.start_pressure * spec.youngs_modulus);
+                          : room_at_pressure(fines_law_of(matter.card, spec.youngs_modulus, matter.preparation), fines,
+                                             coarse, spec.start_pressure * spec.youngs_modulus);
   const double thickness = thickness_of(bodies, room);
   for (MacroBody& b : bodies)
     if (!b.soft) b.r += thickness;

@@ -64,7 +64,7 @@ struct CellCard {
   /// With it mu_f is the strength at the critical state and chi the stiffness before any slip; none: as in earlier
   /// versions, one spring a face and cells that forget.
   std::optional<CellMemory> memory;
-  CellCorrelation correlation;  ///< empty: not known (cards of earlier versions)
+  CellCorrelation correlation;                  ///< empty: not known (cards of earlier versions)
   std::vector<PreparationFactor> preparations;  ///< other preparations, for starts from the density
   // Where it holds.
   double pressure_low = 0.0;  ///< p/E of the fit

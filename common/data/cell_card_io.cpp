@@ -214,8 +214,8 @@ void read_preparations(const SceneTable& root, CellCard& card) {
   for (const SceneTable& t : root.tables("preparation")) {
     PreparationFactor p{read_words_of(t, "name"), read_estimate(t.table("factor"), Range::positive())};
     if (void_ratio_factor(card, p.preparation))
-      t.throw_error("name", p.preparation == card.preparation ? "is that of [measured], whose factor is 1"
-                                                              : "is used twice");
+      t.throw_error("name",
+                    p.preparation == card.preparation ? "is that of [measured], whose factor is 1" : "is used twice");
     card.preparations.push_back(std::move(p));
   }
 }
@@ -232,9 +232,8 @@ std::optional<double> void_ratio_factor(const CellCard& card, const std::string&
 std::string missing_factor_text(const CellCard& card, const std::string& preparation) {
   std::string has = fmt::format("the card was measured on grains prepared '{}'", card.preparation);
   for (const PreparationFactor& p : card.preparations) has += fmt::format(", with a factor for '{}'", p.preparation);
-  return fmt::format(
-      "{} and has none for '{}': kind \"material-law\" measures one ([law] preparations = [\"{}\"])", has, preparation,
-      preparation);
+  return fmt::format("{} and has none for '{}': kind \"material-law\" measures one ([law] preparations = [\"{}\"])",
+                     has, preparation, preparation);
 }
 
 std::vector<CellCardNumber> numbers_of(const CellCard& card) {
