@@ -100,6 +100,12 @@ double state_phi(StateForm form, double modulus, double exponent, double onset, 
   return pressure > 0.0 ? phi_slopes(form, std::log(modulus), exponent, onset, pressure).value : onset;
 }
 
+double onset_at(StateForm form, double modulus, double exponent, double phi, double pressure) {
+  const double state = std::pow(pressure / modulus, 1.0 / exponent);
+  if (form == StateForm::porosity) return (phi - state) / (1.0 - state);
+  return 1.0 / (1.0 + (1.0 / phi - 1.0) / (1.0 - state));
+}
+
 double state_of_phi(StateForm form, double onset, double phi) {
   return form == StateForm::porosity ? (phi - onset) / (1.0 - onset) : 1.0 - (1.0 / phi - 1.0) / (1.0 / onset - 1.0);
 }

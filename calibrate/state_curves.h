@@ -22,6 +22,9 @@ double state_phi(StateForm form, double modulus, double exponent, double onset, 
 /// p/E at phi; 0 below the onset.
 double state_pressure(StateForm form, double modulus, double exponent, double onset, double phi);
 
+/// Onset phi_J of a packing that bears p/E = pressure at phi.
+double onset_at(StateForm form, double modulus, double exponent, double phi, double pressure);
+
 /// How far a packing is beyond its onset: x = (phi - phi_J)/(1 - phi_J) (porosity) or 1 - Vp/Vp_J (pores). In p/E = K
 /// x^n packings differ by their onsets alone, so that x at a pressure is that of all of them. Below 0 under the onset.
 double state_of_phi(StateForm form, double onset, double phi);

@@ -86,11 +86,13 @@ CellLaw cell_law_of(const CellCard& card, const MacroSpec& spec) {
   return law;
 }
 
-FinesLaw fines_law_of(const CellCard& card, double youngs_modulus) {
+FinesLaw fines_law_of(const CellCard& card, double youngs_modulus, const std::string& preparation) {
+  const std::optional<double> f = void_ratio_factor(card, preparation);
+  if (!f) throw InputError("cell law: " + missing_factor_text(card, preparation));
   return {equation_of(card, youngs_modulus),
-          card.void_ratio.value,
-          {card.excess_alone.value, card.excess_many.value, card.excess_decay.value},
-          card.memory ? card.memory->critical_pores.value : 0.0};
+          *f * card.void_ratio.value,
+          {*f * card.excess_alone.value, *f * card.excess_many.value, card.excess_decay.value},
+          card.memory ? card.memory->critical_pores.value / *f : 0.0};
 }
 
 double fines_volume(const CellMatter& matter, double coarse) { return coarse * matter.share / (1.0 - matter.share); }
@@ -103,8 +105,8 @@ MacroPacking make_cell_packing(const MacroSpec& spec, std::uint64_t seed, std::u
   const double fines = fines_volume(matter, coarse);
   const double room = matter.solid_fraction > 0.0
                           ? (coarse + fines) / matter.solid_fraction
-                          : room_at_pressure(fines_law_of(matter.card, spec.youngs_modulus), fines, coarse,
-                                             spec.start_pressure * spec.youngs_modulus);
+                          : room_at_pressure(fines_law_of(matter.card, spec.youngs_modulus, matter.preparation), fines,
+                                             coarse, spec.start_pressure * spec.youngs_modulus);
   const double thickness = thickness_of(bodies, room);
   for (MacroBody& b : bodies)
     if (!b.soft) b.r += thickness;
@@ -134,7 +136,7 @@ CellSpecimen make_cells(const MacroSpec& spec, const MacroPacking& packing) {
   room.bring_home(sites, periods);
   if (!room.holds(sites)) throw InputError("cells: a body lies outside its box");
   const RadicalCells cells = room.cells_of(sites);
-  const FinesLaw fines = fines_law_of(matter.card, spec.youngs_modulus);
+  const FinesLaw fines = fines_law_of(matter.card, spec.youngs_modulus, matter.preparation);
   const double volume = fines_volume(matter, coarse);
   CellStart start = matter.at_density ? start_at_density(fines, bodies, cells.volume, volume)
                                       : start_at_pressure(fines, bodies, cells.volume, volume,
@@ -158,6 +160,16 @@ std::string compression_only_text(const MacroSpec& spec) {
       names);
 }
 
+std::string other_preparation_text(const MacroSpec& spec) {
+  const CellCard& card = spec.cells->card;
+  const std::string own = to_string(spec.preparation);
+  if (!spec.cells->preparation.empty() || card.preparation.empty() || card.preparation == own) return "";
+  return fmt::format("the fines of the card were prepared '{}', this specimen '{}'{}", card.preparation, own,
+                     void_ratio_factor(card, own)
+                         ? fmt::format("; with [fines] preparation = \"{}\" cells take the factor of the card", own)
+                         : "");
+}
+
 std::string start_remark(const MacroSpec& spec, const CellStart& start) {
   const CellCard& card = spec.cells->card;
   const double mixture = spec.cells->share / (1.0 - spec.cells->share);
@@ -166,9 +178,7 @@ std::string start_remark(const MacroSpec& spec, const CellStart& start) {
   if (mixture > card.mixture_high)
     add(fmt::format("fines are {:.3g} times the volume of coarse grains, and excess pores were measured up to {:.3g}",
                     mixture, card.mixture_high));
-  if (!card.preparation.empty() && card.preparation != to_string(spec.preparation))
-    add(fmt::format("the fines of the card were prepared '{}', this specimen '{}'", card.preparation,
-                    to_string(spec.preparation)));
+  if (const std::string other = other_preparation_text(spec); !other.empty()) add(other);
   constexpr double kFar = 0.5;
   if (!spec.cells->at_density && std::abs(start.excess_share - 1.0) > kFar)
     add(fmt::format("excess pores are {:.3g} times those of the card at this start pressure", start.excess_share));

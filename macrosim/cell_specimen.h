@@ -18,7 +18,10 @@ namespace softgrain {
 /// The law of a card for the grains of a scene. x_r is that of the card, or lower where the start pressure of the scene
 /// asks for it (kUnloadedPressure).
 CellLaw cell_law_of(const CellCard& card, const MacroSpec& spec);
-FinesLaw fines_law_of(const CellCard& card, double youngs_modulus);
+/// `preparation`: of the material; empty: that of the card. All its void ratios are those of the card times the factor
+/// of that preparation, but the pores at the critical state, which no preparation changes. Throws InputError where the
+/// card has no factor for it.
+FinesLaw fines_law_of(const CellCard& card, double youngs_modulus, const std::string& preparation = "");
 
 /// Solid volume of the fines between coarse grains of this volume [m^3].
 double fines_volume(const CellMatter& matter, double coarse);
@@ -41,6 +44,10 @@ CellSpecimen make_cells(const MacroSpec& spec, const MacroPacking& bodies);
 
 /// Which stages of a test a card without shear memory does not serve; empty where it has one, or serves them all.
 std::string compression_only_text(const MacroSpec& spec);
+
+/// That the specimen is prepared otherwise than the card's grains and nobody said of what preparation its fines are;
+/// empty otherwise.
+std::string other_preparation_text(const MacroSpec& spec);
 
 /// What to mind about a start: empty when nothing.
 std::string start_remark(const MacroSpec& spec, const CellStart& start);

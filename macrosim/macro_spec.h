@@ -104,6 +104,7 @@ struct CellMatter {
   double share = 0.0;           ///< share of the fines in the solid volume of bodies and fines together
   double solid_fraction = 0.0;  ///< solid fraction at the start; 0: at the start pressure by the mixture of the card
   bool at_density = false;      ///< pressure at the start follows from the density; else excess pores from the pressure
+  std::string preparation{};    ///< preparation of the material, see void_ratio_factor(); empty: that of the card
 };
 
 /// How a resolved twin comes to rest after an increment of strain.

@@ -127,6 +127,15 @@ void write_measured(Out out, const CellCard& card) {
   fmt::format_to(out, "samples = {}\n", card.samples);
 }
 
+void write_preparations(Out out, const std::vector<PreparationFactor>& preparations) {
+  if (preparations.empty()) return;
+  fmt::format_to(out,
+                 "\n# Other preparations of these grains: e_J, e_c and w_inf times the factor; critical pores (r_c) "
+                 "stay.\n");
+  for (const PreparationFactor& p : preparations)
+    fmt::format_to(out, "[[preparation]]\nname = {}\nfactor = {}\n", quoted(p.preparation), estimate_text(p.factor));
+}
+
 Estimate read_estimate(const SceneTable& table, const Range& range) {
   Estimate e = read_estimate_text(table, range);
   if (!(e.low <= e.high)) table.throw_error("low", "must not be above the high end");
@@ -201,7 +210,31 @@ void read_measured(const SceneTable& t, CellCard& card) {
   card.samples = t.count("samples", 1, std::numeric_limits<int>::max());
 }
 
+void read_preparations(const SceneTable& root, CellCard& card) {
+  for (const SceneTable& t : root.tables("preparation")) {
+    PreparationFactor p{read_words_of(t, "name"), read_estimate(t.table("factor"), Range::positive())};
+    if (void_ratio_factor(card, p.preparation))
+      t.throw_error("name",
+                    p.preparation == card.preparation ? "is that of [measured], whose factor is 1" : "is used twice");
+    card.preparations.push_back(std::move(p));
+  }
+}
+
 }  // namespace
+
+std::optional<double> void_ratio_factor(const CellCard& card, const std::string& preparation) {
+  if (preparation.empty() || preparation == card.preparation) return 1.0;
+  const auto at = std::ranges::find(card.preparations, preparation, &PreparationFactor::preparation);
+  if (at == card.preparations.end()) return std::nullopt;
+  return at->factor.value;
+}
+
+std::string missing_factor_text(const CellCard& card, const std::string& preparation) {
+  std::string has = fmt::format("the card was measured on grains prepared '{}'", card.preparation);
+  for (const PreparationFactor& p : card.preparations) has += fmt::format(", with a factor for '{}'", p.preparation);
+  return fmt::format("{} and has none for '{}': kind \"material-law\" measures one ([law] preparations = [\"{}\"])",
+                     has, preparation, preparation);
+}
 
 std::vector<CellCardNumber> numbers_of(const CellCard& card) {
   std::vector<CellCardNumber> out;
@@ -243,6 +276,7 @@ void write_cell_card(const CellCard& card, const std::string& path, const Proven
   if (!card.correlation.numbers.empty()) write_correlation(out, card.correlation);
   write_range(out, card);
   write_measured(out, card);
+  write_preparations(out, card.preparations);
   write_text_atomic(path, text);
 }
 
@@ -264,6 +298,7 @@ CellCard read_cell_card(const Scene& file) {
   if (root.has("correlation")) card.correlation = read_correlation(root.table("correlation"), card);
   read_range(root.table("range"), card);
   read_measured(root.table("measured"), card);
+  read_preparations(root, card);
   root.finish();
   return card;
 }

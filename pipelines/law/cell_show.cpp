@@ -55,6 +55,11 @@ std::string show(const CellCard& card, const FittedLaw& file, bool utf8) {
     rows.push_back({n.key, number(e.value), std::isfinite(e.standard_error) ? number(e.standard_error, 2) : "-",
                     ends_text(e.low, e.high, {.number = number, .may_be_equal = true}), n.meaning});
   }
+  for (const PreparationFactor& p : card.preparations)
+    rows.push_back({p.preparation, number(p.factor.value),
+                    std::isfinite(p.factor.standard_error) ? number(p.factor.standard_error, 2) : "-",
+                    ends_text(p.factor.low, p.factor.high, {.number = number, .may_be_equal = true}),
+                    "factor on e_J, e_c and w_inf of grains prepared so"});
   text += aligned(rows, 2, 2);
   text += wrapped(fmt::format("  holds for p/E = {} to {}, up to {} times as much fines as coarse grains by volume",
                               number(card.pressure_low), number(card.pressure_high), number(card.mixture_high)),
@@ -82,12 +87,14 @@ nlohmann::json law_json(const CellCard& card) {
     out["mu_r"] = card.grain_rolling.friction;
     out["kr_ratio"] = card.grain_rolling.stiffness;
   }
-  for (const CellCardNumber& n : numbers_of(card)) {
-    const Estimate& e = n.estimate;
-    out[n.key] = {{"value", json_of(e.value)},
-                  {"standard_error", json_of(e.standard_error)},
-                  {"interval", {json_of(e.low), json_of(e.high)}}};
-  }
+  const auto json_of_estimate = [](const Estimate& e) -> nlohmann::json {
+    return {{"value", json_of(e.value)},
+            {"standard_error", json_of(e.standard_error)},
+            {"interval", {json_of(e.low), json_of(e.high)}}};
+  };
+  for (const CellCardNumber& n : numbers_of(card)) out[n.key] = json_of_estimate(n.estimate);
+  for (const PreparationFactor& p : card.preparations)
+    out["void_ratio_factors"][p.preparation] = json_of_estimate(p.factor);
   return out;
 }
 

@@ -206,6 +206,49 @@ TEST_F(CellsMacro, BeginAtTheDensityThatIsGiven) {
   expect(run("loose"), 2, {"does not jam at this density"});
 }
 
+/// All void ratios of the card are times its factor for the preparation that [fines] says, from a start pressure and
+/// from the density alone.
+TEST_F(CellsMacro, BeginWithThePoresOfThePreparationThatIsSaid) {
+  CellCard card = sample_card();
+  card.preparations = {{"dense", {0.8, 0.01, 0.78, 0.82}}};
+  write_cell_card(card, file("cells.toml"));
+  const auto start = [&](const std::string& name, const std::string& fines) {
+    scene("", "share = 0.4\n" + fines);
+    expect(run(name, "--set macro.strain=0.01 --set macro.steps=1"), 0, {});
+    return curve(name);
+  };
+  const double x = std::pow(1e-4 / card.modulus.value, 1.0 / card.exponent.value);
+  const auto pores = [&](const MacroCurve& c) {
+    const double phi = c.more.at("solid_fraction")[0];
+    return (1.0 - phi) / (phi - x);
+  };
+  const MacroCurve own = start("own", "");
+  const MacroCurve dense = start("dense", "preparation = \"dense\"\n");
+  EXPECT_NEAR(pores(dense) / pores(own), 0.8, 1e-6);
+  EXPECT_EQ(start("same", "preparation = \"fast\"\n").stress_axial, own.stress_axial);
+  const std::string density =
+      fmt::format("start = \"density\"\nsolid_fraction = {:.12f}\n", dense.more.at("solid_fraction")[0]);
+  const double given = start("given", density + "preparation = \"dense\"\n").stress_axial[0];
+  EXPECT_NEAR(given / dense.stress_axial[0], 1.0, 0.2);
+  EXPECT_GT(start("wrong", density).stress_axial[0], 5.0 * given) << "by the preparation of the card";
+  scene("", "share = 0.4\npreparation = \"dense\"\n");
+  expect(run_the_program("check '" + file("scene.toml") + "'"), 0, {"its void ratios times 0.8"});
+  scene("", "share = 0.4\npreparation = \"slow\"\n");
+  expect(run("bad"), 2, {"preparation", "with a factor for 'dense'", "none for 'slow'", "[law] preparations"});
+  scene("", "share = 0.4\npreparation = \"slwo\"\n");
+  expect(run("bad"), 2, {"nearest is \"slow\""});
+  scene("preparation = \"dense\"\n");
+  std::string text = read_text(file("scene.toml"));
+  text.erase(text.find("preparation = \"fast\"\n"), 21);
+  write_text_atomic(file("scene.toml"), text);
+  expect(run_the_program("check '" + file("scene.toml") + "'"), 0, {"this specimen 'dense'", "[fines] preparation"});
+  const std::string path = "'" + file("cells.toml") + "'";
+  expect(run_the_program("law show " + path), 0, {"dense", "factor on e_J, e_c and w_inf"});
+  expect(run_the_program("check " + path), 0, {"void ratios of grains prepared 'dense'"});
+  const auto shown = nlohmann::json::parse(run_the_program("law show --json " + path).output);
+  EXPECT_EQ(shown["parameters"]["void_ratio_factors"]["dense"]["value"], 0.8);
+}
+
 TEST_F(CellsMacro, SayWhatDoesNotFit) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"share = 1.2\n", "below 1"},

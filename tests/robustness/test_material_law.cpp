@@ -43,10 +43,14 @@ const nlohmann::json& number_named(const nlohmann::json& law, const std::string&
 
 TEST(MaterialLaw, ASmallMaterialGivesACardThatReadsBack) {
   const TemporaryDirectory directory;
-  write_text_atomic(directory.file("scene.toml"), kSmallMaterialLaw);
+  std::string text = kSmallMaterialLaw;
+  text.insert(text.find("cells = 40\n"), "preparations = [\"dense\"]\n");
+  write_text_atomic(directory.file("scene.toml"), text);
   const std::string out = directory.file("out");
   const ProgramOutcome outcome = run_the_program("run '" + directory.file("scene.toml") + "' --out '" + out + "'");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("void ratios of fines prepared 'dense' over these: 0."), std::string::npos)
+      << outcome.output;
   EXPECT_NE(outcome.output.find("cell law, porosity form: K = "), std::string::npos) << outcome.output;
   const CellCard card = read_cell_card(out + "/cell_law.toml");
   const nlohmann::json summary = summary_of(out);
@@ -70,7 +74,14 @@ TEST(MaterialLaw, ASmallMaterialGivesACardThatReadsBack) {
       EXPECT_NEAR(card.excess_alone.value, (1.0 - phi) / phi, 1e-12);
     }
     EXPECT_NE(onset["name"], "fines-shear") << "the same packings, tested again";
+    EXPECT_NE(onset["name"], "fines-dense") << "prepared only";
   }
+  ASSERT_EQ(card.preparations.size(), 1U);
+  EXPECT_EQ(card.preparations[0].preparation, "dense");
+  EXPECT_EQ(card.preparations[0].factor.value, law["void_ratio_factors"][0]["value"].get<double>());
+  EXPECT_GT(card.preparations[0].factor.standard_error, 0.0);
+  EXPECT_GT(card.preparations[0].factor.value, 0.65);
+  EXPECT_LT(card.preparations[0].factor.value, 0.82);
   // Where numbers of such materials are.
   EXPECT_GT(card.void_ratio.value, 0.6);
   EXPECT_LT(card.void_ratio.value, 0.9);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/data/cell_card.h"
 #include "common/io/text_file.h"
 #include "tests/support/every_kind.h"
 #include "tests/support/temporary_directory.h"
@@ -23,6 +24,9 @@ inline void write_keyed_files(const TemporaryDirectory& directory) {
   LawCard other = synthetic::card();
   for (PairLaw& law : other.pairs) law.delta_max *= 0.9;
   save_card(other, directory.file("other-law.toml"));
+  CellCard cells = read_cell_card(SOFTGRAIN_SOURCE_DIR "/results/material_law/cell_law.toml");
+  cells.preparations = {{"slow", {0.97, 0.01, 0.95, 0.99}}};
+  write_cell_card(cells, directory.file("cells.toml"));
 }
 
 inline constexpr const char* kMaterialHead = R"(kind = "material"
@@ -114,8 +118,9 @@ resolved = false
 }
 
 inline std::string macro_cells() {
-  return std::string("kind = \"macro\"\nlaw = \"") + SOFTGRAIN_SOURCE_DIR + "/results/material_law/cell_law.toml\"\n" +
-         R"([macro]
+  return R"(kind = "macro"
+law = "cells.toml"
+[macro]
 bodies = 40
 boundary = "periodic"
 preparation = "fast"

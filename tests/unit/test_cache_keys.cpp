@@ -127,6 +127,7 @@ MacroSpec full_spec() {
   spec.cells = CellMatter{};
   spec.cells->card.memory = CellMemory{};
   spec.cells->card.correlation = {{"K"}, {1.0}};
+  spec.cells->card.preparations = {{"slow", {0.97, 0.01, 0.95, 0.99}}};
   spec.packing_text = "x,y,z";
   spec.splits = {0.25};
   spec.test = MacroTest::stages;

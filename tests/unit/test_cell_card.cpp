@@ -49,6 +49,7 @@ CellCard card_with_memory() {
   CellCard c = sample_card();
   c.form = StateForm::porosity;
   c.grain_rolling = {0.2, 0.7, 1.0};
+  c.preparations = {{"slow", {0.9753, 0.02 / 7.0, 0.97, 0.98}}, {"dense", {0.73, kInf, -kInf, kInf}}};
   c.correlation = {{"K", "n", "A"}, {1.0, 0.9 / 7.0, -0.25, 0.9 / 7.0, 1.0, 0.1, -0.25, 0.1, 1.0}};
   c.memory = CellMemory{{1.18, 0.1 / 3.0, 1.1, 1.3}, {0.9496, 0.01, 0.93, 0.97},     {35.0, 5.0, 20.0, 50.0},
                         {0.666, kInf, 0.0, 1.0},     {-0.24, 0.05 / 7.0, -0.4, 0.0}, {1.6e-3, kInf, 0.0, 1.0}};
@@ -87,6 +88,11 @@ TEST(CellCardFile, RoundTripIsExact) {
   EXPECT_EQ(a.samples, b.samples);
   EXPECT_EQ(a.correlation.numbers, b.correlation.numbers);
   EXPECT_EQ(a.correlation.matrix, b.correlation.matrix);
+  ASSERT_EQ(b.preparations.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(a.preparations[k].preparation, b.preparations[k].preparation);
+    expect_same_estimate(a.preparations[k].factor, b.preparations[k].factor);
+  }
   write_cell_card(b, directory.file("again.toml"));
   EXPECT_EQ(read_text(directory.file("card.toml")), read_text(directory.file("again.toml")));
 }
@@ -112,6 +118,55 @@ TEST(CellCardFile, MayHaveNoMemory) {
   EXPECT_EQ(read_text(directory.file("card.toml")).find("[memory]"), std::string::npos);
   EXPECT_FALSE(read_cell_card(directory.file("card.toml")).memory);
   EXPECT_EQ(numbers_of(sample_card()).size(), 9U);
+}
+
+/// Cards of earlier versions have no factors for other preparations.
+TEST(CellCardFile, KnowsTheFactorsOfThePreparationsThatItNames) {
+  const TemporaryDirectory directory;
+  write_cell_card(sample_card(), directory.file("card.toml"));
+  EXPECT_EQ(read_text(directory.file("card.toml")).find("[[preparation]]"), std::string::npos);
+  const CellCard old = read_cell_card(directory.file("card.toml"));
+  EXPECT_TRUE(old.preparations.empty());
+  EXPECT_EQ(void_ratio_factor(old, "fast"), 1.0);
+  EXPECT_EQ(void_ratio_factor(old, ""), 1.0);
+  EXPECT_EQ(void_ratio_factor(old, "slow"), std::nullopt);
+  const CellCard card = card_with_memory();
+  EXPECT_EQ(void_ratio_factor(card, "slow"), 0.9753);
+  EXPECT_EQ(void_ratio_factor(card, "rodded"), std::nullopt);
+  const std::string text = missing_factor_text(card, "rodded");
+  for (const char* word : {"'fast', with a factor for 'slow', with a factor for 'dense'", "none for 'rodded'",
+                           "preparations = [\"rodded\"]"})
+    EXPECT_NE(text.find(word), std::string::npos) << text;
+}
+
+TEST(CellCardFile, FactorsOfPreparationsAreOneEachAndAboveNone) {
+  const auto factor_of = [](const char* name, double value, const char* more = "") {
+    return fmt::format(
+        "[[preparation]]\nname = \"{}\"\n{}factor = {{ value = {}, standard_error = 0.1, low = 0, high = 9 }}\n", name,
+        more, value);
+  };
+  const auto complaint = [](const std::string& tables) -> std::string {
+    const TemporaryDirectory directory;
+    const std::string path = directory.file("card.toml");
+    write_cell_card(sample_card(), path);
+    write_text_atomic(path, read_text(path) + tables);
+    try {
+      (void)read_cell_card(path);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const auto expect_words = [&](const std::string& tables, const char* words) {
+    EXPECT_NE(complaint(tables).find(words), std::string::npos) << complaint(tables);
+  };
+  EXPECT_EQ(complaint(factor_of("slow", 0.97) + factor_of("dense", 0.73)), "");
+  expect_words(factor_of("slow", 0.97) + factor_of("slow", 0.96), "is used twice");
+  expect_words(factor_of("fast", 0.97), "whose factor is 1");
+  expect_words(factor_of("slow", 0.0), "value = ");
+  expect_words(factor_of("", 0.97), "must not be empty");
+  expect_words(factor_of("slow", 0.97, "mu = 0.3\n"), "unknown key 'mu'");
+  expect_words("[[preparation]]\nname = \"slow\"\n", "factor");
 }
 
 TEST(CellCardFile, CorrelationsAreThoseOfNumbersOfTheCard) {

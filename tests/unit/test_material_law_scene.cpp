@@ -118,6 +118,38 @@ TEST(MaterialLawScene, WithShearMemoryTestsFinesInMoreWays) {
   EXPECT_EQ(loose.material.variants.size(), 9U);
 }
 
+/// Fines of other preparations: of the same grains, and with nothing but a start that is recorded.
+TEST(MaterialLawScene, PreparesFinesInOtherWays) {
+  const std::string mixtures = "mixtures = [0.25, 0.5, 0.75]\n";
+  const MaterialLawScene scene = read_law_scene("[law]\npreparations = [\"slow\", \"dense\"]\n" + mixtures);
+  const auto& variants = scene.material.variants;
+  ASSERT_EQ(variants.size(), 8U);
+  ASSERT_EQ(scene.at.preparations, (std::vector<std::size_t>{2, 3}));
+  EXPECT_EQ(variants[scene.at.coarse].name, "coarse");
+  EXPECT_EQ(variants[scene.at.first_mixture].name, "mix-25");
+  EXPECT_EQ(variants[2].name, "fines-slow");
+  EXPECT_EQ(variants[3].setup.spec.preparation, Preparation::dense);
+  const MacroSpec& fines = variants[0].setup.spec;
+  for (const std::size_t k : scene.at.preparations) {
+    const MacroSpec& spec = variants[k].setup.spec;
+    EXPECT_FALSE(variants[k].same_packings);
+    EXPECT_EQ(spec.solid_sizes, fines.solid_sizes);
+    EXPECT_EQ(spec.bodies, fines.bodies);
+    EXPECT_EQ(spec.start_pressure, fines.start_pressure);
+    EXPECT_EQ(spec.protocol.tolerance, fines.protocol.tolerance);
+    EXPECT_EQ(spec.steps, 1);
+    EXPECT_LT(spec.strain_end, 0.01);
+  }
+  EXPECT_NE(variants[2].setup.spec.protocol.inertial_number, fines.protocol.inertial_number);
+  const MaterialLawScene remembers =
+      read_law_scene("[law]\nmemory = true\npreparations = [\"dense\", \"slow\"]\n" + mixtures);
+  EXPECT_EQ(remembers.material.variants.size(), 14U) << "dense fines are prepared once";
+  ASSERT_EQ(remembers.at.preparations.size(), 2U);
+  EXPECT_EQ(remembers.material.variants[remembers.at.preparations[0]].name, "fines-dense");
+  EXPECT_EQ(remembers.material.variants[remembers.at.preparations[1]].name, "fines-slow");
+  EXPECT_EQ(remembers.material.variants[remembers.at.first_mixture].name, "mix-25");
+}
+
 std::string refusal(const std::string& law, const std::string& grains = "count = 600\nratio = 6") {
   try {
     (void)read_law_scene(law, grains);
@@ -142,6 +174,11 @@ TEST(MaterialLawScene, RefusesWhatGivesNoLaw) {
   EXPECT_NE(refusal("[law]\nmemory = true\nform = \"pores\"\n").find("goes with \"porosity\""), std::string::npos);
   for (const char* key : {"dense = true", "isotropic_strain = 0.02", "triaxial_strain = 0.1", "unload_strain = 0.01"})
     EXPECT_NE(refusal(std::string("[law]\n") + key + "\n").find("goes with memory = true"), std::string::npos) << key;
+  EXPECT_NE(refusal("[law]\npreparations = [\"slwo\"]\n").find("nearest is 'slow'"), std::string::npos)
+      << refusal("[law]\npreparations = [\"slwo\"]\n");
+  EXPECT_NE(refusal("[law]\npreparations = [\"fast\"]\n").find("whose factor is 1"), std::string::npos);
+  EXPECT_NE(refusal("[law]\npreparations = [\"slow\", \"slow\"]\n").find("twice"), std::string::npos);
+  EXPECT_NE(refusal("[law]\npreparations = [\"lammps\"]\n").find("kind = \"material\""), std::string::npos);
   EXPECT_NE(refusal("", "count = 30\nratio = 6").find("too few for a periodic cell"), std::string::npos)
       << refusal("", "count = 30\nratio = 6");
   EXPECT_NE(refusal("[[stage]]\nkind = \"hold\"\n").find("stage"), std::string::npos);

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
+#include "common/core/error.h"
 #include "common/core/limits.h"
 #include "common/core/particles.h"
 #include "macrosim/body_contacts.h"
@@ -87,6 +89,34 @@ TEST(MaterialModels, TheOnsetOfTheCardIsThatOfItsPores) {
   const double ratio = 0.4 / 0.6;
   const double pores = 0.6 * 0.4 + 0.6 * (0.3 + 0.32 * std::exp(-ratio / 0.35));
   EXPECT_NEAR(onset_by_card(card, 0.4), 1.0 / (1.0 + pores), 1e-12);
+}
+
+/// A factor of a preparation is one on all pores; without one the card's preparation stands for that of the material.
+TEST(MaterialModels, TheOnsetOfAnotherPreparationHasItsFactorOnAllPores) {
+  CellCard card = card_of(StateForm::porosity);
+  card.preparation = "fast";
+  card.preparations = {{"slow", {0.975, 0.003, 0.96, 0.99}}};
+  for (const double share : {0.1, 0.4, 1.0}) {
+    const double pores = 1.0 / onset_by_card(card, share) - 1.0;
+    EXPECT_NEAR(1.0 / onset_by_card(card, share, "slow") - 1.0, 0.975 * pores, 1e-12) << share;
+    EXPECT_EQ(onset_by_card(card, share, "fast"), onset_by_card(card, share)) << share;
+  }
+  EXPECT_THROW((void)onset_by_card(card, 0.4, "dense"), InputError);
+  MacroSpec spec;
+  MaterialModel model{.name = "m", .kind = ModelKind::cells};
+  for (const auto& [preparation, known, words] :
+       {std::tuple{Preparation::fast, "", ""},
+        {Preparation::slow, "slow", "these are 'slow' (void ratios times 0.975)"},
+        {Preparation::dense, "", "these are 'dense'"}}) {
+    spec.preparation = preparation;
+    EXPECT_EQ(known_preparation(card, spec), known);
+    model.card = card;
+    model.card->fines_ratio = 0.0;
+    EXPECT_NE(other_fines(model, spec).find(words), std::string::npos) << other_fines(model, spec);
+  }
+  model.kind = ModelKind::substitute;
+  spec.preparation = Preparation::slow;
+  EXPECT_EQ(other_fines(model, spec).find("void ratios"), std::string::npos) << "it starts from the pressure";
 }
 
 /// Nothing of what the packing answered passes for an answer of the card.

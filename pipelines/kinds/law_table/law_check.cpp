@@ -121,6 +121,10 @@ void check_law(const CellCard& card, Findings& out) {
                       to_string(card.form), interval_text(card.modulus), interval_text(card.exponent),
                       is_known(card.youngs_modulus) ? fmt::format("{:.4g} Pa", card.youngs_modulus) : "not said",
                       card.pressure_low, card.pressure_high, card.mixture_high));
+  for (const PreparationFactor& p : card.preparations)
+    out.add("void_ratio_factor_" + p.preparation, p.factor.value,
+            fmt::format("void ratios of grains prepared '{}' over these, prepared '{}': {}", p.preparation,
+                        card.preparation, interval_text(p.factor)));
   constexpr double kWide = 0.25;
   if (!interval_known(card.modulus.low, card.modulus.high))
     out.warn("the interval of K is not determined: two samples of each packing at least would tell it");

@@ -223,8 +223,8 @@ void check_cells(const CellMatter& matter, const MacroSpec& spec, Findings& out)
   require_same_grains(card, spec);
   const double mixture = matter.share / (1.0 - matter.share);
   const double pressure = spec.start_pressure * spec.youngs_modulus;
-  const double natural =
-      (1.0 + mixture) / room_at_pressure(fines_law_of(card, spec.youngs_modulus), mixture, 1.0, pressure);
+  const double natural = (1.0 + mixture) / room_at_pressure(fines_law_of(card, spec.youngs_modulus, matter.preparation),
+                                                            mixture, 1.0, pressure);
   out.add("cell_law", {{"form", to_string(card.form)}, {"K", card.modulus.value}, {"n", card.exponent.value}},
           fmt::format("law: cells of fines, {} form, K = {}, n = {}; {}", to_string(card.form),
                       interval_text(card.modulus), interval_text(card.exponent), kMatterWithoutShells));
@@ -236,13 +236,15 @@ void check_cells(const CellMatter& matter, const MacroSpec& spec, Findings& out)
   out.add("natural_solid_fraction", natural,
           fmt::format("at p/E = {:.3g} the card gives this mixture a solid fraction of {:.4f}", spec.start_pressure,
                       natural));
+  if (const double factor = void_ratio_factor(card, matter.preparation).value_or(1.0); factor != 1.0)
+    out.add("void_ratio_factor", factor,
+            fmt::format("the material is prepared '{}', the card '{}': its void ratios times {:.4g}",
+                        matter.preparation, card.preparation, factor));
   if (mixture > card.mixture_high)
     out.warn(fmt::format("fines are {:.3g} times the volume of coarse grains; the card was measured up to {:.3g}",
                          mixture, card.mixture_high));
   if (const std::string text = compression_only_text(spec); !text.empty()) out.warn(text);
-  if (!card.preparation.empty() && card.preparation != to_string(spec.preparation))
-    out.warn(fmt::format("the fines of the card were prepared '{}', this specimen is prepared '{}'", card.preparation,
-                         to_string(spec.preparation)));
+  if (const std::string text = other_preparation_text(spec); !text.empty()) out.warn(text);
 }
 
 void check_laws_of(const LawSources& laws, const MacroSpec& spec, const MacroContent& content, Findings& out) {

@@ -76,6 +76,11 @@ CellMatter read_fines(const SceneTable& root) {
                                                    "quantity that sets the initial state of the cells: `\"pressure\"` "
                                                    "(`start_pressure`) or `\"density\"` (`solid_fraction`)"},
                                                   CellStartFrom::pressure) == CellStartFrom::density;
+  const Key preparation{"preparation",
+                        "preparation of the material, where it is not that of the card: void ratios are those of the "
+                        "card times its factor for it",
+                        "that of the card"};
+  if (fines.has("preparation")) matter.preparation = to_string(fines.choice<Preparation>(preparation));
   return matter;
 }
 
@@ -105,6 +110,8 @@ void read_cells(const SceneTable& root, const SceneTable& macro, const CellCard&
   macro.refuse(kDensityKeys, "is said of the mixture: [fines] solid_fraction, with start = \"density\"");
   CellMatter matter = read_fines(root);
   matter.card = card;
+  if (!void_ratio_factor(card, matter.preparation))
+    root.table_or_empty("fines").add_error("preparation", missing_factor_text(card, matter.preparation));
   if (setup.given && matter.solid_fraction > 0.0)
     root.table_or_empty("fines").add_error("solid_fraction", "goes without packing, whose box says it");
   spec.cells = matter;

@@ -35,11 +35,12 @@ SOFTGRAIN_EVERY_MEMBER(Estimate, value, standard_error, low, high)
 SOFTGRAIN_EVERY_MEMBER(CellMemory, dilatancy, critical_pores, strength_slope, strength_range, density_slope,
                        least_state)
 SOFTGRAIN_EVERY_MEMBER(CellCorrelation, numbers, matrix)
+SOFTGRAIN_EVERY_MEMBER(PreparationFactor, preparation, factor)
 SOFTGRAIN_EVERY_MEMBER(CellCard, form, modulus, exponent, void_ratio, excess_alone, excess_many, excess_decay, friction,
-                       stiffness, lateral_ratio, memory, correlation, pressure_low, pressure_high, mixture_high,
-                       youngs_modulus, density, poisson_ratio, grain_friction, grain_rolling, preparation,
+                       stiffness, lateral_ratio, memory, correlation, preparations, pressure_low, pressure_high,
+                       mixture_high, youngs_modulus, density, poisson_ratio, grain_friction, grain_rolling, preparation,
                        start_pressure, split, fines_ratio, fines_sizes, samples)
-SOFTGRAIN_EVERY_MEMBER(CellMatter, card, share, solid_fraction, at_density)
+SOFTGRAIN_EVERY_MEMBER(CellMatter, card, share, solid_fraction, at_density, preparation)
 SOFTGRAIN_EVERY_MEMBER(PreparationProtocol, start_fraction, inertial_number, friction, restitution, coarse_share,
                        first_pressure, tolerance, max_passes)
 SOFTGRAIN_EVERY_MEMBER(RollingResistance, friction, stiffness, damping)

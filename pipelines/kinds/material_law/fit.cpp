@@ -19,6 +19,7 @@
 #include "pipelines/kinds/material_law/correlation.h"
 #include "pipelines/kinds/material_law/fines_in_cells.h"
 #include "pipelines/kinds/material_law/memory_fit.h"
+#include "pipelines/kinds/material_law/preparation_factor.h"
 
 namespace softgrain {
 
@@ -39,6 +40,7 @@ class MaterialLawFit {
     add("K", out_.card.modulus);
     add("n", out_.card.exponent);
     fit_excess();
+    compare_preparations();
     lateral_ratio();
     if (scene_.memory)
       fit_memory();
@@ -124,6 +126,21 @@ class MaterialLawFit {
     out_.summary.band = std::move(band);
     out_.summary.excess_deviation = fit.deviation;
     out_.summary.excess_widening = fit.widening;
+  }
+
+  void compare_preparations() {
+    const std::vector<MacroCurve>& own = result(scene_.at.fines).curves;
+    for (const std::size_t place : scene_.at.preparations) {
+      const std::string name = to_string(result(place).variant->setup.spec.preparation);
+      const std::optional<Estimate> factor = preparation_factor(out_.card.form, out_.card.modulus.value,
+                                                                out_.card.exponent.value, own, result(place).curves);
+      if (!factor) {
+        out_.problems.push_back("no sample of fines came to rest both as the card's and prepared '" + name + "'");
+        continue;
+      }
+      out_.card.preparations.push_back({name, *factor});
+      out_.summary.void_ratio_factors.push_back({name, *factor});
+    }
   }
 
   /// Adds K0, the lateral over the axial stress of the fines, mean over the recorded points of the compression.
@@ -270,10 +287,15 @@ class MaterialLawFit {
   CellCorrelation faces_;                     ///< of mu_f, chi and what shear leaves behind
 };
 
-/// Whether the fit knows every variant that tells an onset.
-std::string missing_group(const std::vector<VariantResult>& results, const StateFit& states) {
-  for (const VariantResult& r : results)
-    if (!r.variant->same_packings && states.find(r.variant->name) == nullptr) return r.variant->name;
+/// The variant that tells an onset of the law and that the fit does not know; empty where there is none.
+std::string missing_group(const MaterialLawScene& scene, const std::vector<VariantResult>& results,
+                          const StateFit& states) {
+  const std::vector<std::size_t>& prepared = scene.at.preparations;
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    const MaterialVariant& v = *results[k].variant;
+    if (v.same_packings || std::ranges::find(prepared, k) != prepared.end()) continue;
+    if (states.find(v.name) == nullptr) return v.name;
+  }
   return "";
 }
 
@@ -289,7 +311,7 @@ MaterialLaw fit_material_law(const MaterialLawScene& scene, const std::vector<Va
                             (states ? ": " + states->message : std::string(": too few points with pressure")));
     return none;
   }
-  if (const std::string name = missing_group(results, *states); !name.empty()) {
+  if (const std::string name = missing_group(scene, results, *states); !name.empty()) {
     none.problems.push_back(name + " bears at too few points to tell its onset");
     return none;
   }

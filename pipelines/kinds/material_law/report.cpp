@@ -138,6 +138,13 @@ std::string mixture_table(const CellLawSummary& law) {
   return table.empty() ? "" : table.html();
 }
 
+std::string preparation_table(const CellLawSummary& law) {
+  HtmlTable table({"preparation", "void ratios at the onset over those of the card", "95 % interval"});
+  for (const LawNumber& f : law.void_ratio_factors)
+    table.row({f.name, format_number(f.estimate.value), interval_of(f.estimate)});
+  return table.empty() ? "" : table.html();
+}
+
 }  // namespace
 
 std::string cell_law_section(const RunData& run) {
@@ -148,7 +155,7 @@ std::string cell_law_section(const RunData& run) {
     body += paragraph("Not usable: no card was written; what is missing could not be determined (see the remarks).");
   std::vector<std::string> figures{pores_figure(law)};
   for (const FrictionCurve& c : law.curves) figures.push_back(friction_figure(c));
-  body += figure_row(figures) + mixture_table(law);
+  body += figure_row(figures) + mixture_table(law) + preparation_table(law);
   if (law.usable)
     body += paragraph(fmt::format(
         "Form: {}. W/V_c is {} about what is fitted (root mean square), the stress ratios of the fines {} about the "
@@ -179,6 +186,9 @@ std::vector<RunValue> values_of_law(const report::RunData& run) {
   std::vector<RunValue> out;
   for (const LawNumber& n : run.summary_as<MaterialLawSummary>().law.numbers)
     out.push_back({n.name + " of the cell law", "", n.estimate.value, n.estimate.standard_error});
+  for (const LawNumber& f : run.summary_as<MaterialLawSummary>().law.void_ratio_factors)
+    out.push_back({"void ratios of fines prepared " + f.name + " over those of the cell law", "", f.estimate.value,
+                   f.estimate.standard_error});
   return out;
 }
 

@@ -17,6 +17,8 @@ namespace {
 std::string law_text(const CellLawSummary& s) {
   const auto number = [](const LawNumber& n) { return fmt::format(" {} = {}", n.name, interval_text(n.estimate)); };
   std::string text = fmt::format("cell law, {} form:{}\n", to_string(s.form), join_text(s.numbers, ",", number));
+  for (const LawNumber& f : s.void_ratio_factors)
+    text += fmt::format("  void ratios of fines prepared '{}' over these: {}\n", f.name, interval_text(f.estimate));
   for (const MixtureSummary& m : s.mixtures)
     text += fmt::format("  V_f/V_c = {:.3g}: W/V_c = {}{}\n", m.ratio, interval_text(m.pores),
                         s.band ? fmt::format(", fitted {:.4g}", m.fitted) : "");

@@ -68,6 +68,33 @@ void read_law(const SceneTable& law, MaterialLawScene& out) {
     }
 }
 
+/// Other preparations of the fines, of which the card gets a factor on void ratios.
+std::vector<Preparation> read_preparations(const SceneTable& law, Preparation own) {
+  const Key key{"preparations",
+                "other preparations whose void ratios are measured on the fines, as factors on those of the card; of "
+                "these packings nothing but the onset is taken",
+                "none"};
+  std::vector<Preparation> out;
+  if (!law.has(key.name)) return out;
+  for (const std::string& word : law.texts(key)) {
+    const std::vector<const char*> names = all_enum_names<Preparation>();
+    const auto known = parse_enum<Preparation>(word);
+    if (!known)
+      law.add_error(key.name, fmt::format("\"{}\" is no preparation; {}", word,
+                                          nearest_text(word, {names.begin(), names.end()},
+                                                       fmt::format("known are {}", fmt::join(names, ", ")))));
+    else if (*known == own)
+      law.add_error(key.name, fmt::format("\"{}\" is that of [packing], whose factor is 1", word));
+    else if (*known == Preparation::lammps)
+      law.add_error(key.name, "\"lammps\" goes with kind = \"material\" alone");
+    else if (std::ranges::find(out, *known) != out.end())
+      law.add_error(key.name, fmt::format("\"{}\" stands there twice", word));
+    else
+      out.push_back(*known);
+  }
+  return out;
+}
+
 /// Strains of the tests of a law with shear memory.
 struct MemoryStrains {
   double isotropic = 0.03;
@@ -147,10 +174,40 @@ void add_memory_tests(const MaterialVariant& packing, const MemoryStrains& strai
   add("preload-shear", {preload, short_stage(spec, StageKind::shear, shear, spec.steps)});
 }
 
+/// Another preparation by name, with the tolerance and the bound of the one that the scene gives.
+void prepare_otherwise(MacroSpec& spec, Preparation preparation) {
+  if (preparation == spec.preparation) return;
+  const PreparationProtocol own = spec.protocol;
+  spec.preparation = preparation;
+  spec.protocol = protocol_of(preparation, spec.friction);
+  spec.protocol.tolerance = own.tolerance;
+  spec.protocol.max_passes = own.max_passes;
+}
+
+/// The same grains as the fines, prepared otherwise: recorded at the start, then hardly strained.
+void add_preparations(const MacroSetup& base, const std::vector<SizePiece>& fines,
+                      const std::vector<Preparation>& preparations, MaterialLawScene& out) {
+  constexpr double kHardly = 1e-3;
+  for (const Preparation preparation : preparations) {
+    const std::string name = "fines-" + to_string(preparation);
+    auto& variants = out.material.variants;
+    const auto made = std::ranges::find(variants, name, &MaterialVariant::name);  // dense ones, with shear memory
+    out.at.preparations.push_back(static_cast<std::size_t>(made - variants.begin()));
+    if (made != variants.end()) continue;
+    variants.push_back(variant_of(name, base, Grading::classes(fines)));
+    MacroSpec& spec = variants.back().setup.spec;
+    prepare_otherwise(spec, preparation);
+    spec.test = MacroTest::isotropic;
+    spec.preload = 0.0;
+    spec.strain_end = kHardly;
+    spec.steps = spec.increments_per_step = 1;
+  }
+}
+
 /// All packings of a law with shear memory: compressed isotropically, which hardly moves onsets.
 void make_memory_variants(const MacroSetup& base, const MemoryStrains& strains, double shear,
                           const std::vector<SizePiece>& fines, const std::vector<SizePiece>& coarse,
-                          MaterialLawScene& out) {
+                          const std::vector<Preparation>& preparations, MaterialLawScene& out) {
   auto& variants = out.material.variants;
   MacroSetup pressed = base;
   pressed.spec.test = MacroTest::isotropic;
@@ -162,13 +219,7 @@ void make_memory_variants(const MacroSetup& base, const MemoryStrains& strains, 
   const auto add_fines = [&](const std::string& name, Preparation preparation, bool loose) {
     const std::size_t at = add(name, Grading::classes(fines));
     MaterialVariant& v = variants[at];
-    v.setup.spec.preparation = preparation;
-    if (preparation != base.spec.preparation) {
-      PreparationProtocol& protocol = v.setup.spec.protocol;
-      protocol = protocol_of(preparation, v.setup.spec.friction);
-      protocol.tolerance = base.spec.protocol.tolerance;
-      protocol.max_passes = base.spec.protocol.max_passes;
-    }
+    prepare_otherwise(v.setup.spec, preparation);
     MaterialVariant tested = v;
     tested.setup.spec.strain_end = base.spec.strain_end;
     add_memory_tests(tested, strains, shear, loose, out);
@@ -176,6 +227,7 @@ void make_memory_variants(const MacroSetup& base, const MemoryStrains& strains, 
   };
   out.at.fines = out.at.sheared_fines = add_fines("fines", base.spec.preparation, true);
   if (out.dense) (void)add_fines("fines-dense", Preparation::dense, false);
+  add_preparations(base, fines, preparations, out);
   out.at.coarse = add("coarse", Grading::classes(coarse));
   out.at.first_mixture = variants.size();
   for (const double share : out.mixtures) add(name_of(share), mixture_of(coarse, fines, share));
@@ -183,14 +235,14 @@ void make_memory_variants(const MacroSetup& base, const MemoryStrains& strains, 
 
 /// All packings that are measured, from the grains of the whole material.
 void make_variants(const SceneTable& law, const MacroSetup& base, double shear_strain, const MemoryStrains& strains,
-                   MaterialLawScene& out) {
+                   const std::vector<Preparation>& preparations, MaterialLawScene& out) {
   const double cut = out.split * out.sizes.largest();
   const std::vector<SizePiece> fines = pieces_between(out.sizes, 0.0, cut);
   const std::vector<SizePiece> coarse = pieces_between(out.sizes, cut, kInfinity);
   if (fines.empty())
     law.throw_error("split", fmt::format("no grain is fine: the smallest radius is {:.3g} of the largest",
                                          out.sizes.smallest() / out.sizes.largest()));
-  if (out.memory) return make_memory_variants(base, strains, shear_strain, fines, coarse, out);
+  if (out.memory) return make_memory_variants(base, strains, shear_strain, fines, coarse, preparations, out);
   MacroSetup still = base;  // what other tests than shear do before is nothing
   still.spec.preload = 0.0;
   auto& variants = out.material.variants;
@@ -199,7 +251,10 @@ void make_variants(const SceneTable& law, const MacroSetup& base, double shear_s
   variants.back().same_packings = true;
   variants.back().setup.spec.test = MacroTest::shear;
   variants.back().setup.spec.strain_end = shear_strain;
+  add_preparations(base, fines, preparations, out);
+  out.at.coarse = variants.size();
   variants.push_back(variant_of("coarse", still, Grading::classes(coarse)));
+  out.at.first_mixture = variants.size();
   for (const double share : out.mixtures)
     variants.push_back(variant_of(name_of(share), still, mixture_of(coarse, fines, share)));
 }
@@ -256,9 +311,10 @@ MaterialLawScene read_material_law_scene(const Scene& scene) {
         law.number({"shear_strain", "logarithmic strain to which the fines are sheared at constant volume"}, Unit::none,
                    Range{0.0, 0.5, true, false}, 0.06);
     const MemoryStrains strains = read_memory(law, base.spec.preparation, out);
+    const std::vector<Preparation> preparations = read_preparations(law, base.spec.preparation);
     if (root.has_errors()) return out;
     out.sizes = sizes_of(base.spec);
-    make_variants(law, base, shear, strains, out);
+    make_variants(law, base, shear, strains, preparations, out);
     require_material_memory(root.table("grains"), base);
     require_grains(law, root.table("grains"), out);
     return out;

@@ -20,8 +20,9 @@ struct LawPlaces {
   std::size_t coarse = 2;
   std::size_t first_mixture = 3;  ///< a mixture for each share from here on
   // With shear memory.
-  std::vector<std::size_t> shear_tests{};  ///< tests of fines that shear memory is fitted to
-  std::size_t oedometer = 0;               ///< one of them: where the lateral stress is taken from
+  std::vector<std::size_t> shear_tests{};   ///< tests of fines that shear memory is fitted to
+  std::size_t oedometer = 0;                ///< one of them: where the lateral stress is taken from
+  std::vector<std::size_t> preparations{};  ///< fines of other preparations, of which nothing but the onset is taken
 };
 
 struct MaterialLawScene {

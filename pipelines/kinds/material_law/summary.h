@@ -78,6 +78,7 @@ struct CellLawSummary {
   double split = 0.0;
   std::vector<LawNumber> numbers;  ///< numbers that were determined; those of the card where one was written
   std::vector<LawNumber> of_pair;  ///< numbers of the two coarsest levels of a recipe alone, before all finer ones
+  std::vector<LawNumber> void_ratio_factors;  ///< by the names of other preparations
   std::vector<MixtureSummary> mixtures;
   std::optional<BandSummary> band;
   double excess_deviation = 0.0;  ///< root mean square of W/V_c about its form
@@ -93,6 +94,7 @@ void fields(auto&& visit, Of<CellLawSummary> auto& s) {
   visit("split", s.split);
   visit("numbers", s.numbers);
   visit("numbers_of_two_coarsest_levels", s.of_pair, kLeftOut);
+  visit("void_ratio_factors", s.void_ratio_factors, kLeftOut);
   visit("mixtures", s.mixtures);
   visit("band", s.band, kLeftOut);
   visit("excess_deviation", s.excess_deviation);

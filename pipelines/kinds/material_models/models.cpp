@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibrate/state_curves.h"
 #include "common/core/error.h"
 #include "common/core/limits.h"
 #include "common/core/particles.h"
@@ -105,7 +106,7 @@ MacroCurve cells_of(const OneSample& one, std::size_t sample) {
   const CoarseAndFine parts = parted_or_refused(whole, cut_of(m, one.truth));
   MacroSetup setup = coarse_steps(one.truth.variant->setup);
   const bool by_density = m.start == ModelStart::density;
-  setup.spec.cells = CellMatter{*m.card, parts.share(), 0.0, by_density};
+  setup.spec.cells = CellMatter{*m.card, parts.share(), 0.0, by_density, known_preparation(*m.card, setup.spec)};
   setup.spec.bodies = static_cast<std::int64_t>(parts.coarse.size());
   if (m.places == ModelPlaces::truth) return one.test(setup, in_box_of(whole, parts.coarse), sample, nullptr);
   if (by_density) setup.spec.cells->solid_fraction = whole.solid_fraction();
@@ -189,7 +190,7 @@ MacroCurve mean_field_of(const OneSample& one, std::size_t sample) {
   if (one.model.start == ModelStart::density) {
     const CoarseAndFine parts =
         parted_or_refused(one.truth.packings->at(sample), card.split * spec_of(one.truth).solid_radius_max);
-    onset = onset_by_card(card, parts.share());
+    onset = onset_by_card(card, parts.share(), known_preparation(card, spec_of(one.truth)));
   }
   MacroCurve c = mean_field(card, truth, pressure, onset);
   c.engine = one.model.name;
@@ -257,6 +258,15 @@ double span_of_fines(const MacroSpec& spec, double split) {
   return largest / sizes.smallest();
 }
 
+/// The factor by which void ratios of the card are taken for the preparation of the material; empty where none is.
+std::string factor_text(const MaterialModel& model, const MacroSpec& spec) {
+  const bool by_density = model.kind == ModelKind::mean_field && model.start == ModelStart::density;
+  if (model.kind != ModelKind::cells && !by_density) return "";
+  const std::string known = known_preparation(*model.card, spec);
+  if (known.empty()) return "";
+  return fmt::format(" (void ratios times {:.4g})", *void_ratio_factor(*model.card, known));
+}
+
 /// What a model draws by a power law of its own; null: nothing.
 const char* drawn_by(const MaterialModel& model) {
   if (model.kind == ModelKind::substitute) return "fines";
@@ -283,8 +293,8 @@ std::string other_fines(const MaterialModel& model, const MacroSpec& spec) {
   if (span > 0.0 && std::abs(span / card.fines_ratio - 1.0) > kAlike)
     add(fmt::format("the card is of fines of ratio {:.3g}, these have {:.3g}", card.fines_ratio, span));
   if (card.preparation != to_string(spec.preparation))
-    add(fmt::format("the card is of fines prepared '{}', these are '{}'", card.preparation,
-                    to_string(spec.preparation)));
+    add(fmt::format("the card is of fines prepared '{}', these are '{}'{}", card.preparation,
+                    to_string(spec.preparation), factor_text(model, spec)));
   return text;
 }
 
@@ -320,9 +330,7 @@ double pressure_at(const CellCard& card, double state) {
 
 /// Where the mixture jams that bears `pressure` over E at this solid fraction.
 double onset_of(const CellCard& card, double solid_fraction, double pressure) {
-  const double state = std::pow(pressure / card.modulus.value, 1.0 / card.exponent.value);
-  if (card.form == StateForm::porosity) return (solid_fraction - state) / (1.0 - state);
-  return 1.0 / (1.0 + (1.0 / solid_fraction - 1.0) / (1.0 - state));
+  return onset_at(card.form, card.modulus.value, card.exponent.value, solid_fraction, pressure);
 }
 
 /// The test of a curve and its strains, without what the packing answered.
@@ -352,8 +360,13 @@ double solid_fraction_at(const MacroCurve& c, std::size_t point) {
 
 }  // namespace
 
-double onset_by_card(const CellCard& card, double share) {
-  const FinesLaw law = fines_law_of(card, 1.0);
+std::string known_preparation(const CellCard& card, const MacroSpec& spec) {
+  const std::string own = to_string(spec.preparation);
+  return own != card.preparation && void_ratio_factor(card, own) ? own : "";
+}
+
+double onset_by_card(const CellCard& card, double share, const std::string& preparation) {
+  const FinesLaw law = fines_law_of(card, 1.0, preparation);
   const double coarse = 1.0 - share;
   const double pores = law.void_ratio * share + (coarse > 0.0 ? law.excess.volume(share, coarse) : 0.0);
   return 1.0 / (1.0 + pores);

@@ -62,8 +62,12 @@ MacroCurve mean_field(const CellCard& card, const MacroCurve& truth, double pres
 /// same start pressure.
 void map_by_state(const CellCard& card, const MacroCurve& truth, double pressure, MacroCurve& substitute);
 
-/// phi_J of the mixture by the card: 1/(1 + e), e the pores of fines and coarse grains over their solid volume.
-double onset_by_card(const CellCard& card, double share);
+/// phi_J of the mixture by the card: 1/(1 + e), e the pores of fines and coarse grains over their solid volume. With a
+/// `preparation` e is times the factor of the card for it. Throws InputError where it has none.
+double onset_by_card(const CellCard& card, double share, const std::string& preparation = "");
+
+/// The preparation of the material, where the card has a factor for it; else empty: that of the card stands for it.
+std::string known_preparation(const CellCard& card, const MacroSpec& spec);
 
 // Curves of models beside the truth.
 
