@@ -93,16 +93,7 @@ struct SoftContact {
 
   template <int D, class T>
   [[nodiscard]] ContactResponse<D, T> evaluate(const ContactState<D, T>& s) const {
-    ContactResponse<D, T> out;
-    const T radius = s.constants.a;
-    const T ratio = taken_ratio<T>(s.overlap, radius);
-    const Mask<T> idle = idle_at(ratio);
-    if (!any(!idle)) return out;
-    const auto [force, stiffness_now] = elastic_at<T>(ratio, radius);
-    out.elastic_force = force;
-    out.normal_stiffness = stiffness_now;
-    add_motion(s, modulus * radius * largest<T>(tangential.value(ratio), 0.0), out);
-    return any(idle) ? select(idle, {}, out) : out;
+    return respond(s, [](const auto&...) {});
   }
 
   /// Work of the elastic force from touch to this overlap [J].
@@ -116,6 +107,24 @@ struct SoftContact {
   }
 
  protected:
+  /// The response whose elastic part and stiffness along the contact [N/m] are those of loading, as
+  /// change(loading, radius, stiffness, out) leaves them.
+  template <int D, class T, class Change>
+  [[nodiscard]] ContactResponse<D, T> respond(const ContactState<D, T>& s, const Change& change) const {
+    ContactResponse<D, T> out;
+    const T radius = s.constants.a;
+    const T ratio = taken_ratio<T>(s.overlap, radius);
+    const Mask<T> idle = idle_at(ratio);
+    if (!any(!idle)) return out;
+    const Elastic<T> loading = elastic_at<T>(ratio, radius);
+    out.elastic_force = loading.force;
+    out.normal_stiffness = loading.stiffness;
+    T stiffness = modulus * radius * largest<T>(tangential.value(ratio), 0.0);
+    change(loading, radius, stiffness, out);
+    add_motion(s, stiffness, out);
+    return any(idle) ? select(idle, {}, out) : out;
+  }
+
   /// Damping and tangential force with this stiffness [N/m], on top of the elastic force and stiffness in `out`.
   template <int D, class T>
   void add_motion(const ContactState<D, T>& s, const T& stiffness, ContactResponse<D, T>& out) const {
@@ -161,25 +170,17 @@ struct SoftUnloading : SoftContact {
 
   template <int D, class T>
   [[nodiscard]] ContactResponse<D, T> evaluate(const ContactState<D, T>& s) const {
-    ContactResponse<D, T> out;
-    const T radius = s.constants.a;
-    const T ratio = taken_ratio<T>(s.overlap, radius);
-    const Mask<T> idle = idle_at(ratio);
-    if (!any(!idle)) return out;
-    const Elastic<T> loading = elastic_at<T>(ratio, radius);
-    out.elastic_force = loading.force;
-    out.normal_stiffness = loading.stiffness;
-    T share(1.0);  // force over that of loading at this overlap
-    const Mask<T> returns = s.overlap < s.memory;
-    if (any(returns)) {
-      const Elastic<T> returned = unloading_at<T>(s.overlap / radius, s.memory / radius, radius);
-      out.elastic_force = choose<T>(returns, returned.force, out.elastic_force);
-      out.normal_stiffness = choose<T>(returns, returned.stiffness, out.normal_stiffness);
-      share = choose<T>(returns && loading.force > 0.0, returned.force / loading.force, share);
-    }
-    out.memory = largest(s.memory, s.overlap);
-    add_motion(s, share * (modulus * radius * largest<T>(tangential.value(ratio), 0.0)), out);
-    return any(idle) ? select(idle, {}, out) : out;
+    return respond(s, [&](const Elastic<T>& loading, const T& radius, T& stiffness, ContactResponse<D, T>& out) {
+      const Mask<T> returns = s.overlap < s.memory;
+      if (any(returns)) {
+        const Elastic<T> returned = unloading_at<T>(s.overlap / radius, s.memory / radius, radius);
+        out.elastic_force = choose<T>(returns, returned.force, out.elastic_force);
+        out.normal_stiffness = choose<T>(returns, returned.stiffness, out.normal_stiffness);
+        // In proportion to the force that is left of that of loading.
+        stiffness = choose<T>(returns && loading.force > 0.0, returned.force / loading.force, T(1.0)) * stiffness;
+      }
+      out.memory = largest(s.memory, s.overlap);
+    });
   }
 
  private:

@@ -28,24 +28,28 @@ void fields(auto&& visit, Of<TangentialPoint> auto& p) {
 }
 
 void fields(auto&& visit, Of<Cost> auto& c, const std::string& prefix = "") {
-  visit(prefix + "loop_passes", c.loop_passes, "1", Limits::not_negative());
-  visit(prefix + "contact_evaluations", c.contact_evaluations, "1", Limits::not_negative());
-  visit(prefix + "seconds", c.seconds, "s", Limits::not_negative());
+  visit(prefix + "loop_passes", c.loop_passes, "1", Limits::not_negative(), Means{"passes over all contacts"});
+  visit(prefix + "contact_evaluations", c.contact_evaluations, "1", Limits::not_negative(),
+        Means{"evaluations of contact laws"});
+  visit(prefix + "seconds", c.seconds, "s", Limits::not_negative(),
+        Means{"time, of the wall or of cores as the member that holds it says"});
 }
 
 void fields(auto&& visit, Of<MeanError> auto& m) {
-  visit("mean", m.mean);
-  visit("standard_error", m.error);
-  visit("n", m.n);
+  visit("mean", m.mean, Means{"mean over samples, in the unit of the quantity", "as the quantity"});
+  visit("standard_error", m.error, Means{"standard error of the mean", "as the quantity"});
+  visit("n", m.n, Means{"number of samples", "1"});
 }
 
 void fields(auto&& visit, Of<PackingInfo> auto& p) {
-  visit("seed", p.seed, "1");
-  visit("grains", p.grains, "1", Limits::not_negative());
-  visit("solid_fraction", p.solid_fraction, "1", Limits::flag());
-  visit("contacts_per_grain", p.contacts_per_grain, "1", Limits::not_negative());
-  visit("exponent", p.exponent, "1", Limits::anything());
-  visit("exponent_error", p.exponent_error, "1", Limits::anything());
+  visit("seed", p.seed, "1", Means{"seed of the packing"});
+  visit("grains", p.grains, "1", Limits::not_negative(), Means{"number of grains"});
+  visit("solid_fraction", p.solid_fraction, "1", Limits::flag(), Means{"volume of the grains over that of the shell"});
+  visit("contacts_per_grain", p.contacts_per_grain, "1", Limits::not_negative(),
+        Means{"mean number of contacts of a grain"});
+  visit("exponent", p.exponent, "1", Limits::anything(),
+        Means{"power-law exponent of the radii, by maximum likelihood"});
+  visit("exponent_error", p.exponent_error, "1", Limits::anything(), Means{"standard error of the exponent"});
 }
 
 /// Fields of a PackingRun without its lists.

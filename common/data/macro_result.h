@@ -21,10 +21,10 @@ namespace softgrain {
 struct LawIdentity {
   std::optional<LawForm> form{};          ///< empty: with a hash the law of cells, else a twin, or not recorded
   double solid_fraction = 0.0;            ///< solid fraction at which a table was taken; 0: a law card
-  double youngs_modulus = 0.0;            ///< E that scales the forces of the law [Pa]
+  double youngs_modulus = 0.0;            ///< [Pa]
   std::optional<double> poisson_ratio{};  ///< nu of the measured grains; empty: not known (experiments)
   std::optional<double> friction{};       ///< mu of the measured grains
-  std::string hash;                       ///< hash of every number that forces depend on
+  std::string hash;
 
   friend bool operator==(const LawIdentity&, const LawIdentity&) = default;
 };
@@ -35,11 +35,14 @@ std::string identity_text(const LawIdentity& law);
 
 /// Numbers of a law with their names as attributes of curves and in summaries. `fraction`: as solid_fraction.
 void law_fields(auto&& visit, Of<LawIdentity> auto& law, auto& fraction) {
-  visit("law_hash", "hash", law.hash);
-  visit("law_solid_fraction", "solid_fraction", fraction, Limits::not_negative());
-  visit("law_youngs_modulus", "E", law.youngs_modulus, Limits::not_negative());
-  visit("law_poisson_ratio", "nu", law.poisson_ratio, Limits{});
-  visit("law_friction", "mu", law.friction, Limits{});
+  visit("law_hash", "hash", law.hash, Means{"hash of every number that forces depend on"});
+  visit("law_solid_fraction", "solid_fraction", fraction, Limits::not_negative(),
+        Means{"solid fraction at which a table was taken; null: a law card", "1"});
+  visit("law_youngs_modulus", "E", law.youngs_modulus, Limits::not_negative(),
+        Means{"Young's modulus that scales the forces of the law", "Pa"});
+  visit("law_poisson_ratio", "nu", law.poisson_ratio, Limits{},
+        Means{"Poisson's ratio of the measured grains; null: not known", "1"});
+  visit("law_friction", "mu", law.friction, Limits{}, Means{"friction of the measured grains; null: not known", "1"});
 }
 
 /// Material that a law is for, in the words of check, summaries and reports; empty for a twin.

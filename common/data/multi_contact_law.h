@@ -143,14 +143,14 @@ struct PriorNumber {
 };
 
 void fields(auto&& visit, Of<PriorNumber> auto& n) {
-  visit("name", n.name);
-  visit("own", n.own);
-  visit("own_error", n.own_error, Limits::not_negative());
-  visit("library", n.library);
-  visit("library_error", n.library_error, Limits::not_negative());
-  visit("value", n.value);
-  visit("error", n.error, Limits::not_negative());
-  visit("own_weight", n.own_weight, Limits::flag());
+  visit("name", n.name, Means{"name of the number"});
+  visit("own", n.own, Means{"as the packings alone give it", "1"});
+  visit("own_error", n.own_error, Limits::not_negative(), Means{"its standard error", "1"});
+  visit("library", n.library, Means{"as the library predicts it", "1"});
+  visit("library_error", n.library_error, Limits::not_negative(), Means{"its standard error", "1"});
+  visit("value", n.value, Means{"both together", "1"});
+  visit("error", n.error, Limits::not_negative(), Means{"its standard error", "1"});
+  visit("own_weight", n.own_weight, Limits::flag(), Means{"share of the packings in it", "1"});
 }
 
 /// How the prediction of a library came into the law of an entry.
@@ -162,10 +162,10 @@ struct LawPrior {
 };
 
 void fields(auto&& visit, Of<LawPrior> auto& p) {
-  visit("library", p.library);
-  visit("distance", p.distance);
-  visit("own_factor", p.own_factor);
-  visit("numbers", p.numbers);
+  visit("library", p.library, Means{"file of the library"});
+  visit("distance", p.distance, Means{"distance to the nearest measured material", "1"});
+  visit("own_factor", p.own_factor, Means{"factor on the errors of the packings", "1"});
+  visit("numbers", p.numbers, Means{"each number of the law"});
 }
 
 /// All laws of one kind of packing.

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "common/core/error.h"
+#include "common/data/attributes.h"
 #include "common/data/card_text.h"
 #include "common/data/multi_contact_law.h"
 
@@ -214,7 +215,9 @@ LawPrior read_prior(const SceneTable& t) {
   out.own_factor = t.number("own_factor", Unit::none, Range{1.0, kInfinity, false, true});
   for (const SceneTable& n : t.tables("number")) {
     PriorNumber one;
-    const auto read = [&]<class Member>(const char* name, Member& member, const Limits& limits = Limits::anything()) {
+    const auto read = [&]<class Member>(const char* name, Member& member, const auto&... options) {
+      const Limits* const asked = attributes::limits_among(options...);
+      const Limits limits = asked != nullptr ? *asked : Limits::anything();
       if constexpr (std::is_same_v<Member, std::string>)
         member = n.text(name);
       else if (n.has(name) || !std::isnan(member))  // what may be unknown is NaN

@@ -19,7 +19,7 @@ void write_provenance(const h5::Group& root, const Provenance& provenance) {
   const h5::Group group = root.create("provenance");
   group.attribute("schema_version", std::int64_t{kSchemaVersion});
   group.attribute("program", "softgrain");
-  const auto write = [&group](const char* name, const auto& value) {
+  const auto write = [&group](const char* name, const auto& value, const auto&...) {
     if constexpr (std::is_integral_v<std::remove_cvref_t<decltype(value)>>)
       group.attribute(name, static_cast<std::int64_t>(value));
     else

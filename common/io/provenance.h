@@ -12,26 +12,26 @@ namespace softgrain {
 inline constexpr int kSchemaVersion = 1;
 
 struct Provenance {
-  std::string version;   ///< version of softgrain
-  std::string commit;    ///< git commit at build time, "unknown" without git
-  std::string compiler;  ///< compiler and flags
+  std::string version;
+  std::string commit;
+  std::string compiler;
   int threads = 1;
   std::uint64_t seed = 0;
-  std::string command;  ///< command line as given
-  std::string kind;     ///< kind of the scene; empty where no scene was run. A summary says it itself
-  std::string scene;    ///< whole scene, overrides applied
+  std::string command;
+  std::string kind;  ///< kind of the scene; empty where no scene was run. A summary says it itself
+  std::string scene;
 };
 
 /// `with_kind`: as files have it; the summary of a run has its kind elsewhere.
 void fields(auto&& visit, Of<Provenance> auto& p, bool with_kind = false) {
-  visit("version", p.version);
-  visit("commit", p.commit);
-  visit("compiler", p.compiler);
-  visit("threads", p.threads);
-  visit("seed", p.seed);
-  visit("command", p.command);
-  if (with_kind) visit("kind", p.kind);
-  visit("scene", p.scene);
+  visit("version", p.version, Means{"version of softgrain"});
+  visit("commit", p.commit, Means{"git commit at build time, \"unknown\" without git"});
+  visit("compiler", p.compiler, Means{"compiler and flags"});
+  visit("threads", p.threads, Means{"number of threads", "1"});
+  visit("seed", p.seed, Means{"seed of the run", "1"});
+  visit("command", p.command, Means{"command line as given"});
+  if (with_kind) visit("kind", p.kind, Means{"kind of the scene"});
+  visit("scene", p.scene, Means{"whole scene, overrides applied"});
 }
 
 /// Version, commit, compiler and flags are filled in; the rest is the caller's.

@@ -27,20 +27,19 @@ struct Inner {
   static constexpr const char* path = "";
 };
 template <class T>
-  requires is_optional<T>
-struct Inner<T> : Inner<typename T::value_type> {};
+requires is_optional<T>
+struct Inner<T> : Inner<typename T::value_type> {
+};
 template <class T>
-  requires(json_record::is_list<T> || json_record::is_array<T>)
-struct Inner<T> {
+requires(json_record::is_list<T> || json_record::is_array<T>) struct Inner<T> {
   using type = typename Inner<typename T::value_type>::type;
   static constexpr const char* path = "[]";
 };
 template <class T>
-  requires json_record::is_map<T>
+requires json_record::is_map<T>
 struct Inner<T> {
   using type = typename Inner<typename T::mapped_type>::type;
-  static constexpr const char* path =
-      json_record::is_list<typename T::mapped_type> ? ".NAME[]" : ".NAME";
+  static constexpr const char* path = json_record::is_list<typename T::mapped_type> ? ".NAME[]" : ".NAME";
 };
 
 template <class Record>

@@ -42,10 +42,10 @@ struct PowerFit {
 };
 
 void fields(auto&& visit, Of<PowerFit> auto& f) {
-  visit("exponent", f.exponent);
-  visit("standard_error", f.standard_error);
+  visit("exponent", f.exponent, Means{"growth exponent; null with fewer than 3 points", "1"});
+  visit("standard_error", f.standard_error, Means{"standard error of it, from the scatter about the line", "1"});
   visit("prefactor", f.prefactor);
-  visit("points", f.points);
+  visit("points", f.points, Means{"number of points", "1"});
 }
 
 /// Fits the points with low <= x <= high and finite positive y.

@@ -120,8 +120,8 @@ constexpr auto kRadii = [](auto&& visit, auto& material) {
 
 void write_fits(const h5::Group& g, const GrainBoxResult& result) {
   const AttributeWriter write{g};
-  const auto write_fit = [&](const std::string& name, const PowerFit& fit) {
-    fields([&](const char* number, const auto& value) { write(name + "_" + number, value); }, fit);
+  const auto write_fit = [&](const std::string& name, const PowerFit& fit, const auto&...) {
+    fields([&](const char* number, const auto& value, const auto&...) { write(name + "_" + number, value); }, fit);
   };
   const GrainBoxFits fits = fit_growth(result);
   fields(write_fit, fits);

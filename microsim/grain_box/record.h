@@ -89,10 +89,10 @@ struct GrainBoxFits {
 };
 
 void fields(auto&& visit, Of<GrainBoxFits> auto& f) {
-  visit("K_low", f.bulk_low);
-  visit("K_high", f.bulk_high);
-  visit("G_low", f.shear_low);
-  visit("G_high", f.shear_high);
+  visit("K_low", f.bulk_low, Means{"K in the lower range"});
+  visit("K_high", f.bulk_high, Means{"K in the upper range"});
+  visit("G_low", f.shear_low, Means{"G in the lower range"});
+  visit("G_high", f.shear_high, Means{"G in the upper range"});
 }
 
 [[nodiscard]] GrainBoxFits fit_growth(const GrainBoxResult& result);

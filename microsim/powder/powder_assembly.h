@@ -92,26 +92,26 @@ struct PowderPoint {
 /// A pressure at which a sample came to rest.
 struct PowderStage {
   std::int64_t phase = 0;
-  double pressure = 0.0;      ///< imposed
-  double time = 0.0;          ///< [T0]
-  double fraction = 0.0;      ///< Phi
-  double coordination = 0.0;  ///< z, distant pairs included
+  double pressure = 0.0;  ///< imposed
+  double time = 0.0;      ///< [T0]
+  double fraction = 0.0;  ///< Phi
+  double coordination = 0.0;
   double mean_repulsive = 0.0;
   double mean_tensile = 0.0;
-  double bulk = 0.0;   ///< bulk modulus, as in PowderModuli; NaN: not defined
-  double shear = 0.0;  ///< shear modulus, as in PowderModuli; NaN: not defined
+  double bulk = 0.0;
+  double shear = 0.0;
 };
 
 /// Without the phase, by the names of summaries.
 void fields(auto&& visit, Of<PowderStage> auto& s) {
-  visit("pressure", s.pressure);
-  visit("time", s.time);
-  visit("Phi", s.fraction);
-  visit("z", s.coordination);
-  visit("mean_repulsive", s.mean_repulsive);
-  visit("mean_tensile", s.mean_tensile);
-  visit("bulk", s.bulk);
-  visit("shear", s.shear);
+  visit("pressure", s.pressure, Means{"imposed pressure P*", "1"});
+  visit("time", s.time, Means{"time at its end", "T0"});
+  visit("Phi", s.fraction, Means{"solid fraction", "1"});
+  visit("z", s.coordination, Means{"coordination number, distant pairs included", "1"});
+  visit("mean_repulsive", s.mean_repulsive, Means{"mean of the forces that push", "F0, without cohesion P a"});
+  visit("mean_tensile", s.mean_tensile, Means{"mean of the forces that pull, negative", "F0, without cohesion P a"});
+  visit("bulk", s.bulk, Means{"bulk modulus; null: not defined", "F0/a, without cohesion P"});
+  visit("shear", s.shear, Means{"shear modulus; null: not defined", "F0/a, without cohesion P"});
 }
 
 /// Everything a sample needs to go on.

@@ -49,8 +49,8 @@ nlohmann::json summarise(const MultiContactLawFit& fit, const std::vector<MultiC
   nlohmann::json summary;
   summary["status"] = to_string(fit.usable ? RunStatus::good : RunStatus::not_usable);
   summary["inputs"] = options.inputs;
-  summary["multi_contact"] = multi_contact_json(data.front(), settings.target);
-  summary["entries"] = entries_json(fit.table);
+  summary["multi_contact"] = json_of(summary_of(data.front(), settings.target));
+  summary["entries"] = json_of(summaries_of(fit.table));
   summary["options"] = {{"discrepancy", settings.fit.discrepancy},
                         {"replicates", settings.fit.replicates},
                         {"min_packings", settings.fit.min_packings},

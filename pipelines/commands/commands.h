@@ -105,6 +105,7 @@ struct SchemaOptions {
   std::string kind{};   ///< empty: the list of kinds
   std::string table{};  ///< "macro", "loading.stage", "." for the root; empty: the root and which tables there are
   SchemaForm form = SchemaForm::text;
+  bool summary = false;  ///< members of summary.json, not keys of scenes
 };
 
 /// Adds `schema` to the program's command line.

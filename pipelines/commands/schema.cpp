@@ -132,6 +132,41 @@ std::string as_json(const std::vector<ExploredKey>& all, const SchemaOptions& o)
   return schema.dump(2) + "\n";
 }
 
+// Members of summaries.
+
+std::string as_text(const std::vector<RecordMember>& members) {
+  std::size_t width = 0;
+  for (const RecordMember& m : members) width = std::max(width, m.path.size());
+  std::string text;
+  for (const RecordMember& m : members)
+    text += fmt::format("{:<{}}  {}{}\n", m.path, width, m.meaning,
+                        m.unit.empty() || m.unit == "1" ? "" : fmt::format(" [{}]", m.unit));
+  return text;
+}
+
+std::string as_markdown(const std::vector<RecordMember>& members) {
+  std::string text = "| member | meaning | unit |\n|---|---|---|\n";
+  for (const RecordMember& m : members)
+    text += fmt::format("| `{}` | {} | {} |\n", m.path, cell(m.meaning), cell(m.unit));
+  return text;
+}
+
+std::string as_json(const std::vector<RecordMember>& members) {
+  json out = json::object();
+  for (const RecordMember& m : members) out[m.path] = {{"meaning", m.meaning}, {"unit", m.unit}};
+  return out.dump(2) + "\n";
+}
+
+/// Throws InputError for a table: a summary has none.
+std::string summary_text(const SchemaOptions& o) {
+  if (!o.table.empty())
+    throw InputError(
+        fmt::format("schema {} {} --summary: a summary has no tables of keys; leave {} out", o.kind, o.table, o.table));
+  const std::vector<RecordMember> members = summary_members(kind_named(o.kind, "schema"));
+  if (o.form == SchemaForm::json) return as_json(members);
+  return o.form == SchemaForm::markdown ? as_markdown(members) : as_text(members);
+}
+
 std::string list_of_kinds() {
   std::string text = "softgrain schema KIND: the keys of a kind of scenes. Kinds:\n";
   for (const SceneKind& k : scene_kinds())
@@ -161,12 +196,17 @@ void add_schema_command(CLI::App& app, SchemaOptions& o) {
       ->check(CLI::IsMember(all_enum_names<SchemaForm>()).description(""));
   sub->add_flag_callback(
       "--json", [&o] { o.form = SchemaForm::json; }, "As --to json");
+  sub->add_flag("--summary", o.summary, "Members of the kind's summary.json instead: meaning and unit");
   sub->callback([&o] { o.chosen = true; });
 }
 
 ExitStatus command_schema(const SchemaOptions& o) {
   if (o.kind.empty()) {
     write_standard_output(list_of_kinds());
+    return ExitStatus::good;
+  }
+  if (o.summary) {
+    write_standard_output(summary_text(o));
     return ExitStatus::good;
   }
   const std::vector<ExploredKey> all = keys_of(kind_named(o.kind, "schema"));

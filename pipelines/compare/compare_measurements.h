@@ -34,18 +34,22 @@ struct PointCost {
   double seconds = 0.0;
 };
 
-/// Two relaxations of the same packings.
-struct RelaxationComparison {
+/// Forces and stiffnesses of two sides, with what their points cost.
+struct ForceComparison {
   PairKind kind = PairKind::soft_solid;
-  std::string reference;
-  std::string candidate;
-  std::vector<RatioRow> normal;  ///< packings in common only, error by jackknife over packings
+  std::vector<RatioRow> normal;
   std::vector<RatioRow> stiffness_initial;
   std::vector<RatioRow> stiffness_secant;
   PointCost reference_normal_cost;
   PointCost candidate_normal_cost;
   PointCost reference_tangential_cost;
   PointCost candidate_tangential_cost;
+};
+
+/// Two relaxations of the same packings: those in common only, errors by jackknife over packings.
+struct RelaxationComparison : ForceComparison {
+  std::string reference;
+  std::string candidate;
 };
 
 /// Compares two relaxations of one file, packing by packing.
@@ -58,18 +62,10 @@ RelaxationComparison compare_relaxations(const Measurements& data, const std::st
 /// Two files, one pair kind and relaxation each. Runs of the same packings are compared packing by packing, others
 /// count as independent. Forces are compared as Fn/(E Rs^2) and stiffnesses as kt/(E Rs), so that runs with other E and
 /// Rs can be set side by side.
-struct MeasurementComparison {
-  PairKind kind = PairKind::soft_solid;
+struct MeasurementComparison : ForceComparison {
   std::string candidate_relaxation;
   std::string reference_relaxation;
   bool paired = false;  ///< the packings are the same
-  std::vector<RatioRow> normal;
-  std::vector<RatioRow> stiffness_initial;
-  std::vector<RatioRow> stiffness_secant;
-  PointCost reference_normal_cost;
-  PointCost candidate_normal_cost;
-  PointCost reference_tangential_cost;
-  PointCost candidate_tangential_cost;
 };
 
 /// Throws InputError when a side has no such runs or no overlap is in both.

@@ -83,33 +83,35 @@ json to_json(const PointCost& c) {
           {"seconds_per_point", number(c.seconds)}};
 }
 
-template <class Comparison>
-json cost_json(const Comparison& c) {
+json cost_json(const ForceComparison& c) {
   return {{"candidate_normal", to_json(c.candidate_normal_cost)},
           {"reference_normal", to_json(c.reference_normal_cost)},
           {"candidate_tangential", to_json(c.candidate_tangential_cost)},
           {"reference_tangential", to_json(c.reference_tangential_cost)}};
 }
 
-json to_json(const RelaxationComparison& c) {
+/// What all comparisons of forces say.
+json forces_json(const ForceComparison& c) {
   return {{"pair", to_string(c.kind)},
-          {"candidate", c.candidate},
-          {"reference", c.reference},
           {"normal_force", to_json(c.normal)},
           {"stiffness_initial", to_json(c.stiffness_initial)},
           {"stiffness_secant", to_json(c.stiffness_secant)},
           {"cost", cost_json(c)}};
 }
 
+json to_json(const RelaxationComparison& c) {
+  json out = forces_json(c);
+  out["candidate"] = c.candidate;
+  out["reference"] = c.reference;
+  return out;
+}
+
 json to_json(const MeasurementComparison& c) {
-  return {{"pair", to_string(c.kind)},
-          {"candidate_relaxation", c.candidate_relaxation},
-          {"reference_relaxation", c.reference_relaxation},
-          {"paired", c.paired},
-          {"cost", cost_json(c)},
-          {"normal_force", to_json(c.normal)},
-          {"stiffness_initial", to_json(c.stiffness_initial)},
-          {"stiffness_secant", to_json(c.stiffness_secant)}};
+  json out = forces_json(c);
+  out["candidate_relaxation"] = c.candidate_relaxation;
+  out["reference_relaxation"] = c.reference_relaxation;
+  out["paired"] = c.paired;
+  return out;
 }
 
 json to_json(const LawPartComparison& part) {
@@ -197,14 +199,12 @@ std::string ratio_header() {
                      "ratio");
 }
 
-template <class Ratios>
-std::string ratio_text(const Ratios& c) {
+std::string ratio_text(const ForceComparison& c) {
   return ratio_header() + text_of("Fn", c.normal) + text_of("kt initial", c.stiffness_initial) +
          text_of("kt secant", c.stiffness_secant) + jumps_text(c.stiffness_initial);
 }
 
-template <class Comparison>
-std::string cost_text(const Comparison& c) {
+std::string cost_text(const ForceComparison& c) {
   const std::string speedup = factor(c.reference_normal_cost.seconds / c.candidate_normal_cost.seconds);
   return fmt::format(
       "  cost of a normal point: {:.3g} against {:.3g} loop passes, {:.3g} against {:.3g} s (speed-up {})\n",

@@ -51,7 +51,7 @@ using Properties = std::vector<std::pair<const char*, double>>;
 Properties properties(const auto& each_field) {
   Properties out;
   each_field([&out](const char*, const auto& member, const auto&... options) {
-    const auto take = [&](const auto& option) {
+    [[maybe_unused]] const auto take = [&](const auto& option) {
       if constexpr (std::is_same_v<std::remove_cvref_t<decltype(option)>, Compared>)
         out.emplace_back(option.what, member);
     };

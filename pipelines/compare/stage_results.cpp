@@ -385,7 +385,7 @@ std::vector<StageMeans> stage_means(const std::vector<MacroCurve>& curves, const
       if (k < sample.size()) all.push_back(&sample[k]);
     StageMeans& means = out.emplace_back();
     means.record = all.front()->record;
-    stage_numbers([&](const char*, auto mean, auto result) {
+    stage_numbers([&](const char*, auto mean, auto result, const Means&) {
       if (const MeanError m = finite_mean(all, result); m.n > 0) means.*mean = m;
     });
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/enum_names.h"
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
 #include "common/data/macro_result.h"
@@ -111,24 +112,29 @@ struct StageMeans {
 void stage_numbers(auto&& visit) {
   using M = StageMeans;
   using R = StageResult;
-  visit("modulus_secant", &M::modulus, &R::modulus);
-  visit("modulus_stress_from", &M::modulus_from, &R::modulus_from);
-  visit("modulus_stress_to", &M::modulus_to, &R::modulus_to);
-  visit("modulus_begin", &M::modulus_begin, &R::modulus_begin);
-  visit("modulus_end", &M::modulus_end, &R::modulus_end);
-  visit("poisson_begin", &M::poisson_begin, &R::poisson_begin);
-  visit("axial_strain_end", &M::strain_end, &R::strain_end);
-  visit("volumetric_strain_end", &M::volumetric_end, &R::volumetric_end);
-  visit("axial_stress_end", &M::axial_end, &R::axial_end);
-  visit("lateral_stress_end", &M::lateral_end, &R::lateral_end);
-  visit("K0_end", &M::lateral_ratio, &R::lateral_ratio);
-  visit("q_over_p_peak", &M::ratio_peak, &R::ratio_peak);
-  visit("axial_strain_at_peak", &M::ratio_peak_strain, &R::ratio_peak_strain);
-  visit("q_over_p_end", &M::ratio_end, &R::ratio_end);
-  visit("shear_strain_end", &M::shear_end, &R::shear_end);
-  visit("shear_over_normal_peak", &M::friction_peak, &R::friction_peak);
-  visit("shear_strain_at_peak", &M::friction_peak_shear, &R::friction_peak_shear);
-  visit("shear_over_normal_end", &M::friction_end, &R::friction_end);
+  visit("modulus_secant", &M::modulus, &R::modulus, Means{"secant modulus of the stage", "Pa"});
+  visit("modulus_stress_from", &M::modulus_from, &R::modulus_from,
+        Means{"axial stress at which the interval of the modulus begins", "Pa"});
+  visit("modulus_stress_to", &M::modulus_to, &R::modulus_to, Means{"axial stress at which it ends", "Pa"});
+  visit("modulus_begin", &M::modulus_begin, &R::modulus_begin, Means{"modulus at the begin of the stage", "Pa"});
+  visit("modulus_end", &M::modulus_end, &R::modulus_end, Means{"modulus at the end of the stage", "Pa"});
+  visit("poisson_begin", &M::poisson_begin, &R::poisson_begin, Means{"Poisson's ratio at the begin of the stage", "1"});
+  visit("axial_strain_end", &M::strain_end, &R::strain_end, Means{"axial strain at the end", "1"});
+  visit("volumetric_strain_end", &M::volumetric_end, &R::volumetric_end, Means{"volumetric strain at the end", "1"});
+  visit("axial_stress_end", &M::axial_end, &R::axial_end, Means{"axial stress at the end", "Pa"});
+  visit("lateral_stress_end", &M::lateral_end, &R::lateral_end, Means{"lateral stress at the end", "Pa"});
+  visit("K0_end", &M::lateral_ratio, &R::lateral_ratio,
+        Means{"lateral over axial stress at the end of stages that keep the width", "1"});
+  visit("q_over_p_peak", &M::ratio_peak, &R::ratio_peak, Means{"largest q/p", "1"});
+  visit("axial_strain_at_peak", &M::ratio_peak_strain, &R::ratio_peak_strain,
+        Means{"axial strain at the largest q/p", "1"});
+  visit("q_over_p_end", &M::ratio_end, &R::ratio_end, Means{"q/p at the end", "1"});
+  visit("shear_strain_end", &M::shear_end, &R::shear_end, Means{"shear strain at the end", "1"});
+  visit("shear_over_normal_peak", &M::friction_peak, &R::friction_peak,
+        Means{"largest shear stress over normal stress", "1"});
+  visit("shear_strain_at_peak", &M::friction_peak_shear, &R::friction_peak_shear, Means{"shear strain there", "1"});
+  visit("shear_over_normal_end", &M::friction_end, &R::friction_end,
+        Means{"shear stress over normal stress at the end", "1"});
 }
 
 /// Stresses between which the modulus of a stage is taken, in words without numbers where they are its own: "2 MPa to 5

@@ -23,6 +23,7 @@
 #include "pipelines/kinds/pipeline/scene.h"
 #include "pipelines/kinds/recipe/scene.h"
 #include "pipelines/kinds/soft_particle/scene.h"
+#include "pipelines/results/summary.h"
 
 namespace softgrain {
 
@@ -85,6 +86,14 @@ const std::vector<KindResults>& results_of_kinds() {
     return all;
   }();
   return results;
+}
+
+std::vector<RecordMember> summary_members(const SceneKind& kind) {
+  if (kind.summary == nullptr) return {};
+  std::vector<RecordMember> all = members_of<AnySummary>();
+  for (RecordMember& own : kind.summary())
+    if (std::ranges::find(all, own.path, &RecordMember::path) == all.end()) all.push_back(std::move(own));
+  return all;
 }
 
 const SceneKind& kind_of(const Scene& scene) { return *find(scene.root().choice("kind", names_of(kAnyKind))); }

@@ -11,6 +11,9 @@ namespace softgrain {
 
 std::span<const SceneKind> scene_kinds();
 
+/// Members of the summary.json of a kind: those of every kind, then its own; none where it does not name its own.
+std::vector<RecordMember> summary_members(const SceneKind& kind);
+
 /// The kind that the scene names. Throws InputError.
 const SceneKind& kind_of(const Scene& scene);
 

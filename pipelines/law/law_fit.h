@@ -35,37 +35,37 @@ struct DrawnSample {
   std::string name;
   std::vector<double> delta;
   std::vector<double> force;  ///< [N]
-  std::vector<double> error;  ///< errors of the force; NaN: not known; empty: none was given
+  std::vector<double> error;
   std::optional<std::size_t> points;
   std::size_t tangential_points = 0;
 };
 
 void fields(auto&& visit, Of<DrawnSample> auto& s) {
-  visit("kind", s.kind);
-  visit("name", s.name);
-  visit("delta", s.delta);
-  visit("force", s.force);
-  visit("error", s.error, kLeftOut);
-  visit("points", s.points);
-  visit("tangential_points", s.tangential_points);
+  visit("kind", s.kind, Means{"kind of contact"});
+  visit("name", s.name, Means{"name of the sample"});
+  visit("delta", s.delta, Means{"overlap Delta = hn/Rs", "1"});
+  visit("force", s.force, Means{"force", "N"});
+  visit("error", s.error, kLeftOut, Means{"standard error of the force; null: not known", "N"});
+  visit("points", s.points, Means{"number of points that were measured", "1"});
+  visit("tangential_points", s.tangential_points, Means{"number of tangential points", "1"});
 }
 
 struct ExperimentSummary {
   SummaryHead head;
   std::vector<std::string> inputs;
   std::string relaxation;
-  std::string intervals;  ///< origin of the 95 % intervals
+  std::string intervals;
   std::map<std::string, PairLawSummary> laws;
   std::vector<DrawnSample> experiment;
 };
 
 void fields(auto&& visit, Of<ExperimentSummary> auto& s) {
   fields(visit, s.head);
-  visit("inputs", s.inputs);
-  visit("relaxation", s.relaxation);
-  visit("intervals", s.intervals);
-  visit("laws", s.laws);
-  visit("experiment", s.experiment);
+  visit("inputs", s.inputs, Means{"files of the measurements"});
+  visit("relaxation", s.relaxation, Means{"name of the relaxation, or \"experiment\""});
+  visit("intervals", s.intervals, Means{"origin of the 95 % intervals"});
+  visit("laws", s.laws, Means{"fitted laws, by kind of contact"});
+  visit("experiment", s.experiment, Means{"the measured points"});
 }
 
 }  // namespace softgrain

@@ -9,7 +9,8 @@ namespace {
 using nlohmann::json;
 
 void put(json& out, const std::string& name, const Estimate& e) {
-  estimate_fields([&](const std::string& key, const auto& value) { out[key] = json_of(value); }, name, e);
+  estimate_fields([&](const std::string& key, const auto& value, const auto&...) { out[key] = json_of(value); }, name,
+                  e);
 }
 
 Estimate scaled(const Estimate& e, double factor) {
@@ -85,17 +86,15 @@ json multi_contact_json(const MultiContactLaw& law) {
 }  // namespace
 
 json verdict_json(const MultiContactLaw& law) {
-  return {{"form", to_string(law.form)},
-          {"status", to_string(law.status)},
-          {"error_fitted", json_of(law.error_fitted)},
-          {"error_held_out", json_of(law.error_held_out)},
-          {"error_cross", json_of(law.error_cross)}};
+  json out;
+  verdict_fields([&out](const char* key, const auto& value, const auto&...) { out[key] = json_of(value); }, law);
+  return out;
 }
 
-json verdict_json(const LawTableEntry& e) {
-  return {{"solid_fraction", e.solid_fraction}, {"packings", e.packings},
-          {"best", to_string(e.best)},          {"volume_max", e.volume_max},
-          {"overlap_max", e.overlap_max},       {"grain_overlap_max", e.grain_overlap_max}};
+json verdict_json(const LawTableEntry& entry) {
+  json out;
+  verdict_fields([&out](const char* key, const auto& value, const auto&...) { out[key] = json_of(value); }, entry);
+  return out;
 }
 
 json law_json(const LawTable& table) {

@@ -42,17 +42,19 @@ struct LawNumbers {
 };
 
 void fields(auto&& visit, Of<LawNumbers> auto& s) {
-  estimate_fields(visit, "a", s.a);
-  estimate_fields(visit, "b", s.b);
-  estimate_fields(visit, "c", s.c);
-  estimate_fields(visit, "delta", s.delta);
-  visit("unit", s.unit);
-  if (!s.per_degree) return;
-  estimate_fields(visit, "a_per_degree", s.per_degree->a);
-  estimate_fields(visit, "c_per_degree", s.per_degree->c);
-  visit("unit_per_degree", std::string("N/degree"));
-  visit("angle_deg", s.per_degree->angle_deg);
-  visit("meaning", s.per_degree->meaning);
+  estimate_fields(visit, "a", s.a, {"a of F(D) = a D^b + c", "as `unit` says"});
+  estimate_fields(visit, "b", s.b, {"exponent b", "1"});
+  estimate_fields(visit, "c", s.c, {"c of F(D) = a D^b + c", "as `unit` says"});
+  estimate_fields(visit, "delta", s.delta, {"overlap D below which there is no force", "1"});
+  visit("unit", s.unit, Means{"unit of a and c"});
+  LawNumbers::PerDegree none;
+  if (!s.per_degree && !Describes<decltype(visit)>) return;
+  auto& degree = s.per_degree ? *s.per_degree : none;
+  estimate_fields(visit, "a_per_degree", degree.a, {"a per degree of rotation", "N/degree"});
+  estimate_fields(visit, "c_per_degree", degree.c, {"c per degree of rotation", "N/degree"});
+  visit("unit_per_degree", std::string("N/degree"), Means{"unit per degree of rotation"});
+  visit("angle_deg", degree.angle_deg, Means{"angle over which it was measured", "degree"});
+  visit("meaning", degree.meaning, Means{"initial slope or secant"});
 }
 
 /// The laws of one kind of contact; empty: not fitted. "tangential" is the initial slope.
@@ -63,9 +65,9 @@ struct LawParts {
 };
 
 void fields(auto&& visit, Of<LawParts> auto& s) {
-  visit("normal", s.normal);
-  visit("tangential", s.tangential);
-  visit("tangential_secant", s.tangential_secant);
+  visit("normal", s.normal, Means{"normal force F(D) = a D^b + c above delta, D = hn/Rs"});
+  visit("tangential", s.tangential, Means{"tangential stiffness, initial slope"});
+  visit("tangential_secant", s.tangential_secant, Means{"tangential stiffness, secant"});
 }
 
 struct PairLawSummary {
@@ -90,25 +92,26 @@ struct PairLawSummary {
 };
 
 void fields(auto&& visit, Of<PairLawSummary::Unloading> auto& s) {
-  estimate_fields(visit, "residual", s.residual);
-  estimate_fields(visit, "exponent", s.exponent);
-  visit("samples", s.samples);
-  visit("points", s.points);
-  visit("deepest", s.deepest, kLeftOut);
+  estimate_fields(visit, "residual", s.residual,
+                  {"share of the depth below the threshold that stays after unloading", "1"});
+  estimate_fields(visit, "exponent", s.exponent, {"exponent of the unloading branch", "1"});
+  visit("samples", s.samples, Means{"number of samples", "1"});
+  visit("points", s.points, Means{"number of points", "1"});
+  visit("deepest", s.deepest, kLeftOut, Means{"mean of the deepest overlap Delta_max", "1"});
 }
 
 void fields(auto&& visit, Of<PairLawSummary> auto& s) {
-  visit("status", s.status);
-  visit("reason", s.reason);
+  visit("status", s.status, Means{"whether the law is usable"});
+  visit("reason", s.reason, Means{"why not"});
   fields(visit, s.parts);
-  visit("dimensionless", s.dimensionless);
-  visit("delta_range", s.delta_range);
-  visit("max_overlap", s.max_overlap);
-  visit("packings", s.packings);
-  visit("points", s.points);
-  visit("chi2_per_dof", s.chi2_per_dof);
-  visit("quality", s.quality);
-  visit("unloading", s.unloading, kLeftOut);
+  visit("dimensionless", s.dimensionless, Means{"the same laws, forces over E Rs^2 and stiffnesses over E Rs"});
+  visit("delta_range", s.delta_range, Means{"range of Delta that was fitted", "1"});
+  visit("max_overlap", s.max_overlap, Means{"largest grain overlap over the smaller radius in that range", "1"});
+  visit("packings", s.packings, Means{"number of packings", "1"});
+  visit("points", s.points, Means{"number of points", "1"});
+  visit("chi2_per_dof", s.chi2_per_dof, Means{"chi^2 per degree of freedom", "1"});
+  visit("quality", s.quality, Means{"probability of a larger chi^2", "1"});
+  visit("unloading", s.unloading, kLeftOut, Means{"how the contact unloads; absent: not measured"});
 }
 
 /// Laws of a card, by the kind of contact.
@@ -124,8 +127,23 @@ nlohmann::json law_json(const LawTable& table);
 nlohmann::json law_json(const CellCard& card);
 
 /// What every list of laws says of a law: form, status, errors.
-nlohmann::json verdict_json(const MultiContactLaw& law);
+void verdict_fields(auto&& visit, Of<MultiContactLaw> auto& law) {
+  visit("form", law.form, Means{"form of the law"});
+  visit("status", law.status, Means{"whether the law is usable"});
+  visit("error_fitted", law.error_fitted, Means{"relative error of the forces that it was fitted to", "1"});
+  visit("error_held_out", law.error_held_out, Means{"relative error of the forces that were held out", "1"});
+  visit("error_cross", law.error_cross, Means{"relative error of forces in cross-validation", "1"});
+}
 /// What every list of laws says of an entry: which packings, the best form, up to where it was measured.
+void verdict_fields(auto&& visit, Of<LawTableEntry> auto& e) {
+  visit("solid_fraction", e.solid_fraction, Means{"solid fraction of the packings", "1"});
+  visit("packings", e.packings, Means{"number of packings", "1"});
+  visit("best", e.best, Means{"best form of law"});
+  visit("volume_max", e.volume_max, Means{"largest equivalent volume S among the fitted states", "1"});
+  visit("overlap_max", e.overlap_max, Means{"largest overlap h/Rs that was measured", "1"});
+  visit("grain_overlap_max", e.grain_overlap_max, Means{"largest grain overlap over the smaller radius", "1"});
+}
+nlohmann::json verdict_json(const MultiContactLaw& law);
 nlohmann::json verdict_json(const LawTableEntry& entry);
 
 }  // namespace softgrain

@@ -19,16 +19,17 @@ namespace softgrain {
 /// One number that a run came to.
 struct RunValue {
   std::string name;  ///< "axial stress at the end", with "(law)" behind it where several engines have one
-  std::string unit;  ///< empty: a plain number
+  std::string unit;
   double value = kNaN;
-  double error = kNaN;  ///< standard error within the run, over its samples; NaN: it has one sample, or does not say
+  double error = kNaN;
 };
 
 void fields(auto&& visit, Of<RunValue> auto& v) {
-  visit("name", v.name);
-  visit("unit", v.unit);
-  visit("value", v.value);
-  visit("standard_error", v.error);
+  visit("name", v.name, Means{"name of the result"});
+  visit("unit", v.unit, Means{"unit of the result; empty: a plain number"});
+  visit("value", v.value, Means{"value", "as `unit` says"});
+  visit("standard_error", v.error,
+        Means{"standard error within the run; null: one sample, or not said", "as `unit` says"});
 }
 
 /// One curve of a run. Runs share a plot where its title agrees, and a colour rule where the name does.

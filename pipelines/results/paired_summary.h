@@ -16,50 +16,51 @@ namespace softgrain {
 /// One number of two runs A and B, and A - B.
 struct PairedNumber {
   std::string name;
-  std::string unit;  ///< empty: a plain number
+  std::string unit;
   double a = kNaN;
   double b = kNaN;
-  double difference = kNaN;      ///< a - b
-  double error = kNaN;           ///< standard error of the difference
-  double low = kNaN;             ///< 95 % interval of the difference
-  double high = kNaN;            ///< 95 % interval of the difference
-  double error_a = kNaN;         ///< standard error of a by itself
-  double error_b = kNaN;         ///< standard error of b by itself
-  double unpaired_error = kNaN;  ///< standard error of the difference if both were independent
-  std::int64_t pairs = 0;        ///< samples or packings that are the same in both; 0: not paired
-  std::string unknown{};         ///< why the difference has no error; empty: too few samples, or it has one
+  double difference = kNaN;  ///< a - b
+  double error = kNaN;
+  double low = kNaN;   ///< 95 % interval of the difference
+  double high = kNaN;  ///< 95 % interval of the difference
+  double error_a = kNaN;
+  double error_b = kNaN;
+  double unpaired_error = kNaN;
+  std::int64_t pairs = 0;
+  std::string unknown{};
 
   /// Error of the difference over the mean error of one value; NaN where one is not known.
   [[nodiscard]] double over_one() const;
 };
 
 void fields(auto&& visit, Of<PairedNumber> auto& n) {
-  visit("name", n.name);
-  visit("unit", n.unit);
-  visit("a", n.a);
-  visit("b", n.b);
-  visit("difference", n.difference);
-  visit("standard_error", n.error);
-  range_field(visit, "interval_95", n.low, n.high);
-  visit("standard_error_a", n.error_a);
-  visit("standard_error_b", n.error_b);
-  visit("unpaired_standard_error", n.unpaired_error);
-  visit("pairs", n.pairs);
-  visit("no_error", n.unknown, kLeftOut);
+  visit("name", n.name, Means{"name of the result"});
+  visit("unit", n.unit, Means{"unit of the result; empty: a plain number"});
+  visit("a", n.a, Means{"value of run A", "as `unit` says"});
+  visit("b", n.b, Means{"value of run B", "as `unit` says"});
+  visit("difference", n.difference, Means{"A minus B", "as `unit` says"});
+  visit("standard_error", n.error, Means{"standard error of the difference", "as `unit` says"});
+  range_field(visit, "interval_95", n.low, n.high, Means{"95 % interval of the difference", "as `unit` says"});
+  visit("standard_error_a", n.error_a, Means{"standard error of A by itself", "as `unit` says"});
+  visit("standard_error_b", n.error_b, Means{"standard error of B by itself", "as `unit` says"});
+  visit("unpaired_standard_error", n.unpaired_error,
+        Means{"standard error of the difference if both runs were independent", "as `unit` says"});
+  visit("pairs", n.pairs, Means{"samples or packings that are the same in both runs; 0: not paired", "1"});
+  visit("no_error", n.unknown, kLeftOut, Means{"why the difference has no error"});
 }
 
 struct PairedSummary {
   bool paired = false;
-  std::string reason;                 ///< why errors are not paired
-  std::string method;                 ///< how they are, in a sentence
-  std::vector<PairedNumber> numbers;  ///< numbers of both runs, those that matter most first
+  std::string reason;
+  std::string method;
+  std::vector<PairedNumber> numbers;
 };
 
 void fields(auto&& visit, Of<PairedSummary> auto& s) {
-  visit("paired", s.paired);
-  visit("reason", s.reason);
-  visit("method", s.method);
-  visit("numbers", s.numbers);
+  visit("paired", s.paired, Means{"whether errors are paired"});
+  visit("reason", s.reason, Means{"why they are not"});
+  visit("method", s.method, Means{"how they are paired"});
+  visit("numbers", s.numbers, Means{"results of both runs, those that matter most first"});
 }
 
 /// Mean of paired samples a_k - b_k with Student's interval, n - 1 degrees of freedom. Throws InputError when lengths

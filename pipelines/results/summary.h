@@ -31,31 +31,33 @@ inline constexpr auto enum_names<RunStatus> = enum_name_list<RunStatus>({{RunSta
 
 /// Grains of one kind whose sizes a distribution said: what was asked, and what came out in the mean of samples.
 struct SizesSummary {
-  std::string of;     ///< "solid grains"
-  std::string form;   ///< form of the distribution
-  int dimension = 3;  ///< 2: of disks, whose shares are of the area
+  std::string of;  ///< "solid grains"
+  std::string form;
+  int dimension = 3;
   std::int64_t samples = 0;
-  double grains = 0.0;              ///< mean number of grains
-  double largest_difference = 0.0;  ///< largest difference of the volume share that passes, over all samples and sizes
-  double largest_grain = 0.0;       ///< volume share of the largest grain: half of it bounds the difference from below
-  std::string unit;                 ///< unit of the diameters
+  double grains = 0.0;
+  double largest_difference = 0.0;
+  double largest_grain = 0.0;
+  std::string unit;
   std::vector<double> diameter;
-  std::vector<double> asked;  ///< share of the volume that passes there, as asked for
+  std::vector<double> asked;
   std::vector<double> obtained;
 };
 
 void fields(auto&& visit, Of<SizesSummary> auto& s) {
-  visit("of", s.of);
-  visit("form", s.form);
-  visit("dimension", s.dimension);
-  visit("samples", s.samples);
-  visit("grains", s.grains);
-  visit("largest_difference", s.largest_difference);
-  visit("largest_grain", s.largest_grain);
-  visit("unit", s.unit);
-  visit("diameter", s.diameter);
-  visit("asked", s.asked);
-  visit("obtained", s.obtained);
+  visit("of", s.of, Means{"grains whose sizes were asked for, such as \"solid grains\""});
+  visit("form", s.form, Means{"form of the distribution"});
+  visit("dimension", s.dimension, Means{"3, or 2 of disks, whose shares are of the area", "1"});
+  visit("samples", s.samples, Means{"number of samples", "1"});
+  visit("grains", s.grains, Means{"mean number of grains", "1"});
+  visit("largest_difference", s.largest_difference,
+        Means{"largest difference of the share that passes, over all samples and sizes", "1"});
+  visit("largest_grain", s.largest_grain,
+        Means{"share of the largest grain: half of it bounds the difference from below", "1"});
+  visit("unit", s.unit, Means{"unit of the diameters"});
+  visit("diameter", s.diameter, Means{"diameters at which shares are given", "as `unit` says"});
+  visit("asked", s.asked, Means{"share of the volume that passes there, as asked for", "1"});
+  visit("obtained", s.obtained, Means{"share of the volume that passes there, in the mean of the samples", "1"});
 }
 
 /// What shares of sizes are of, for people: "volume", of disks "area".
@@ -65,8 +67,8 @@ inline const char* share_of(int dimension) { return dimension == 2 ? "area" : "v
 struct SummaryHead {
   RunStatus status = RunStatus::good;
   std::string title;
-  std::vector<std::string> remarks;          ///< notes: what else is to be known; of a run that is not usable, why
-  std::map<std::string, std::string> files;  ///< files that were written
+  std::vector<std::string> remarks;
+  std::map<std::string, std::string> files;
   std::vector<SizesSummary> sizes{};
   /// What may make the result wrong for its purpose, with what to do about it; the most important first.
   std::vector<std::string> warnings{};
@@ -79,12 +81,13 @@ struct SummaryHead {
 };
 
 void fields(auto&& visit, Of<SummaryHead> auto& s) {
-  visit("status", s.status);
-  visit("title", s.title);
-  visit("warnings", s.warnings);
-  visit("remarks", s.remarks);
-  visit("files", s.files, kLeftOut);
-  visit("sizes", s.sizes, kLeftOut);
+  visit("status", s.status, Means{"good, not usable, not run or written"});
+  visit("title", s.title, Means{"title of the scene"});
+  visit("warnings", s.warnings,
+        Means{"what may make the result wrong for its purpose, with what to do about it; the most important first"});
+  visit("remarks", s.remarks, Means{"notes; of a run that is not usable, why"});
+  visit("files", s.files, kLeftOut, Means{"files that were written"});
+  visit("sizes", s.sizes, kLeftOut, Means{"sizes of the grains where a distribution was asked for"});
 }
 
 /// The program that moved the bodies, when it was another.
@@ -96,10 +99,10 @@ struct EngineUse {
 };
 
 void fields(auto&& visit, Of<EngineUse> auto& s) {
-  visit("name", s.name);
-  visit("ranks", s.ranks);
-  visit("program", s.program);
-  visit("lammps", s.release);
+  visit("name", s.name, Means{"program that moved the bodies"});
+  visit("ranks", s.ranks, Means{"number of MPI processes", "1"});
+  visit("program", s.program, Means{"path of the program"});
+  visit("lammps", s.release, Means{"version of LAMMPS"});
 }
 
 /// What any summary says of its run, whatever the kind and whoever wrote it.
@@ -120,19 +123,20 @@ struct AnySummary {
 };
 
 void fields(auto&& visit, Of<AnySummary> auto& s) {
-  visit("status", s.status);
-  visit("title", s.title);
-  visit("kind", s.kind);
-  visit("command", s.command);
-  visit("version", s.version);
-  visit("commit", s.commit);
-  visit("warnings", s.warnings);
-  visit("remarks", s.remarks);
-  visit("files", s.files);
-  visit("seconds", s.seconds);
-  visit("provenance", s.provenance);
-  visit("engine", s.engine);
-  visit("sizes", s.sizes);
+  visit("status", s.status, Means{"good, not usable, not run or written"});
+  visit("title", s.title, Means{"title of the scene"});
+  visit("kind", s.kind, Means{"kind of the scene"});
+  visit("command", s.command, Means{"command that ran it"});
+  visit("version", s.version, Means{"version of softgrain"});
+  visit("commit", s.commit, Means{"git commit of the build"});
+  visit("warnings", s.warnings,
+        Means{"what may make the result wrong for its purpose, with what to do about it; the most important first"});
+  visit("remarks", s.remarks, Means{"notes; of a run that is not usable, why"});
+  visit("files", s.files, Means{"files that were written"});
+  visit("seconds", s.seconds, Means{"duration of the run", "s"});
+  visit("provenance", s.provenance, Means{"where the result comes from"});
+  visit("engine", s.engine, Means{"program that moved the bodies, when it was another"});
+  visit("sizes", s.sizes, Means{"sizes of the grains where a distribution was asked for"});
 }
 
 /// Warnings, most important first. Where the result is not usable its remarks come before them: the first says why.
@@ -148,26 +152,27 @@ struct PackingsSummary {
   std::size_t count = 0;
   double solid_fraction = 0.0;
   double solid_fraction_deviation = 0.0;
-  double exponent = 0.0;  ///< power-law exponent of the radii, by maximum likelihood
+  double exponent = 0.0;
   double exponent_deviation = 0.0;
   double contacts_per_grain = 0.0;
   double grains = 0.0;
   double grains_deviation = 0.0;
-  std::optional<std::size_t> broke_off;  ///< number of packings whose measurement did not come to its end
-  std::optional<double> seconds;         ///< time that making them took [s]
+  std::optional<std::size_t> broke_off;
+  std::optional<double> seconds;
 };
 
 void fields(auto&& visit, Of<PackingsSummary> auto& s) {
-  visit("count", s.count);
-  visit("solid_fraction", s.solid_fraction);
-  visit("solid_fraction_deviation", s.solid_fraction_deviation);
-  visit("exponent", s.exponent);
-  visit("exponent_deviation", s.exponent_deviation);
-  visit("contacts_per_grain", s.contacts_per_grain);
-  visit("grains", s.grains);
-  visit("grains_deviation", s.grains_deviation);
-  visit("broke_off", s.broke_off, kLeftOut);
-  visit("seconds", s.seconds, kLeftOut);
+  visit("count", s.count, Means{"number of packings measured", "1"});
+  visit("solid_fraction", s.solid_fraction, Means{"mean solid fraction", "1"});
+  visit("solid_fraction_deviation", s.solid_fraction_deviation,
+        Means{"standard deviation of it between packings", "1"});
+  visit("exponent", s.exponent, Means{"mean power-law exponent of the radii, by maximum likelihood", "1"});
+  visit("exponent_deviation", s.exponent_deviation, Means{"standard deviation of it between packings", "1"});
+  visit("contacts_per_grain", s.contacts_per_grain, Means{"mean number of contacts of a grain", "1"});
+  visit("grains", s.grains, Means{"mean number of grains", "1"});
+  visit("grains_deviation", s.grains_deviation, Means{"standard deviation of it between packings", "1"});
+  visit("broke_off", s.broke_off, kLeftOut, Means{"number of packings whose measurement did not come to its end", "1"});
+  visit("seconds", s.seconds, kLeftOut, Means{"time that making the packings took", "s"});
 }
 
 PackingsSummary summary_of(const std::vector<PackingInfo>& packings);
@@ -183,12 +188,12 @@ struct MeasurementSummary {
 };
 
 void fields(auto&& visit, Of<MeasurementSummary> auto& s) {
-  visit("relaxation", s.relaxation);
-  visit("points", s.points);
+  visit("relaxation", s.relaxation, Means{"relaxation that measured"});
+  visit("points", s.points, Means{"number of points", "1"});
   fields(visit, s.cost);
-  visit("loop_passes_per_point", s.loop_passes_per_point);
-  visit("seconds_per_point", s.seconds_per_point);
-  visit("wall_seconds", s.wall_seconds, kLeftOut);
+  visit("loop_passes_per_point", s.loop_passes_per_point, Means{"passes over all contacts per point, mean", "1"});
+  visit("seconds_per_point", s.seconds_per_point, Means{"core seconds per point, mean", "s"});
+  visit("wall_seconds", s.wall_seconds, kLeftOut, Means{"duration of the measurement", "s"});
 }
 
 /// Force at one overlap, over packings whose point converged [N].
@@ -201,38 +206,41 @@ struct ForceSummary {
 };
 
 void fields(auto&& visit, Of<ForceSummary> auto& s) {
-  visit("delta", s.delta);
-  visit("force", s.force);
-  visit("standard_error", s.standard_error);
-  visit("deviation", s.deviation);
-  visit("packings", s.packings);
+  visit("delta", s.delta, Means{"overlap Delta = hn/Rs", "1"});
+  visit("force", s.force, Means{"mean force over packings whose point converged", "N"});
+  visit("standard_error", s.standard_error, Means{"standard error of the force", "N"});
+  visit("deviation", s.deviation, Means{"standard deviation of the force between packings", "N"});
+  visit("packings", s.packings, Means{"number of packings", "1"});
 }
 
 /// What was measured on soft particles. The first relaxation gives the law; a second one checks it.
 struct MeasuredSummary {
   PackingsSummary packings;
   MeasurementSummary measurement;
-  std::map<std::string, std::vector<ForceSummary>> forces;  ///< forces of each kind of contact
+  std::map<std::string, std::vector<ForceSummary>> forces;
   std::optional<MeasurementSummary> reference_measurement;
   nlohmann::json relaxations;  ///< {reference, candidate, kind of contact: {normal, kt_initial, ...}}: means and ratios
 };
 
 void fields(auto&& visit, Of<MeasuredSummary> auto& s) {
-  visit("packings", s.packings);
-  visit("measurement", s.measurement);
-  visit("forces", s.forces);
-  visit("reference_measurement", s.reference_measurement, kLeftOut);
-  visit("relaxations", s.relaxations, kLeftOut);
+  visit("packings", s.packings, Means{"packings that were measured"});
+  visit("measurement", s.measurement, Means{"what the first relaxation, which gives the law, took"});
+  visit("forces", s.forces, Means{"normal forces, by kind of contact"});
+  visit("reference_measurement", s.reference_measurement, kLeftOut, Means{"what the second relaxation, a check, took"});
+  visit("relaxations", s.relaxations, kLeftOut,
+        Means{"the relaxations compared: for each kind of contact means and ratios of forces and stiffnesses"});
 }
 
 MeasuredSummary summary_of(const Measurements& data, const std::vector<std::string>& relaxations);
 
 void fields(auto&& visit, Of<LawIdentity> auto& law) {
   double fraction = law.solid_fraction > 0.0 ? law.solid_fraction : kNaN;  // of a card: none
-  visit("form", law.form);
-  law_fields([&](const char*, const char* key, auto& member, const auto&...) { visit(key, member); }, law, fraction);
+  visit("form", law.form, Means{"form of the law; null: a twin or cells"});
+  law_fields(
+      [&](const char*, const char* key, auto& member, const auto&... options) { visit(key, member, options...); }, law,
+      fraction);
   std::string picture = picture_of(law);
-  visit("picture", picture, kLeftOut);
+  visit("picture", picture, kLeftOut, Means{"material that the law is for"});
   if constexpr (!std::is_const_v<std::remove_reference_t<decltype(law)>>)
     law.solid_fraction = fraction > 0.0 ? fraction : 0.0;
 }
@@ -251,43 +259,44 @@ inline std::vector<std::string> not_determined(const StageMeans& s) {
 
 /// Fields of a stage: means over samples with their errors; moduli and stresses in Pa.
 void fields(auto&& visit, Of<StageMeans> auto& s) {
-  visit("name", s.record.name);
-  visit("kind", s.record.kind);
-  visit("way", s.record.way);
-  if constexpr (std::is_const_v<std::remove_reference_t<decltype(s)>>) visit("modulus", modulus_of(s.record.way));
-  stage_numbers([&](const char* name, auto mean, auto) { visit(name, s.*mean, kLeftOut); });
+  visit("name", s.record.name, Means{"name of the stage"});
+  visit("kind", s.record.kind, Means{"kind of the stage"});
+  visit("way", s.record.way, Means{"stage that an unloading, a reloading or a hold reverses, repeats or stays on"});
   if constexpr (std::is_const_v<std::remove_reference_t<decltype(s)>>)
-    visit("not_determined", not_determined(s), kLeftOut);
+    visit("modulus", modulus_of(s.record.way), Means{"kind of the modulus"});
+  stage_numbers([&](const char* name, auto mean, auto, const Means& means) { visit(name, s.*mean, kLeftOut, means); });
+  if constexpr (std::is_const_v<std::remove_reference_t<decltype(s)>>)
+    visit("not_determined", not_determined(s), kLeftOut, Means{"slopes that the samples do not tell from 0"});
 }
 
 /// A sample that was prepared to a density.
 struct DensitySample {
   std::int64_t sample = 0;
   double solid_fraction = 0.0;
-  double difference = 0.0;  ///< from the target
-  double friction = 0.0;    ///< friction while packed that was found
-  std::int64_t tries = 0;   ///< preparations of the search
+  double difference = 0.0;
+  double friction = 0.0;  ///< friction while packed that was found
+  std::int64_t tries = 0;
 };
 
 void fields(auto&& visit, Of<DensitySample> auto& s) {
-  visit("sample", s.sample);
-  visit("solid_fraction", s.solid_fraction);
-  visit("difference", s.difference);
-  visit("compaction_mu", s.friction);
-  visit("tries", s.tries);
+  visit("sample", s.sample, Means{"number of the sample", "1"});
+  visit("solid_fraction", s.solid_fraction, Means{"solid fraction that was reached", "1"});
+  visit("difference", s.difference, Means{"difference from the target", "1"});
+  visit("compaction_mu", s.friction, Means{"friction between particles while they were packed", "1"});
+  visit("tries", s.tries, Means{"preparations that the search took", "1"});
 }
 
 /// Samples that were prepared to a target density.
 struct DensitySummary {
-  double target = 0.0;     ///< solid fraction
-  double tolerance = 0.0;  ///< largest difference that was allowed
+  double target = 0.0;  ///< solid fraction
+  double tolerance = 0.0;
   std::vector<DensitySample> samples;
 };
 
 void fields(auto&& visit, Of<DensitySummary> auto& s) {
-  visit("solid_fraction", s.target);
-  visit("solid_fraction_tolerance", s.tolerance);
-  visit("samples", s.samples);
+  visit("solid_fraction", s.target, Means{"target", "1"});
+  visit("solid_fraction_tolerance", s.tolerance, Means{"largest difference that was allowed", "1"});
+  visit("samples", s.samples, Means{"what each sample came to"});
 }
 
 /// Of the samples of an engine; empty where none had a target.
@@ -302,26 +311,29 @@ struct EngineSummary {
   std::int64_t samples = 0;
   std::int64_t bodies = 0;
   std::int64_t grains_inside = 0;
-  double soft_volume_share = 0.0;  ///< mean share of soft particles in the volume
+  double soft_volume_share = 0.0;
   Cost cost;
-  std::optional<Cost> preparation;          ///< cost of the states that samples start from, which engines share
-  std::optional<DensitySummary> density{};  ///< how these states came to a target density
+  std::optional<Cost> preparation;
+  std::optional<DensitySummary> density{};
   bool usable = false;
   std::optional<LawIdentity> law;
   std::vector<StageMeans> stages;
 };
 
 void fields(auto&& visit, Of<EngineSummary> auto& s) {
-  visit("samples", s.samples);
-  visit("bodies", s.bodies);
-  visit("grains_inside", s.grains_inside);
-  visit("soft_volume_share", s.soft_volume_share);
+  visit("samples", s.samples, Means{"number of samples", "1"});
+  visit("bodies", s.bodies, Means{"largest number of bodies of a sample: solid grains and soft particles", "1"});
+  visit("grains_inside", s.grains_inside,
+        Means{"largest number of grains resolved inside soft particles; 0 for laws", "1"});
+  visit("soft_volume_share", s.soft_volume_share,
+        Means{"mean share of soft particles in the volume of the bodies", "1"});
   fields(visit, s.cost);
-  visit("preparation", s.preparation, kLeftOut);
-  visit("target_density", s.density, kLeftOut);
-  visit("usable", s.usable);
-  visit("law", s.law, kLeftOut);
-  visit("stages", s.stages, kLeftOut);
+  visit("preparation", s.preparation, kLeftOut,
+        Means{"cost of the states that samples start from, which engines share"});
+  visit("target_density", s.density, kLeftOut, Means{"how these states came to a target density"});
+  visit("usable", s.usable, Means{"whether every sample is usable"});
+  visit("law", s.law, kLeftOut, Means{"law that the runs were made with"});
+  visit("stages", s.stages, kLeftOut, Means{"stages of the test, means over samples"});
 }
 
 EngineSummary summary_of(const std::vector<MacroCurve>& curves, const std::string& engine);
@@ -335,10 +347,10 @@ struct SampleDifference {
 };
 
 void fields(auto&& visit, Of<SampleDifference> auto& s) {
-  visit("sample", s.sample);
-  visit("strain_high", s.strain_high);
-  visit("stress_error", s.stress_error);
-  visit("end_ratio", s.end_ratio);
+  visit("sample", s.sample, Means{"number of the sample", "1"});
+  visit("strain_high", s.strain_high, Means{"strain up to which law and twin are compared", "1"});
+  visit("stress_error", s.stress_error, Means{"relative L2 difference of the axial stress from that of the twin", "1"});
+  visit("end_ratio", s.end_ratio, Means{"axial stress over that of the twin at the end", "1"});
 }
 
 /// Law runs against the shelled twin, see Comparison.
@@ -347,7 +359,7 @@ struct ComparisonSummary {
   double stress_error = kNaN;
   double stress_error_standard_error = kNaN;
   double lateral_stress_error = kNaN;
-  std::optional<double> strain_error;  ///< tests in stages: difference of the strains of axes that go by stress
+  std::optional<double> strain_error;
   std::optional<double> deviator_error{};
   std::optional<double> unloading_modulus_ratio{};  ///< law over twin
   double end_stress_ratio = kNaN;
@@ -360,36 +372,45 @@ struct ComparisonSummary {
 };
 
 void fields(auto&& visit, Of<ComparisonSummary> auto& s) {
-  visit("stress_error", s.stress_error);
-  visit("stress_error_standard_error", s.stress_error_standard_error);
-  visit("lateral_stress_error", s.lateral_stress_error);
-  visit("strain_error", s.strain_error, kLeftOut);
-  visit("deviator_error", s.deviator_error, kLeftOut);
-  visit("unloading_modulus_ratio", s.unloading_modulus_ratio, kLeftOut);
-  visit("end_stress_ratio", s.end_stress_ratio);
-  visit("lateral_stress_ratio_law", s.lateral_stress_ratio_law);
-  visit("lateral_stress_ratio_resolved", s.lateral_stress_ratio_resolved);
-  visit("speedup_seconds", s.speedup_seconds);
-  visit("speedup_contact_evaluations", s.speedup_contact_evaluations);
-  visit("samples", s.samples);
-  visit("left_out", s.left_out);
+  visit("stress_error", s.stress_error,
+        Means{"relative L2 difference of the axial stress, mean over samples; of tests in stages where they do not "
+              "impose it",
+              "1"});
+  visit("stress_error_standard_error", s.stress_error_standard_error, Means{"standard error of it", "1"});
+  visit("lateral_stress_error", s.lateral_stress_error,
+        Means{"relative L2 difference of the lateral stress, mean over samples", "1"});
+  visit("strain_error", s.strain_error, kLeftOut,
+        Means{"tests in stages: relative L2 difference of the strains of axes that go by stress", "1"});
+  visit("deviator_error", s.deviator_error, kLeftOut, Means{"relative L2 difference of axial minus x stress", "1"});
+  visit("unloading_modulus_ratio", s.unloading_modulus_ratio, kLeftOut,
+        Means{"unloading modulus of the law over that of the twin", "1"});
+  visit("end_stress_ratio", s.end_stress_ratio, Means{"axial stress of the law over that of the twin at the end", "1"});
+  visit("lateral_stress_ratio_law", s.lateral_stress_ratio_law,
+        Means{"lateral over axial stress at the end, by law", "1"});
+  visit("lateral_stress_ratio_resolved", s.lateral_stress_ratio_resolved,
+        Means{"lateral over axial stress at the end, of the twin", "1"});
+  visit("speedup_seconds", s.speedup_seconds, Means{"core seconds of the twin over those of the law", "1"});
+  visit("speedup_contact_evaluations", s.speedup_contact_evaluations,
+        Means{"contact evaluations of the twin over those of the law", "1"});
+  visit("samples", s.samples, Means{"each sample against its twin"});
+  visit("left_out", s.left_out, Means{"samples that were left out, and why"});
 }
 
 ComparisonSummary summary_of(const Comparison& comparison);
 
 /// What macro runs took and how far the law is from the twin.
 struct MacroSummary {
-  std::optional<EngineSummary> macro;  ///< runs by law
+  std::optional<EngineSummary> macro;
   std::optional<EngineSummary> resolved;
-  std::optional<EngineSummary> free;  ///< the twin without shells
+  std::optional<EngineSummary> free;
   std::optional<ComparisonSummary> comparison;
 };
 
 void fields(auto&& visit, Of<MacroSummary> auto& s) {
-  visit("macro", s.macro, kLeftOut);
-  visit("resolved", s.resolved, kLeftOut);
-  visit("free", s.free, kLeftOut);
-  visit("comparison", s.comparison, kLeftOut);
+  visit("macro", s.macro, kLeftOut, Means{"runs by law"});
+  visit("resolved", s.resolved, kLeftOut, Means{"the shelled twin: all grains, in moving shells"});
+  visit("free", s.free, kLeftOut, Means{"the twin without shells"});
+  visit("comparison", s.comparison, kLeftOut, Means{"runs by law against the shelled twin"});
 }
 
 /// Sentences about what must not be overlooked: points that did not converge, curves that are not usable.

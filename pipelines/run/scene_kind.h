@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/io/key_record.h"
+#include "common/io/record_members.h"
 #include "common/io/scene.h"
 #include "pipelines/results/kind_results.h"
 #include "pipelines/run/findings.h"
@@ -36,6 +37,8 @@ struct SceneKind {
   /// Throws all that run() refuses before it begins, files that the scene names included; empty: as `read`.
   std::function<void(const Scene& scene, const CommonOptions& options)> refuse{};
   KindResults results{};
+  /// Members of its summary.json beside those that every kind has (softgrain schema --summary).
+  std::vector<RecordMember> (*summary)() = nullptr;
   bool takes_law = false;     ///< whether --law and --bands go with it
   bool takes_engine = false;  ///< whether --engine and what belongs to it do
   KeptBetweenRuns keeps{};

@@ -29,9 +29,10 @@ struct TypedKind {
   /// What follows from the scene without running it. Throws InputError, IoError.
   void (*check)(const Setup& setup, Findings& out) = nullptr;
   KindResults results{};
-  KeptBetweenRuns keeps{};                     ///< as SceneKind::keeps
-  std::vector<std::string> explored_from{""};  ///< as SceneKind::explored_from
-  const char* starter = "";                    ///< as SceneKind::starter
+  std::vector<RecordMember> (*summary)() = nullptr;  ///< as SceneKind::summary
+  KeptBetweenRuns keeps{};                           ///< as SceneKind::keeps
+  std::vector<std::string> explored_from{""};        ///< as SceneKind::explored_from
+  const char* starter = "";                          ///< as SceneKind::starter
 };
 
 /// The entry of such a kind in the table; each function of it reads the scene once.
@@ -50,6 +51,7 @@ SceneKind scene_kind(const TypedKind<Setup>& kind) {
       .check = [kind](const Scene& scene, const CommonOptions&, Findings& out) { kind.check(kind.read(scene), out); },
       .read = [kind](const Scene& scene) { (void)kind.read(scene); },
       .results = kind.results,
+      .summary = kind.summary,
       .keeps = kind.keeps,
       .explored_from = kind.explored_from,
       .starter = kind.starter};

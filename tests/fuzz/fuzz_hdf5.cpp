@@ -102,7 +102,7 @@ void use_multi_contact(const std::string& path) {
   run.law_table = LawTable{1, {entry}};
   run.multi_contact = data;
   (void)report::law_table_section(run);
-  (void)multi_contact_json(data, 0.04).dump();
+  (void)json_of(summary_of(data, 0.04)).dump();
   (void)multi_contact_remarks(data, 0.04);
   (void)multi_contact_text(data);
   (void)side_values(average_states(data), multi_contact_model(entry.laws.front()));

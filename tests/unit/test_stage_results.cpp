@@ -87,7 +87,7 @@ TEST(StageResults, UndrainedAndSlidingStages) {
   EXPECT_NEAR(results[1].ratio_end, std::sqrt(axial * axial + 3.0 * std::pow(e.shear * 0.01, 2)) / p, 1e-12);
   // Summaries have every number that means are taken of, and only stages that slide have those of sliding.
   const auto means = stage_means({c}, "law");
-  stage_numbers([&](const char* name, auto mean, auto result) {
+  stage_numbers([&](const char* name, auto mean, auto result, const Means&) {
     EXPECT_EQ(json_of(means[1]).contains(name), std::isfinite(results[1].*result)) << name;
     EXPECT_EQ((means[1].*mean).has_value(), std::isfinite(results[1].*result)) << name;
   });

@@ -251,6 +251,7 @@ SceneKind cohesive_powder_kind() {
           .check = [](const Scene& scene, const CommonOptions&, Findings& out) { check_powder(scene, out); },
           .read = read_any_powder,
           .results = powder_results(),
+          .summary = members_of<PowderSummary>,
           .starter = kCohesivePowderStarter};
 }
 

@@ -17,119 +17,124 @@
 namespace softgrain {
 
 void fields(auto&& visit, Of<SparseRank> auto& s) {
-  visit("rank", s.rank);
-  visit("smallest_kept", s.smallest_kept);
-  visit("largest_dropped", s.largest_dropped);
+  visit("rank", s.rank, Means{"rank of the matrix", "1"});
+  visit("smallest_kept", s.smallest_kept, Means{"smallest singular value of the independent columns; 0: rank 0", "1"});
+  visit("largest_dropped", s.largest_dropped, Means{"Frobenius norm of all that was taken for zero", "1"});
 }
 
 void fields(auto&& visit, Of<Rigidity> auto& s) {
-  visit("freedoms", s.freedoms);
-  visit("constraints", s.constraints);
-  visit("h", s.indeterminacy);
-  visit("k", s.floppy);
-  visit("identity_holds", s.identity_holds());
-  visit("of_matrix", s.of_matrix);
-  visit("of_transpose", s.of_transpose);
-  visit("positive_definite", s.stiffness.positive);
-  visit("smallest_pivot", s.stiffness.smallest_pivot);
+  visit("freedoms", s.freedoms, Means{"number of freedoms N_f", "1"});
+  visit("constraints", s.constraints, Means{"number of constraints M", "1"});
+  visit("h", s.indeterminacy, Means{"degree of indeterminacy: independent self-stresses", "1"});
+  visit("k", s.floppy, Means{"floppy motions, translations included", "1"});
+  visit("identity_holds", s.identity_holds(), Means{"whether N_f + h = M + k"});
+  visit("of_matrix", s.of_matrix, Means{"rank of the rigidity matrix"});
+  visit("of_transpose", s.of_transpose, Means{"rank of its transpose"});
+  visit("positive_definite", s.stiffness.positive, Means{"whether the stiffness matrix is positive definite"});
+  visit("smallest_pivot", s.stiffness.smallest_pivot, Means{"smallest pivot of the stiffness matrix", "1"});
 }
 
 void fields(auto&& visit, Of<PowderRigidity> auto& s) {
-  visit("fixed", s.fixed);
-  visit("free", s.free);
-  visit("backbone", s.backbone);
-  visit("backbone_free", s.backbone_free);
+  visit("fixed", s.fixed, Means{"cell held"});
+  visit("free", s.free, Means{"cell free: the two strains are motions too"});
+  visit("backbone", s.backbone, Means{"cell held, without rattlers; only without cohesion"});
+  visit("backbone_free", s.backbone_free, Means{"cell free, without rattlers; only without cohesion"});
 }
 
 void fields(auto&& visit, Of<PowderPercolation> auto& s) {
-  visit("x", s.x);
-  visit("y", s.y);
-  visit("either", s.either);
-  visit("both", s.both);
+  visit("x", s.x,
+        Means{"largest threshold at which the forces above it percolate along x", "F0, without cohesion P a"});
+  visit("y", s.y, Means{"the same along y", "F0, without cohesion P a"});
+  visit("either", s.either, Means{"the same in one direction at least", "F0, without cohesion P a"});
+  visit("both", s.both, Means{"the same of one cluster along x and along y", "F0, without cohesion P a"});
 }
 
 void fields(auto&& visit, Of<PowderModuli> auto& s) {
-  visit("bulk", s.bulk);
-  visit("shear", s.shear);
-  visit("shear_axes", s.shear_axes);
-  visit("shear_cross", s.shear_cross);
-  visit("distant", s.distant);
+  visit("bulk", s.bulk, Means{"bulk modulus in the plane", "F0/a, without cohesion P"});
+  visit("shear", s.shear, Means{"shear modulus, mean of the two", "F0/a, without cohesion P"});
+  visit("shear_axes", s.shear_axes, Means{"shear modulus, one axis in, the other out", "F0/a, without cohesion P"});
+  visit("shear_cross", s.shear_cross, Means{"shear modulus along the axes", "F0/a, without cohesion P"});
+  visit("distant", s.distant, Means{"whether distant pairs are included"});
 }
 
 /// Forces, percolation and rigidity, without pairs, histograms and contacts.
 void fields(auto&& visit, Of<PowderAnalysis> auto& s) {
-  visit("zero_force", s.zero);
-  visit("zero_share", s.forces.zero_share);
-  visit("F_perc", s.percolation);
-  visit("rumpf_ratio", s.rumpf_ratio);
-  visit("moduli", s.moduli);
-  visit("solid_fraction_3d", s.solid_fraction_3d);
-  visit("rigidity", s.rigidity);
+  visit("zero_force", s.zero, Means{"forces below it count as unstressed", "F0, without cohesion P a"});
+  visit("zero_share", s.forces.zero_share, Means{"share of interactions below it", "1"});
+  visit("F_perc", s.percolation, Means{"largest forces whose network percolates"});
+  visit("rumpf_ratio", s.rumpf_ratio, Means{"Rumpf's pressure over the imposed one", "1"});
+  visit("moduli", s.moduli, Means{"elastic moduli"});
+  visit("solid_fraction_3d", s.solid_fraction_3d, Means{"solid fraction of spheres that look the same", "1"});
+  visit("rigidity", s.rigidity, Means{"rigidity of the contact network"});
 }
 
 void fields(auto&& visit, Of<PowderContacts> auto& s) {
-  visit("z", s.coordination);
-  visit("z_star", s.coordination_backbone);
-  visit("shares", s.shares);
-  visit("contacts", s.contacts);
-  visit("distant", s.distant);
-  visit("rattlers", s.rattlers);
-  visit("repulsive", s.repulsive);
-  visit("tensile", s.tensile);
-  visit("unstressed", s.unstressed);
-  visit("mean_normal", s.mean_normal);
-  visit("mean_repulsive", s.mean_repulsive);
-  visit("mean_tensile", s.mean_tensile);
-  visit("quadratic_mean_normal", s.square_mean_normal);
-  visit("rumpf_pressure", s.rumpf_pressure);
-  visit("branch_pressure", s.branch_pressure);
+  visit("z", s.coordination, Means{"coordination number, distant pairs included", "1"});
+  visit("z_star", s.coordination_backbone, Means{"coordination number without disks that bear nothing", "1"});
+  visit("shares", s.shares, Means{"share of disks with 0, 1, 2, ... interactions", "1"});
+  visit("contacts", s.contacts, Means{"number of contacts", "1"});
+  visit("distant", s.distant, Means{"number of pairs that attract across a gap", "1"});
+  visit("rattlers", s.rattlers, Means{"number of rattlers; 0 with cohesion", "1"});
+  visit("repulsive", s.repulsive, Means{"number of contacts that push", "1"});
+  visit("tensile", s.tensile, Means{"number of contacts that pull", "1"});
+  visit("unstressed", s.unstressed, Means{"number of contacts without force", "1"});
+  visit("mean_normal", s.mean_normal, Means{"mean normal force over all interactions", "F0, without cohesion P a"});
+  visit("mean_repulsive", s.mean_repulsive, Means{"mean of the forces that push", "F0, without cohesion P a"});
+  visit("mean_tensile", s.mean_tensile, Means{"mean of the forces that pull, negative", "F0, without cohesion P a"});
+  visit("quadratic_mean_normal", s.square_mean_normal,
+        Means{"root mean square of the normal force", "F0, without cohesion P a"});
+  visit("rumpf_pressure", s.rumpf_pressure, Means{"Rumpf's pressure, of means", "F0/a, without cohesion P"});
+  visit("branch_pressure", s.branch_pressure,
+        Means{"pressure from the forces times their branches", "F0/a, without cohesion P"});
 }
 
 /// A radius is NaN when a hole percolates.
 void fields(auto&& visit, Of<PowderHoles> auto& s) {
-  visit("count", s.count);
-  visit("fragments", s.fragments);
-  visit("mean_radius", s.mean_radius);
-  visit("largest_radius", s.largest_radius);
-  visit("largest_share", s.largest_share);
-  visit("void_fraction", s.void_fraction);
-  visit("percolating", s.percolating);
+  visit("count", s.count, Means{"holes of at least the asked area", "1"});
+  visit("fragments", s.fragments, Means{"smaller holes", "1"});
+  visit("mean_radius", s.mean_radius,
+        Means{"mean radius of the holes, weighted by area; null when a hole percolates", "a"});
+  visit("largest_radius", s.largest_radius, Means{"radius of the largest hole; null when a hole percolates", "a"});
+  visit("largest_share", s.largest_share, Means{"share of the void in the hole of the largest area", "1"});
+  visit("void_fraction", s.void_fraction, Means{"area of all holes over that of the cell", "1"});
+  visit("percolating", s.percolating, Means{"holes that percolate", "1"});
 }
 
 /// Fit of I(k); its numbers are left out where there was no fit.
 void fields(auto&& visit, Of<ScatteringFit> auto& s) {
   constexpr bool kWrites = std::is_const_v<std::remove_reference_t<decltype(s)>>;
-  visit("usable", s.usable);
-  visit("reason", s.reason);
-  visit("bins", s.bins);
-  if (kWrites && s.covariance.empty()) return;
-  visit("chi2_per_degree", s.chi2_per_degree);
-  range_field(visit, "k_range", s.k_low, s.k_high);
-  const auto estimate = [&](const std::string& name, auto& e) {
-    visit(name, e.value);
-    visit(name + "_error", e.error);
-    range_field(visit, name + "_interval", e.low, e.high);
+  visit("usable", s.usable, Means{"whether the fit of I(k) is usable"});
+  visit("reason", s.reason, Means{"why not"});
+  visit("bins", s.bins, Means{"number of fitted bins", "1"});
+  if (kWrites && s.covariance.empty() && !Describes<decltype(visit)>) return;
+  visit("chi2_per_degree", s.chi2_per_degree, Means{"chi^2 per degree of freedom", "1"});
+  range_field(visit, "k_range", s.k_low, s.k_high, Means{"range of k that was fitted", "1/a"});
+  const auto estimate = [&](const std::string& name, auto& e, const Means& means) {
+    visit(name, e.value, means);
+    visit(name + "_error", e.error, Means{"its standard error", means.unit});
+    range_field(visit, name + "_interval", e.low, e.high, Means{"its 95 % interval", means.unit});
   };
-  estimate("dF", s.dimension);
-  estimate("xi", s.length);
-  estimate("amplitude", s.amplitude);
-  estimate("c", s.background);
-  estimate("l", s.lower_length);
-  visit("bounded", s.bounded, kLeftOut);
-  visit("tie_cost", s.tie_cost);
+  estimate("dF", s.dimension, {"fractal dimension", "1"});
+  estimate("xi", s.length, {"correlation length", "a"});
+  estimate("amplitude", s.amplitude, {"amplitude of I(k)", "a^2"});
+  estimate("c", s.background, {"background of I(k)", "a^2"});
+  estimate("l", s.lower_length, {"length at which the fractal range begins", "a"});
+  visit("bounded", s.bounded, kLeftOut, Means{"numbers that ended at a bound"});
+  visit("tie_cost", s.tie_cost,
+        Means{"above 0: the amplitude is free, as tying it to Phi would cost so much chi^2", "1"});
 }
 
 /// One sample. What is not defined is NaN, or absent.
 struct PackSummary {
   bool usable = false;
-  std::string reason;  ///< why not
+  std::string reason;
   double time = 0.0;
   std::int64_t steps = 0;
   std::int64_t loop_passes = 0;
   std::int64_t contact_evaluations = 0;
   double fraction = 0.0;
   std::array<double, 2> stress{};
-  std::vector<PowderStage> stages;  ///< stages of a sample under several pressures
+  std::vector<PowderStage> stages;
   PowderContacts contacts;
   PowderAnalysis analysis;  ///< its scalars
   std::optional<std::array<std::int64_t, 2>> mesh;
@@ -138,20 +143,20 @@ struct PackSummary {
 };
 
 void fields(auto&& visit, Of<PackSummary> auto& s) {
-  visit("usable", s.usable);
-  visit("reason", s.reason);
-  visit("time", s.time);
-  visit("steps", s.steps);
-  visit("loop_passes", s.loop_passes);
-  visit("contact_evaluations", s.contact_evaluations);
-  visit("Phi", s.fraction);
-  visit("stress", s.stress);
-  visit("stages", s.stages, kLeftOut);
+  visit("usable", s.usable, Means{"whether the sample is usable"});
+  visit("reason", s.reason, Means{"why not"});
+  visit("time", s.time, Means{"time reached", "T0"});
+  visit("steps", s.steps, Means{"number of time steps", "1"});
+  visit("loop_passes", s.loop_passes, Means{"passes over all contacts", "1"});
+  visit("contact_evaluations", s.contact_evaluations, Means{"evaluations of contact laws", "1"});
+  visit("Phi", s.fraction, Means{"solid fraction", "1"});
+  visit("stress", s.stress, Means{"stress along x and y", "F0/a, without cohesion P"});
+  visit("stages", s.stages, kLeftOut, Means{"states under each pressure"});
   fields(visit, s.contacts);
   fields(visit, s.analysis);
-  visit("mesh", s.mesh, kLeftOut);
-  visit("scattering", s.scattering, kLeftOut);
-  visit("holes", s.holes, kLeftOut);
+  visit("mesh", s.mesh, kLeftOut, Means{"cells of the density field along x and y", "1"});
+  visit("scattering", s.scattering, kLeftOut, Means{"fit of the scattered intensity I(k)"});
+  visit("holes", s.holes, kLeftOut, Means{"holes of the density field"});
 }
 
 /// Adds what the density field shows.
@@ -165,44 +170,44 @@ struct EnsembleFit {
 
 void fields(auto&& visit, Of<EnsembleFit> auto& s) {
   fields(visit, s.fit);
-  visit("other_ranges", s.other_ranges);
+  visit("other_ranges", s.other_ranges, Means{"the same with other upper ends of k"});
 }
 
 void fields(auto&& visit, Of<ConsolidationNumber> auto& s) {
-  visit("value", s.value);
-  visit("error", s.error);
+  visit("value", s.value, Means{"value", "1"});
+  visit("error", s.error, Means{"standard error", "1"});
 }
 
 void fields(auto&& visit, Of<ConsolidationFit> auto& s) {
-  visit("usable", s.usable);
-  visit("reason", s.reason);
-  visit("lambda", s.slope);
-  range_field(visit, "lambda_pressures", s.low, s.high);
-  visit("regime_1_ends", s.begin);
-  visit("alpha", s.exponent);
-  visit("Phi_max", s.densest);
+  visit("usable", s.usable, Means{"whether the fit is usable"});
+  visit("reason", s.reason, Means{"why not"});
+  visit("lambda", s.slope, Means{"fall of 1/Phi per unit of ln P*"});
+  range_field(visit, "lambda_pressures", s.low, s.high, Means{"pressures P* between which it was fitted", "1"});
+  visit("regime_1_ends", s.begin, Means{"P* at which that line meets the solid fraction of the lowest pressure", "1"});
+  visit("alpha", s.exponent, Means{"exponent of the approach to Phi_max: Phi_max - Phi ~ P*^-alpha"});
+  visit("Phi_max", s.densest, Means{"solid fraction of the densest state"});
 }
 
 struct PowderSummary {
   SummaryHead head;
   std::vector<PackSummary> samples;
-  std::vector<double> seconds;  ///< seconds of each sample
-  nlohmann::json statistics;    ///< mean, deviation and number of every scalar over the samples at rest
+  std::vector<double> seconds;
+  nlohmann::json statistics;
   nlohmann::json histograms;
   nlohmann::json mean;
   std::optional<EnsembleFit> scattering;
-  std::optional<ConsolidationFit> consolidation;  ///< fit over the rising pressures
+  std::optional<ConsolidationFit> consolidation;
 };
 
 void fields(auto&& visit, Of<PowderSummary> auto& s) {
   fields(visit, s.head);
-  visit("samples", s.samples, kLeftOut);
-  visit("seconds", s.seconds);
-  visit("statistics", s.statistics);
-  visit("histograms", s.histograms);
-  visit("mean", s.mean);
-  visit("scattering", s.scattering, kLeftOut);
-  visit("consolidation", s.consolidation, kLeftOut);
+  visit("samples", s.samples, kLeftOut, Means{"the samples"});
+  visit("seconds", s.seconds, Means{"duration of each sample", "s"});
+  visit("statistics", s.statistics, Means{"mean, deviation and number of every scalar over the samples at rest"});
+  visit("histograms", s.histograms, Means{"histograms of forces, counts of all samples"});
+  visit("mean", s.mean, Means{"means over the samples"});
+  visit("scattering", s.scattering, kLeftOut, Means{"fit of I(k) of all samples"});
+  visit("consolidation", s.consolidation, kLeftOut, Means{"fit over the rising pressures"});
 }
 
 /// Mean of a quantity over the samples at rest of a variant.
@@ -210,14 +215,14 @@ struct QuantityMean {
   double mean = kNaN;
   double deviation = kNaN;
   std::size_t samples = 0;
-  double error = kNaN;  ///< standard error
+  double error = kNaN;
 };
 
 void fields(auto&& visit, Of<QuantityMean> auto& s) {
-  visit("mean", s.mean);
-  visit("deviation", s.deviation);
-  visit("samples", s.samples);
-  visit("error", s.error);
+  visit("mean", s.mean, Means{"mean over the samples at rest", "as the quantity"});
+  visit("deviation", s.deviation, Means{"standard deviation", "as the quantity"});
+  visit("samples", s.samples, Means{"number of samples", "1"});
+  visit("error", s.error, Means{"standard error of the mean", "as the quantity"});
 }
 
 struct PublishedNumber {
@@ -226,8 +231,8 @@ struct PublishedNumber {
 };
 
 void fields(auto&& visit, Of<PublishedNumber> auto& s) {
-  visit("value", s.value);
-  visit("error", s.error);
+  visit("value", s.value, Means{"published value", "as the quantity"});
+  visit("error", s.error, Means{"its standard error", "as the quantity"});
 }
 
 /// Ours minus the published; also in combined standard errors where both are known.
@@ -237,8 +242,8 @@ struct PublishedDifference {
 };
 
 void fields(auto&& visit, Of<PublishedDifference> auto& s) {
-  visit("value", s.value);
-  visit("in_errors", s.in_errors);
+  visit("value", s.value, Means{"ours minus the published", "as the quantity"});
+  visit("in_errors", s.in_errors, Means{"the same over the combined standard error", "1"});
 }
 
 /// What one variant came to, in short.
@@ -247,7 +252,7 @@ struct VariantEntry {
   std::string title;
   RunStatus status = RunStatus::not_run;
   std::string reason;
-  std::string commit;  ///< commit of the build that ran it
+  std::string commit;
   std::int64_t disks = 0;
   std::int64_t samples = 0;
   std::size_t usable_samples = 0;
@@ -269,17 +274,17 @@ struct VariantEntry {
 };
 
 void fields(auto&& visit, Of<VariantEntry> auto& s) {
-  visit("name", s.name);
-  visit("title", s.title);
-  visit("status", s.status);
-  visit("reason", s.reason);
-  visit("commit", s.commit);
-  visit("disks", s.disks);
-  visit("samples", s.samples);
-  visit("usable_samples", s.usable_samples);
-  visit("values", s.values);
-  visit("published", s.published);
-  visit("difference", s.difference);
+  visit("name", s.name, Means{"name of the variant"});
+  visit("title", s.title, Means{"its title"});
+  visit("status", s.status, Means{"good, not usable, not run or written"});
+  visit("reason", s.reason, Means{"why it is not usable"});
+  visit("commit", s.commit, Means{"commit of the build that ran it"});
+  visit("disks", s.disks, Means{"number of disks", "1"});
+  visit("samples", s.samples, Means{"number of samples", "1"});
+  visit("usable_samples", s.usable_samples, Means{"number of usable samples", "1"});
+  visit("values", s.values, Means{"means of its quantities"});
+  visit("published", s.published, Means{"published values"});
+  visit("difference", s.difference, Means{"ours minus the published"});
 }
 
 struct PowderVariantsSummary {
@@ -289,7 +294,7 @@ struct PowderVariantsSummary {
 
 void fields(auto&& visit, Of<PowderVariantsSummary> auto& s) {
   fields(visit, s.head);
-  visit("variants", s.variants);
+  visit("variants", s.variants, Means{"the variants"});
 }
 
 // What was measured on a powder, for files and summaries, and the mean and scatter of the scalars of several samples.

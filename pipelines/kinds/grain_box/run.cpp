@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <mutex>
 
 #include "common/core/parallel_tasks.h"
 #include "common/io/progress.h"
 #include "microsim/grain_box/grain_box_run.h"
 #include "pipelines/kinds/grain_box/report.h"
-#include "pipelines/results/summary.h"
+#include "pipelines/kinds/grain_box/summary.h"
 #include "pipelines/run/typed_kind.h"
 
 namespace softgrain {
@@ -65,17 +66,15 @@ Outcome run_grain_boxes(const GrainBoxSetup& setup, const Run& run) {
   const std::vector<GrainBoxResult> results = run_packs(setup, run);
   save_grain_boxes(run.path("grain_box.h5"), results, run.provenance);
 
-  bool usable = true;
-  for (const GrainBoxResult& r : results) usable = usable && r.usable;
-  nlohmann::json summary;
-  summary["status"] = usable ? "good" : "not usable";
-  summary["title"] = setup.title;
-  summary["packs"] = grain_boxes_json(results);
-  if (const nlohmann::json over = arrangements_json(results); !over.empty()) summary["over_arrangements"] = over;
-  summary["remarks"] = grain_box_remarks(results);
-  if (setup.packs.front().material.sizes) summary["sizes"] = json_of(summaries_of(drawn_sizes(setup, run.seed)));
-  summary["files"] = {{"record", run.path("grain_box.h5")}, {"report", run.path("report.html")}};
-  return {std::move(summary), console_summary(results)};
+  const bool usable = std::ranges::all_of(results, [](const GrainBoxResult& r) { return r.usable; });
+  GrainBoxSummary summary{.status = usable ? RunStatus::good : RunStatus::not_usable,
+                          .title = setup.title,
+                          .packs = summaries_of(results),
+                          .over_arrangements = arrangements_of(results),
+                          .remarks = grain_box_remarks(results),
+                          .files = {{"record", run.path("grain_box.h5")}, {"report", run.path("report.html")}}};
+  if (setup.packs.front().material.sizes) summary.sizes = summaries_of(drawn_sizes(setup, run.seed));
+  return {json_of(summary), console_summary(results)};
 }
 
 /// As SceneKind::starter.
@@ -108,6 +107,7 @@ SceneKind grain_box_kind() {
       .run = run_grain_boxes,
       .check = check_grain_box,
       .results = grain_box_results(),
+      .summary = members_of<GrainBoxSummary>,
       .explored_from = {"", "[loading]\ntest = \"polyaxial\"\ncontrol = [\"stress\", \"strain\", \"strain\"]\n"},
       .starter = kGrainBoxStarter});
 }

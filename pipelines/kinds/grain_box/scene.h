@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -33,12 +32,6 @@ SceneKind grain_box_kind();
 
 /// Facts per pack: counts, solid fraction, overlap at the end of the loading, memory, time; and what to mind.
 void check_grain_box(const GrainBoxSetup& setup, Findings& out);
-
-/// One object per pack: states at the ends of the phases, moduli at round stresses, growth exponents, effort.
-nlohmann::json grain_boxes_json(const std::vector<GrainBoxResult>& results);
-
-/// K, G and sliding shares over the arrangements of every pack; empty where each has one.
-nlohmann::json arrangements_json(const std::vector<GrainBoxResult>& results);
 
 /// Sentences about what must not be overlooked: packs that broke off, increments that were tried again.
 std::vector<std::string> grain_box_remarks(const std::vector<GrainBoxResult>& results);

@@ -1,126 +1,72 @@
-#include "pipelines/kinds/grain_box/scene.h"
+#include "pipelines/kinds/grain_box/summary.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "microsim/grain_box/analysis.h"
+#include "pipelines/kinds/grain_box/scene.h"
 
 namespace softgrain {
 
 namespace {
 
-using nlohmann::json;
-
-/// What is not defined is null.
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
-json point_json(const std::vector<const BoxPoint*>& points, double density) {
-  if (points.empty()) return nullptr;
-  const BoxPoint& p = *points.back();
-  return {{"states", points.size()},
-          {"pressure", p.pressure},
-          {"stress", p.stress.v},
-          {"strain", p.strain.v},
-          {"deviator", p.deviator},
-          {"shear_stress", p.shear},
-          {"wall_moment", p.moment},
-          {"solid_fraction", p.solid_fraction},
-          {"bulk_density", density * p.solid_fraction},
-          {"coordination", p.coordination},
-          {"coordination_without_rattlers", p.coordination_without},
-          {"rattlers", p.rattlers},
-          {"fewest_contacts", p.fewest_contacts},
-          {"sliding_share", number(p.sliding_share)},
-          {"sliding_limit_at_start", number(p.at_start_limit)},
-          {"mean_normal_force", p.mean_force}};
+std::optional<PhaseSummary> last_of(const GrainBoxResult& result, BoxPhase phase) {
+  const std::vector<const BoxPoint*> points = result.points_of(phase);
+  if (points.empty()) return std::nullopt;
+  return PhaseSummary{points.size(), *points.back(), result.spec.material.density};
 }
 
-/// Means over `points` intervals or arrangements, as `of` says.
-json moduli_at_json(const ModuliAt& m, double pressure, const char* of) {
-  return {{"pressure", pressure},
-          {"K", number(m.bulk)},
-          {"K_error", number(m.bulk_error)},
-          {"G", number(m.shear)},
-          {"G_error", number(m.shear_error)},
-          {"mean_normal_force", number(m.force)},
-          {"mean_normal_force_error", number(m.force_error)},
-          {of, m.points}};
-}
-
-json moduli_json(const GrainBoxResult& result, const std::vector<double>& stresses) {
-  json out = json::array();
-  for (const double stress : stresses)
-    if (const ModuliAt m = moduli_at(result, stress); m.points >= 3)
-      out.push_back(moduli_at_json(m, stress, "intervals"));
+std::vector<ModuliSummary> moduli_of(const GrainBoxResult& result, const std::vector<double>& stresses) {
+  std::vector<ModuliSummary> out;
+  for (const double stress : stresses) {
+    ModuliAt m = moduli_at(result, stress);
+    if (m.points < 3) continue;
+    m.pressure = stress;
+    out.push_back({m});
+  }
   return out;
 }
 
-json fits_json(const GrainBoxResult& result) {
-  json out = json_of(fit_growth(result));
-  for (json& fit : out) fit.erase("prefactor");  // that of the file, in units that depend on the exponent
-  return out;
-}
-
-json effort_json(const GrainBoxState& state) {
-  const StepEffort e = total_effort(state);
-  return {{"states", state.points.size()},
-          {"worst_residual", e.residual},
-          {"iterations", e.iterations},
-          {"loop_passes", e.loop_passes},
-          {"contact_evaluations", e.contact_evaluations},
-          {"factorisations", e.factorisations},
-          {"linear_iterations", e.linear_iterations},
-          {"equilibria", e.solutions},
-          {"retries", e.retries},
-          {"loose_passes", state.loose_passes},
-          {"seconds", state.seconds}};
-}
-
-json result_json(const GrainBoxResult& result, const std::vector<double>& stresses) {
-  json out = {{"name", result.spec.name},
-              {"status", result.usable ? "good" : "not usable"},
-              {"grains", result.spec.grains},
-              {"mu", std::isfinite(result.spec.friction) ? json(result.spec.friction) : json("infinite")},
-              {"generation_pressure", result.spec.generation.pressure},
-              {"generation_lower_pressures", result.spec.generation.lower_pressures},
-              {"test", result.spec.loading.test},
-              {"increments", result.spec.loading.increments},
-              {"growth_passes", result.state.growth_passes},
-              {"after_compaction", point_json(result.points_of(BoxPhase::compaction), result.spec.material.density)},
-              {"after_friction", point_json(result.points_of(BoxPhase::friction), result.spec.material.density)},
-              {"at_end", point_json(result.points_of(BoxPhase::loading), result.spec.material.density)},
-              {"pressure_of_smallest_G", number(pressure_of_smallest_shear(result))},
-              {"largest_shear_stress_ratio", largest_over_pressure(result, &BoxPoint::shear)},
-              {"largest_wall_moment_ratio", largest_over_pressure(result, &BoxPoint::moment)},
-              {"moduli", moduli_json(result, stresses)},
-              {"effort", effort_json(result.state)}};
-  out["exponents"] = fits_json(result);
-  if (!result.usable) out["reason"] = result.reason;
+BoxSummary summary_of(const GrainBoxResult& result, const std::vector<double>& stresses) {
+  const GrainBoxSpec& spec = result.spec;
+  const GrainBoxState& state = result.state;
+  BoxSummary out{.name = spec.name,
+                 .status = result.usable ? RunStatus::good : RunStatus::not_usable,
+                 .grains = spec.grains,
+                 .friction = std::isfinite(spec.friction) ? nlohmann::json(spec.friction) : nlohmann::json("infinite"),
+                 .generation = spec.generation,
+                 .test = spec.loading.test,
+                 .increments = spec.loading.increments,
+                 .growth_passes = state.growth_passes,
+                 .after_compaction = last_of(result, BoxPhase::compaction),
+                 .after_friction = last_of(result, BoxPhase::friction),
+                 .at_end = last_of(result, BoxPhase::loading),
+                 .pressure_of_smallest_shear = pressure_of_smallest_shear(result),
+                 .largest_shear = largest_over_pressure(result, &BoxPoint::shear),
+                 .largest_moment = largest_over_pressure(result, &BoxPoint::moment),
+                 .moduli = moduli_of(result, stresses),
+                 .effort = {state.points.size(), total_effort(state), state.loose_passes, state.seconds},
+                 .exponents = {fit_growth(result)}};
+  if (!result.usable) out.reason = result.reason;
   return out;
 }
 
 }  // namespace
 
-nlohmann::json grain_boxes_json(const std::vector<GrainBoxResult>& results) {
+std::vector<BoxSummary> summaries_of(const std::vector<GrainBoxResult>& results) {
   const std::vector<double> stresses = comparison_stresses(results);
-  json out = json::array();
-  for (const GrainBoxResult& result : results) out.push_back(result_json(result, stresses));
+  std::vector<BoxSummary> out;
+  for (const GrainBoxResult& result : results) out.push_back(summary_of(result, stresses));
   return out;
 }
 
-nlohmann::json arrangements_json(const std::vector<GrainBoxResult>& results) {
-  json out = json::array();
-  for (const OverArrangements& o : over_arrangements(results)) {
-    json moduli = json::array();
-    for (const ModuliAt& m : o.moduli)
-      if (m.points > 1) moduli.push_back(moduli_at_json(m, m.pressure, "arrangements"));
-    out.push_back({{"pack", o.pack},
-                   {"arrangements", o.arrangements},
-                   {"moduli", moduli},
-                   {"sliding_share", number(o.sliding)},
-                   {"sliding_share_error", number(o.sliding_error)}});
+std::vector<ArrangementsSummary> arrangements_of(const std::vector<GrainBoxResult>& results) {
+  std::vector<ArrangementsSummary> out;
+  for (const OverArrangements& over : over_arrangements(results)) {
+    out.push_back({over, {}});
+    for (const ModuliAt& m : over.moduli)
+      if (m.points > 1) out.back().moduli.push_back({m, true});
   }
   return out;
 }

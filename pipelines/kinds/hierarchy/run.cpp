@@ -286,6 +286,7 @@ SceneKind hierarchy_kind() {
                   .lines = lines_of,
                   .values = values_of,
                   .next = next_of},
+      .summary = members_of<HierarchySummary>,
       .keeps = {.measurements = true},
       .explored_from = {"", "[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"},
       .starter = kHierarchyStarter});

@@ -402,6 +402,7 @@ SceneKind inverse_kind() {
                                                         .sections = {{Part::answer, report::inverse_section}},
                                                         .values = values_of,
                                                         .next = next_of},
+                                            .summary = members_of<InverseSummary>,
                                             .starter = kInverseStarter});
 }
 

@@ -13,8 +13,8 @@ struct FoundParameter {
   std::string name;
   double value = 0.0;
   std::array<double, 2> interval{};  ///< 95 %
-  double standard_error = 0.0;       ///< standard error from the curvature of the surface
-  bool closed = false;               ///< the interval ends within the range
+  double standard_error = 0.0;
+  bool closed = false;
   std::array<double, 2> range{};
   bool logarithmic = false;
 };
@@ -23,7 +23,7 @@ struct FoundParameter {
 struct EvaluationSummary {
   std::vector<double> values;
   double misfit = 0.0;
-  std::vector<double> force;  ///< mean at each Delta [N]
+  std::vector<double> force;
 };
 
 struct SurfaceSummary {
@@ -38,7 +38,7 @@ struct ConfirmedCurve {
   std::vector<double> error;
   std::size_t packings = 0;
   double misfit = 0.0;
-  std::vector<std::int64_t> counts{};  ///< packings with a force at each Delta; empty: as in earlier runs, all
+  std::vector<std::int64_t> counts{};
 
   /// 95 % interval of the mean at Delta number j; NaN: of one packing nothing is known.
   [[nodiscard]] std::pair<double, double> interval(std::size_t j) const {
@@ -55,7 +55,7 @@ struct SearchSummary {
   InverseTarget target;
   SurfaceSummary surface;
   ConfirmedCurve confirmed;
-  std::int64_t packings = 0;  ///< packings of each evaluation
+  std::int64_t packings = 0;
   int replicates = 0;
   std::vector<EvaluationSummary> evaluations;
   Cost cost;  ///< its seconds are those of cores
@@ -68,61 +68,63 @@ struct InverseSummary {
 };
 
 void fields(auto&& visit, Of<FoundParameter> auto& s) {
-  visit("name", s.name);
-  visit("value", s.value);
-  visit("interval", s.interval);
-  visit("standard_error", s.standard_error);
-  visit("closed", s.closed);
-  visit("range", s.range);
-  visit("logarithmic", s.logarithmic);
+  visit("name", s.name, Means{"key of the parameter"});
+  visit("value", s.value, Means{"value of the best fit", "SI unit of the key"});
+  visit("interval", s.interval, Means{"95 % interval", "SI unit of the key"});
+  visit("standard_error", s.standard_error,
+        Means{"standard error from the curvature of the surface", "SI unit of the key"});
+  visit("closed", s.closed, Means{"whether the interval ends within the range"});
+  visit("range", s.range, Means{"range that was searched", "SI unit of the key"});
+  visit("logarithmic", s.logarithmic, Means{"whether the range is logarithmic"});
 }
 
 void fields(auto&& visit, Of<EvaluationSummary> auto& s) {
-  visit("values", s.values);
-  visit("misfit", s.misfit);
-  visit("force", s.force);
+  visit("values", s.values, Means{"values of the parameters", "SI units of the keys"});
+  visit("misfit", s.misfit, Means{"misfit to the target; null: no whole curve", "1"});
+  visit("force", s.force, Means{"mean force at each Delta", "N"});
 }
 
 void fields(auto&& visit, Of<InverseTarget> auto& s) {
-  visit("delta", s.delta);
-  visit("force", s.force);
-  visit("error", s.error);
+  visit("delta", s.delta, Means{"overlaps Delta of the target", "1"});
+  visit("force", s.force, Means{"forces of the target", "N"});
+  visit("error", s.error, Means{"standard errors of these forces", "N"});
 }
 
 void fields(auto&& visit, Of<SurfaceSummary> auto& s) {
-  visit("force", s.force);
-  visit("misfit", s.misfit);
-  visit("lack_of_fit", s.lack_of_fit);
+  visit("force", s.force, Means{"forces of the fitted surface at the optimum", "N"});
+  visit("misfit", s.misfit, Means{"misfit there", "1"});
+  visit("lack_of_fit", s.lack_of_fit,
+        Means{"root mean square distance of means near the optimum from the surface, over their errors", "1"});
 }
 
 void fields(auto&& visit, Of<ConfirmedCurve> auto& s) {
-  visit("force", s.force);
-  visit("error", s.error);
-  visit("packings", s.packings);
-  visit("misfit", s.misfit);
-  visit("counts", s.counts, kLeftOut);
+  visit("force", s.force, Means{"mean forces of packings that the search has not seen", "N"});
+  visit("error", s.error, Means{"their standard errors", "N"});
+  visit("packings", s.packings, Means{"number of these packings", "1"});
+  visit("misfit", s.misfit, Means{"misfit of these forces", "1"});
+  visit("counts", s.counts, kLeftOut, Means{"packings with a force at each Delta", "1"});
 }
 
 void fields(auto&& visit, Of<SearchSummary> auto& s) {
-  visit("contact", s.contact);
-  visit("parameters", s.parameters);
-  visit("correlation", s.correlation);
-  visit("target", s.target);
-  visit("discrepancy", s.target.discrepancy);
-  visit("surface", s.surface);
-  visit("confirmed", s.confirmed);
-  visit("packings", s.packings);
-  visit("replicates", s.replicates);
-  visit("evaluations", s.evaluations);
-  visit("loop_passes", s.cost.loop_passes);
-  visit("contact_evaluations", s.cost.contact_evaluations);
-  visit("core_seconds", s.cost.seconds);
+  visit("contact", s.contact, Means{"kind of contact"});
+  visit("parameters", s.parameters, Means{"parameters that were searched"});
+  visit("correlation", s.correlation, Means{"correlation of the parameters, row by row", "1"});
+  visit("target", s.target, Means{"target curve"});
+  visit("discrepancy", s.target.discrepancy, Means{"relative error of the target that all its forces share", "1"});
+  visit("surface", s.surface, Means{"the fitted surface at the optimum"});
+  visit("confirmed", s.confirmed, Means{"the answer, measured again"});
+  visit("packings", s.packings, Means{"packings of each evaluation", "1"});
+  visit("replicates", s.replicates, Means{"replicates of the intervals", "1"});
+  visit("evaluations", s.evaluations, Means{"points of the search"});
+  visit("loop_passes", s.cost.loop_passes, Means{"passes over all contacts", "1"});
+  visit("contact_evaluations", s.cost.contact_evaluations, Means{"evaluations of contact laws", "1"});
+  visit("core_seconds", s.cost.seconds, Means{"core seconds", "s"});
 }
 
 void fields(auto&& visit, Of<InverseSummary> auto& s) {
   fields(visit, s.head);
-  visit("inverse", s.inverse);
-  visit("packings", s.packings);
+  visit("inverse", s.inverse, Means{"the search"});
+  visit("packings", s.packings, Means{"packings of the confirming measurement"});
 }
 
 namespace report {

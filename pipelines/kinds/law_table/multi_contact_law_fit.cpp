@@ -8,7 +8,6 @@
 #include "common/core/error.h"
 #include "common/core/text.h"
 #include "common/data/law_words.h"
-#include "common/io/json_record.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
 #include "pipelines/law/law_json.h"
 
@@ -33,40 +32,6 @@ void insert(LawTable& table, LawTableEntry entry) {
         fmt::format("law table: two measurements have the same solid fraction {:.6f}; every entry needs its own",
                     entry.solid_fraction));
   table.entries.insert(at, std::move(entry));
-}
-
-nlohmann::json estimate_json(const Estimate& e) {
-  return {{"value", e.value}, {"standard_error", e.standard_error}, {"low", e.low}, {"high", e.high}};
-}
-
-nlohmann::json slide_json(const SlideLaw& s) {
-  nlohmann::json out{{"kt_ratio", estimate_json(s.kt_ratio)}, {"friction", estimate_json(s.friction)}};
-  if (s.rolls) {
-    out["rolling"] = estimate_json(s.rolling);
-    out["rolling_friction"] = estimate_json(s.rolling_friction);
-  }
-  if (s.has_unloading) out["unloading"] = estimate_json(s.unloading);
-  return out;
-}
-
-nlohmann::json law_json(const MultiContactLaw& law) {
-  nlohmann::json out = verdict_json(law);
-  out["criterion"] = law.criterion;
-  out["reason"] = law.reason;
-  out["replicates_failed"] = law.replicates_failed;
-  for (const MultiContactParameterName& p : kMultiContactParameters) out[p.key] = estimate_json(law.*p.estimate);
-  return out;
-}
-
-nlohmann::json entry_json(const LawTableEntry& entry) {
-  nlohmann::json out = verdict_json(entry);
-  out["slide_plane"] = slide_json(entry.slide_plane);
-  out["slide_solid"] = slide_json(entry.slide_solid);
-  out["slide_soft"] = slide_json(entry.slide_soft);
-  out["unloading"] = estimate_json(entry.unloading);
-  if (entry.prior) out["prior"] = json_of(*entry.prior);
-  for (const MultiContactLaw& law : entry.laws) out["laws"].push_back(law_json(law));
-  return out;
 }
 
 std::string law_line(const LawTableEntry& entry, const MultiContactLaw& law) {
@@ -149,9 +114,9 @@ double add_entry(MultiContactLawFit& fit, const MultiContactMeasurements& data, 
   return entry.solid_fraction;
 }
 
-nlohmann::json entries_json(const LawTable& table) {
-  nlohmann::json out = nlohmann::json::array();
-  for (const LawTableEntry& entry : table.entries) out.push_back(entry_json(entry));
+std::vector<EntrySummary> summaries_of(const LawTable& table) {
+  std::vector<EntrySummary> out;
+  for (const LawTableEntry& entry : table.entries) out.push_back({entry});
   return out;
 }
 

@@ -2,7 +2,6 @@
 // measurements are there.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "common/data/multi_contact_law.h"
 #include "common/io/scene.h"
 #include "pipelines/kinds/law_table/multi_contact_scene.h"
+#include "pipelines/kinds/law_table/summary.h"
 
 namespace softgrain {
 
@@ -17,7 +17,7 @@ struct MultiContactLawFit {
   LawTable table;
   std::vector<std::string> remarks;
   std::vector<std::string> warnings{};  ///< what may make the law wrong for its purpose
-  bool usable = true;                   ///< every recorded point is in equilibrium, and the best law of every entry is good
+  bool usable = true;  ///< every recorded point is in equilibrium, and the best law of every entry is good
 };
 
 /// "12.1 % on what was held out", or that nothing was; "9.6 % leaving one out", or that there was but one.
@@ -39,7 +39,7 @@ double add_entry(MultiContactLawFit& fit, const MultiContactMeasurements& data, 
                  double target);
 
 /// All entries with forms, parameters and errors.
-nlohmann::json entries_json(const LawTable& table);
+std::vector<EntrySummary> summaries_of(const LawTable& table);
 
 /// A few lines per entry.
 std::string entries_text(const LawTable& table);

@@ -13,8 +13,6 @@ namespace softgrain {
 
 namespace {
 
-using nlohmann::json;
-
 /// Last stage of the loading at the beginning.
 std::int64_t last_loading(const MultiContactConfiguration& c) {
   std::int64_t last = 0;
@@ -123,11 +121,6 @@ Cost cost_of(const std::vector<MultiContactRun>& runs) {
   return cost;
 }
 
-json cost_json(const Cost& cost) {
-  return {
-      {"loop_passes", cost.loop_passes}, {"contact_evaluations", cost.contact_evaluations}, {"seconds", cost.seconds}};
-}
-
 /// What further orientations of a packing are worth, over all configurations.
 std::string orientations_text(const MultiContactMeasurements& data) {
   std::int64_t orientations = 1;
@@ -145,22 +138,23 @@ std::string orientations_text(const MultiContactMeasurements& data) {
       orientations, 100.0 * same, shares.size(), n / (1.0 + (n - 1.0) * same));
 }
 
-json configuration_json(const MultiContactConfiguration& c, const std::vector<MultiContactRun>& runs, double target) {
+ConfigurationSummary summary_of(const MultiContactConfiguration& c, const std::vector<MultiContactRun>& runs,
+                                double target) {
   const MeanForce force = mean_end_force(c, runs);
   const Convergence points = convergence(runs);
-  json out = cost_json(cost_of(runs));
-  out["name"] = c.name;
-  out["neighbours"] = c.touching();
-  out["held_out"] = c.held_out;
-  out["packings"] = force.runs;
-  out["force"] = force.mean;
-  out["force_standard_error"] = force.standard_error;
-  out["target_met"] = met(force, target);
-  if (const double share = share_within(c, runs); std::isfinite(share)) out["variance_within_packings"] = share;
-  out["onset"] = onset(c, runs);
-  out["points"] = points.points;
-  out["converged_share"] =
-      points.points > 0 ? static_cast<double>(points.converged) / static_cast<double>(points.points) : 0.0;
+  ConfigurationSummary out{.name = c.name,
+                           .neighbours = c.touching(),
+                           .held_out = c.held_out,
+                           .packings = force.runs,
+                           .force = force.mean,
+                           .force_error = force.standard_error,
+                           .target_met = met(force, target),
+                           .onset = onset(c, runs),
+                           .points = points.points,
+                           .cost = cost_of(runs)};
+  if (const double share = share_within(c, runs); std::isfinite(share)) out.within = share;
+  if (points.points > 0)
+    out.converged_share = static_cast<double>(points.converged) / static_cast<double>(points.points);
   return out;
 }
 
@@ -174,16 +168,13 @@ MeanForce mean_end_force(const MultiContactConfiguration& configuration, const s
 
 bool met(const MeanForce& force, double target) { return force.standard_error <= target * force.mean; }
 
-json multi_contact_json(const MultiContactMeasurements& data, double target) {
-  json list = json::array();
+MultiContactSummary summary_of(const MultiContactMeasurements& data, double target) {
+  MultiContactSummary out{.relaxation = data.relaxation,
+                          .runs = data.runs.size(),
+                          .points = convergence(data.runs).points,
+                          .cost = cost_of(data.runs)};
   for (std::size_t k = 0; k < data.configurations.size(); ++k)
-    list.push_back(configuration_json(data.configurations[k], runs_of(data, k), target));
-  json out = cost_json(cost_of(data.runs));
-  out["relaxation"] = data.relaxation;
-  out["runs"] = data.runs.size();
-  out["points"] = convergence(data.runs).points;
-  out["force_unit"] = "E Rs^2";
-  out["configurations"] = list;
+    out.configurations.push_back(summary_of(data.configurations[k], runs_of(data, k), target));
   return out;
 }
 

@@ -2,12 +2,12 @@
 // cost.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "common/data/multi_contact_measurements.h"
 #include "pipelines/kinds/law_table/multi_contact_scene.h"
+#include "pipelines/kinds/law_table/summary.h"
 #include "pipelines/kinds/soft_particle/check.h"
 #include "pipelines/run/findings.h"
 
@@ -28,7 +28,7 @@ bool met(const MeanForce& force, double target);
 
 /// Numbers per configuration, and totals: packings used, mean force and standard error at the largest overlap, onset,
 /// share of converged points, cost.
-nlohmann::json multi_contact_json(const MultiContactMeasurements& data, double target);
+MultiContactSummary summary_of(const MultiContactMeasurements& data, double target);
 
 /// Sentences about what must not be overlooked: targets missed, points that did not converge.
 std::vector<std::string> multi_contact_remarks(const MultiContactMeasurements& data, double target);

@@ -49,19 +49,18 @@ LawTableRun measure_and_fit(const LawTableSetup& setup, const Run& run) {
   return result;
 }
 
-nlohmann::json summarise(const LawTableSetup& setup, const LawTableRun& result, const Run& run) {
-  nlohmann::json summary;
-  summary["status"] = result.fit.usable ? "good" : "not usable";
-  summary["title"] = setup.title;
-  summary["multi_contact"] = multi_contact_json(result.data, setup.multi_contact.target);
-  summary["entries"] = entries_json(result.fit.table);
-  if (!result.fit.warnings.empty()) summary["warnings"] = result.fit.warnings;
-  summary["remarks"] = result.fit.remarks;
+LawTableSummary summarise(const LawTableSetup& setup, const LawTableRun& result, const Run& run) {
+  LawTableSummary s{.status = result.fit.usable ? RunStatus::good : RunStatus::not_usable,
+                    .title = setup.title,
+                    .multi_contact = summary_of(result.data, setup.multi_contact.target),
+                    .entries = summaries_of(result.fit.table),
+                    .warnings = result.fit.warnings,
+                    .remarks = result.fit.remarks};
   if (setup.multi_contact.spec.sizes)
-    summary["sizes"] = json_of(summaries_of(shell_sizes(setup.multi_contact.spec, result.data.packings)));
+    s.sizes = summaries_of(shell_sizes(setup.multi_contact.spec, result.data.packings));
   for (const char* file : {kMultiContactFile, "law_table.toml", "law_table.h5", "report.html"})
-    summary["files"][file] = run.path(file);
-  return summary;
+    s.files[file] = run.path(file);
+  return s;
 }
 
 std::string console_summary(const LawTableRun& result, const Run& run) {
@@ -81,7 +80,7 @@ RunInputs inputs_of(const LawTableSetup& setup) {
 Outcome run_law_table(const LawTableSetup& setup, const Run& run) {
   LawTableRun result;
   run.guard([&] { result = measure_and_fit(setup, run); });
-  return {summarise(setup, result, run), console_summary(result, run)};
+  return {json_of(summarise(setup, result, run)), console_summary(result, run)};
 }
 
 /// As SceneKind::starter.
@@ -125,6 +124,7 @@ SceneKind law_table_kind() {
       .run = run_law_table,
       .check = check_law_table,
       .results = law_table_results(),
+      .summary = members_of<LawTableSummary>,
       .keeps = {.measurements = true},
       .explored_from = {"", "[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"},
       .starter = kLawTableStarter});

@@ -297,6 +297,7 @@ SceneKind macro_kind() {
           .read = [](const Scene& scene) { (void)read_macro_scene_alone(scene); },
           .refuse = [](const Scene& scene, const CommonOptions& options) { (void)ready_macro(scene, options); },
           .results = macro_results(),
+          .summary = members_of<MacroRunSummary>,
           .takes_law = true,
           .takes_engine = true,
           .keeps = {.packings = true, .twins = true},

@@ -254,6 +254,7 @@ SceneKind macro_comparison_kind() {
                                                     .run = run_macro_comparison,
                                                     .check = check_macro_comparison,
                                                     .results = macro_comparison_results(),
+                                                    .summary = members_of<MacroComparisonSummary>,
                                                     .keeps = {.packings = true, .twins = true},
                                                     .explored_from = {"", explored_stages(), explored_stages("scene")},
                                                     .starter = kMacroComparisonStarter});

@@ -37,9 +37,9 @@ struct EquationInput {
 };
 
 void fields(auto&& visit, Of<Estimate> auto& e) {
-  visit("value", e.value);
-  visit("standard_error", e.standard_error);
-  range_field(visit, "interval", e.low, e.high);
+  visit("value", e.value, Means{"value, in the unit of the quantity", "as the quantity"});
+  visit("standard_error", e.standard_error, Means{"standard error; null: not known", "as the quantity"});
+  range_field(visit, "interval", e.low, e.high, Means{"95 % interval; null: not known", "as the quantity"});
 }
 
 /// phi_J of one variant.
@@ -48,15 +48,15 @@ struct OnsetSummary {
   double span = 0.0;
   int samples = 0;
   Estimate onset;
-  double own_modulus = 0.0;  ///< K of this variant alone, n being that of all
+  double own_modulus = 0.0;
 };
 
 void fields(auto&& visit, Of<OnsetSummary> auto& s) {
-  visit("name", s.name);
-  visit("span", s.span);
-  visit("samples", s.samples);
-  visit("onset", s.onset);
-  visit("own_K", s.own_modulus);
+  visit("name", s.name, Means{"name of the variant"});
+  visit("span", s.span, Means{"largest over smallest radius", "1"});
+  visit("samples", s.samples, Means{"number of samples", "1"});
+  visit("onset", s.onset, Means{"solid fraction phi_J at which pressure begins", "1"});
+  visit("own_K", s.own_modulus, Means{"K of this variant alone, n being that of all", "1"});
 }
 
 /// What one form of extrapolation says.
@@ -69,11 +69,11 @@ struct OnsetFormSummary {
 };
 
 void fields(auto&& visit, Of<OnsetFormSummary> auto& s) {
-  visit("form", s.form);
-  visit("usable", s.usable);
-  visit("message", s.message);
-  visit("parameters", s.parameters);
-  visit("onset", s.onset);
+  visit("form", s.form, Means{"form of the extrapolation"});
+  visit("usable", s.usable, Means{"whether it could be fitted"});
+  visit("message", s.message, Means{"why not"});
+  visit("parameters", s.parameters, Means{"parameters of the form", "1"});
+  visit("onset", s.onset, Means{"solid fraction phi_J that it gives", "1"});
 }
 
 /// phi_J at a span, from those of smaller ones.
@@ -84,19 +84,19 @@ struct ExtrapolationSummary {
   bool usable = false;
   std::string message;
   std::optional<Estimate> onset;
-  std::optional<Estimate> measured;  ///< measured phi_J, where a variant has that span
+  std::optional<Estimate> measured;
   std::vector<OnsetFormSummary> forms;
 };
 
 void fields(auto&& visit, Of<ExtrapolationSummary> auto& s) {
-  visit("family", s.family);
-  visit("span", s.span);
-  visit("largest_fitted_span", s.largest_fitted);
-  visit("usable", s.usable);
-  visit("message", s.message);
-  visit("onset", s.onset, kLeftOut);
-  visit("measured", s.measured, kLeftOut);
-  visit("forms", s.forms, kLeftOut);
+  visit("family", s.family, Means{"variants that differ in the span alone"});
+  visit("span", s.span, Means{"largest over smallest radius", "1"});
+  visit("largest_fitted_span", s.largest_fitted, Means{"largest span that was used", "1"});
+  visit("usable", s.usable, Means{"whether there is an estimate"});
+  visit("message", s.message, Means{"why not"});
+  visit("onset", s.onset, kLeftOut, Means{"solid fraction phi_J at that span", "1"});
+  visit("measured", s.measured, kLeftOut, Means{"measured phi_J, where a variant has that span", "1"});
+  visit("forms", s.forms, kLeftOut, Means{"what each form of extrapolation says"});
 }
 
 /// p/E = K x^n (porosity), x = (phi - phi_J)/(1 - phi_J), or K (1 - Vp/Vp_J)^n (pores).
@@ -114,16 +114,17 @@ struct EquationSummary {
 };
 
 void fields(auto&& visit, Of<EquationSummary> auto& s) {
-  visit("form", s.form);
-  visit("usable", s.usable);
-  visit("message", s.message);
-  visit("K", s.modulus);
-  visit("n", s.exponent);
-  visit("pressure_deviation", s.pressure_deviation);
-  visit("K_scatter", s.modulus_scatter);
-  visit("collapse_probability", s.collapse_probability);
-  visit("onsets", s.onsets);
-  visit("extrapolations", s.extrapolations, kLeftOut);
+  visit("form", s.form,
+        Means{"porosity: p/E = K x^n with x = (phi - phi_J)/(1 - phi_J); pores: p/E = K (1 - Vp/Vp_J)^n"});
+  visit("usable", s.usable, Means{"whether the fit is usable"});
+  visit("message", s.message, Means{"why not"});
+  visit("K", s.modulus, Means{"modulus K", "1"});
+  visit("n", s.exponent, Means{"exponent n", "1"});
+  visit("pressure_deviation", s.pressure_deviation, Means{"root mean square deviation of log p", "1"});
+  visit("K_scatter", s.modulus_scatter, Means{"relative scatter of K between variants", "1"});
+  visit("collapse_probability", s.collapse_probability, Means{"probability of a larger scatter of K by chance", "1"});
+  visit("onsets", s.onsets, Means{"phi_J of each variant"});
+  visit("extrapolations", s.extrapolations, kLeftOut, Means{"phi_J at spans that were asked for"});
 }
 
 struct EquationResult {

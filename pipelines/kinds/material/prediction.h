@@ -34,23 +34,23 @@ struct PredictedValue {
 
 void fields(auto&& visit, Of<PredictedValue> auto& v) {
   fields(visit, v.predicted);
-  visit("measured", v.measured, kLeftOut);
+  visit("measured", v.measured, kLeftOut, Means{"measured mean, where a variant has that span"});
 }
 
 struct PredictedPoint {
   double strain = 0.0;
   PredictedValue pressure, axial, lateral;  ///< stresses over E; not where the volume is held
-  PredictedValue deviator;                  ///< q/p
-  bool beyond = false;                      ///< pressure above all that the equation of state was fitted to
+  PredictedValue deviator;
+  bool beyond = false;
 };
 
 void fields(auto&& visit, Of<PredictedPoint> auto& p) {
-  visit("strain", p.strain);
-  visit("p", p.pressure);
-  visit("axial", p.axial);
-  visit("lateral", p.lateral);
-  visit("q_over_p", p.deviator);
-  visit("beyond_fit", p.beyond);
+  visit("strain", p.strain, Means{"axial strain", "1"});
+  visit("p", p.pressure, Means{"pressure over E", "1"});
+  visit("axial", p.axial, Means{"axial stress over E", "1"});
+  visit("lateral", p.lateral, Means{"lateral stress over E", "1"});
+  visit("q_over_p", p.deviator, Means{"q/p", "1"});
+  visit("beyond_fit", p.beyond, Means{"pressure above all that the equation of state was fitted to"});
 }
 
 /// Prediction for one family under one loading, at one span.
@@ -61,23 +61,23 @@ struct PredictionSummary {
   double span = 0.0;
   double largest_fitted = 0.0;
   bool usable = false;
-  std::string message{};  ///< the forms of onset, or why there is none
+  std::string message{};
   std::optional<Estimate> solid_fraction{};
   int samples_measured = 0;
   std::vector<PredictedPoint> points{};
 };
 
 void fields(auto&& visit, Of<PredictionSummary> auto& s) {
-  visit("family", s.family);
-  visit("loading", s.loading);
-  visit("stage", s.kind);
-  visit("span", s.span);
-  visit("largest_fitted_span", s.largest_fitted);
-  visit("usable", s.usable);
-  visit("message", s.message);
-  visit("solid_fraction_start", s.solid_fraction, kLeftOut);
-  visit("samples_measured", s.samples_measured);
-  visit("points", s.points, kLeftOut);
+  visit("family", s.family, Means{"materials that differ in the span alone"});
+  visit("loading", s.loading, Means{"loading; empty: the scene has one test"});
+  visit("stage", s.kind, Means{"kind of the stage"});
+  visit("span", s.span, Means{"largest over smallest radius", "1"});
+  visit("largest_fitted_span", s.largest_fitted, Means{"largest span that was used", "1"});
+  visit("usable", s.usable, Means{"whether there is a prediction"});
+  visit("message", s.message, Means{"the forms of onset, or why there is none"});
+  visit("solid_fraction_start", s.solid_fraction, kLeftOut, Means{"solid fraction at the start pressure", "1"});
+  visit("samples_measured", s.samples_measured, Means{"samples of a variant with that span", "1"});
+  visit("points", s.points, kLeftOut, Means{"points of the test"});
 }
 
 /// Predictions for all families with two spans or more up to `largest_span`, in equal tests of one stage, at

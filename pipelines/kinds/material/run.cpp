@@ -489,6 +489,7 @@ SceneKind material_kind() {
           .check = check_material,
           .read = [](const Scene& scene) { (void)read_material_scene(scene); },
           .results = material_results(),
+          .summary = members_of<MaterialSummary>,
           .takes_engine = true,
           .keeps = {.measurements = true, .packings = true},
           .explored_from = {"", explored_stages(), explored_stages("loading"), explored_stages("variant")},

@@ -10,13 +10,13 @@ namespace softgrain {
 /// Results of the samples of one variant.
 struct MaterialVariantSummary {
   std::string name;
-  std::string file;  ///< file of its curves
+  std::string file;
   std::int64_t grains = 0;
-  double youngs_modulus = 0.0;  ///< Young's modulus of its grains [Pa]; 0: as the summary says
-  double size_ratio = 0.0;      ///< largest over smallest radius
+  double youngs_modulus = 0.0;
+  double size_ratio = 0.0;
   Preparation preparation = Preparation::frictionless;
   double friction = 0.0;
-  std::optional<double> rolling_friction;  ///< mu_r; empty: grains roll freely
+  std::optional<double> rolling_friction;
   std::optional<MeanError> solid_fraction_start;
   std::optional<MeanError> rattlers_start;
   std::optional<MeanError> coordination_start;
@@ -24,23 +24,23 @@ struct MaterialVariantSummary {
 };
 
 void fields(auto&& visit, Of<MaterialVariantSummary> auto& s) {
-  visit("name", s.name);
-  visit("file", s.file);
-  visit("grains", s.grains);
-  visit("E", s.youngs_modulus);
-  visit("size_ratio", s.size_ratio);
-  visit("preparation", s.preparation);
-  visit("mu", s.friction);
-  visit("mu_r", s.rolling_friction, kLeftOut);
-  visit("solid_fraction_start", s.solid_fraction_start, kLeftOut);
-  visit("rattlers_start", s.rattlers_start, kLeftOut);
-  visit("coordination_start", s.coordination_start, kLeftOut);
+  visit("name", s.name, Means{"name of the variant"});
+  visit("file", s.file, Means{"file of its curves"});
+  visit("grains", s.grains, Means{"number of grains of a sample", "1"});
+  visit("E", s.youngs_modulus, Means{"Young's modulus of its grains; 0: as the summary says", "Pa"});
+  visit("size_ratio", s.size_ratio, Means{"largest over smallest radius", "1"});
+  visit("preparation", s.preparation, Means{"how samples were prepared"});
+  visit("mu", s.friction, Means{"friction between grains", "1"});
+  visit("mu_r", s.rolling_friction, kLeftOut, Means{"rolling friction; absent: grains roll freely", "1"});
+  visit("solid_fraction_start", s.solid_fraction_start, kLeftOut, Means{"solid fraction at the start", "1"});
+  visit("rattlers_start", s.rattlers_start, kLeftOut, Means{"share of rattlers at the start", "1"});
+  visit("coordination_start", s.coordination_start, kLeftOut, Means{"coordination number at the start", "1"});
   fields(visit, s.runs);
 }
 
 struct MaterialSummary {
   SummaryHead head;
-  std::optional<double> youngs_modulus;  ///< E of the grains of all variants [Pa]; empty: they differ
+  std::optional<double> youngs_modulus;
   std::vector<MaterialVariantSummary> variants;
   std::optional<EquationSummary> equation;
   std::vector<PredictionSummary> predictions;
@@ -49,11 +49,12 @@ struct MaterialSummary {
 
 void fields(auto&& visit, Of<MaterialSummary> auto& s) {
   fields(visit, s.head);
-  visit("E", s.youngs_modulus, kLeftOut);
-  visit("variants", s.variants);
-  visit("equation_of_state", s.equation, kLeftOut);
-  visit("predictions", s.predictions, kLeftOut);
-  visit("engine", s.engine, kLeftOut);
+  visit("E", s.youngs_modulus, kLeftOut,
+        Means{"Young's modulus of the grains of all variants; absent: they differ", "Pa"});
+  visit("variants", s.variants, Means{"the variants"});
+  visit("equation_of_state", s.equation, kLeftOut, Means{"pressure over solid fraction"});
+  visit("predictions", s.predictions, kLeftOut, Means{"responses at spans that nobody resolves"});
+  visit("engine", s.engine, kLeftOut, Means{"program that moved the bodies, when it was another"});
 }
 
 /// E of the grains of a variant [Pa].

@@ -87,6 +87,7 @@ SceneKind material_law_kind() {
                                                 .run = run_material_law,
                                                 .check = check_material_law,
                                                 .results = material_law_results(),
+                                                .summary = members_of<MaterialLawSummary>,
                                                 .keeps = {.measurements = true, .packings = true},
                                                 .starter = kMaterialLawStarter});
 }

@@ -13,7 +13,7 @@ struct LawNumber {
 };
 
 void fields(auto&& visit, Of<LawNumber> auto& s) {
-  visit("name", s.name);
+  visit("name", s.name, Means{"name of the number in the card"});
   fields(visit, s.estimate);
 }
 
@@ -28,14 +28,14 @@ struct MixtureSummary {
 };
 
 void fields(auto&& visit, Of<MixtureSummary> auto& s) {
-  visit("name", s.name);
-  visit("fines_over_coarse", s.ratio);
-  visit("coarse_grains", s.coarse);
-  visit("fine_grains", s.fines);
-  visit("excess_pores", s.pores.value);
-  visit("standard_error", s.pores.standard_error);
-  range_field(visit, "interval", s.pores.low, s.pores.high);
-  visit("fitted", s.fitted);
+  visit("name", s.name, Means{"name of the variant"});
+  visit("fines_over_coarse", s.ratio, Means{"volume of fines over that of coarse grains", "1"});
+  visit("coarse_grains", s.coarse, Means{"number of coarse grains", "1"});
+  visit("fine_grains", s.fines, Means{"number of fine grains", "1"});
+  visit("excess_pores", s.pores.value, Means{"excess pores over the volume of coarse grains, W/V_c", "1"});
+  visit("standard_error", s.pores.standard_error, Means{"standard error of it", "1"});
+  range_field(visit, "interval", s.pores.low, s.pores.high, Means{"95 % interval of it", "1"});
+  visit("fitted", s.fitted, Means{"fitted form there", "1"});
 }
 
 /// The form of the excess pores over V_f/V_c.
@@ -47,61 +47,65 @@ struct BandSummary {
 };
 
 void fields(auto&& visit, Of<BandSummary> auto& s) {
-  visit("fines_over_coarse", s.ratio);
-  visit("value", s.value);
-  visit("low", s.low);
-  visit("high", s.high);
+  visit("fines_over_coarse", s.ratio, Means{"volume of fines over that of coarse grains", "1"});
+  visit("value", s.value, Means{"fitted form of the excess pores over the volume of coarse grains", "1"});
+  visit("low", s.low, Means{"lower end of the 95 % band", "1"});
+  visit("high", s.high, Means{"upper end of the 95 % band", "1"});
 }
 
 /// A test of the fines and the cell law with the fitted friction.
 struct FrictionCurve {
   std::string variant;
-  std::string measure;           ///< "lateral/axial", "q/p", "p/E", "(sigma_z - sigma_x)/p"
-  std::vector<double> strain;    ///< strain of z since the stage began
-  std::vector<double> measured;  ///< mean of the samples
-  std::vector<double> error;     ///< standard error of it
+  std::string measure;
+  std::vector<double> strain;
+  std::vector<double> measured;
+  std::vector<double> error;
   std::vector<double> fitted;
 };
 
 void fields(auto&& visit, Of<FrictionCurve> auto& s) {
-  visit("variant", s.variant);
-  visit("measure", s.measure);
-  visit("strain", s.strain);
-  visit("measured", s.measured);
-  visit("standard_error", s.error);
-  visit("fitted", s.fitted);
+  visit("variant", s.variant, Means{"name of the variant"});
+  visit("measure", s.measure, Means{"quantity: \"lateral/axial\", \"q/p\", \"p/E\" or \"(sigma_z - sigma_x)/p\""});
+  visit("strain", s.strain, Means{"strain of z since the stage began", "1"});
+  visit("measured", s.measured, Means{"mean of the samples", "1"});
+  visit("standard_error", s.error, Means{"standard error of it", "1"});
+  visit("fitted", s.fitted, Means{"the cell law with the fitted numbers", "1"});
 }
 
 struct CellLawSummary {
   bool usable = false;
   StateForm form = StateForm::porosity;
   double split = 0.0;
-  std::vector<LawNumber> numbers;  ///< numbers that were determined; those of the card where one was written
-  std::vector<LawNumber> of_pair;  ///< numbers of the two coarsest levels of a recipe alone, before all finer ones
-  std::vector<LawNumber> void_ratio_factors;  ///< by the names of other preparations
+  std::vector<LawNumber> numbers;
+  std::vector<LawNumber> of_pair;
+  std::vector<LawNumber> void_ratio_factors;
   std::vector<MixtureSummary> mixtures;
   std::optional<BandSummary> band;
-  double excess_deviation = 0.0;  ///< root mean square of W/V_c about its form
-  double excess_widening = 1.0;   ///< factor on the intervals of w_inf and xi, as the form misses the mixtures
+  double excess_deviation = 0.0;
+  double excess_widening = 1.0;
   std::vector<FrictionCurve> curves;
-  double friction_deviation = 0.0;        ///< root mean square of the ratios about those of the law
-  std::vector<std::string> undetermined;  ///< numbers of the memory that lean on each other
+  double friction_deviation = 0.0;
+  std::vector<std::string> undetermined;
 };
 
 void fields(auto&& visit, Of<CellLawSummary> auto& s) {
-  visit("usable", s.usable);
-  visit("form", s.form);
-  visit("split", s.split);
-  visit("numbers", s.numbers);
-  visit("numbers_of_two_coarsest_levels", s.of_pair, kLeftOut);
-  visit("void_ratio_factors", s.void_ratio_factors, kLeftOut);
-  visit("mixtures", s.mixtures);
-  visit("band", s.band, kLeftOut);
-  visit("excess_deviation", s.excess_deviation);
-  visit("excess_widening", s.excess_widening);
-  visit("curves", s.curves);
-  visit("friction_deviation", s.friction_deviation);
-  visit("undetermined", s.undetermined, kLeftOut);
+  visit("usable", s.usable, Means{"whether the law is usable"});
+  visit("form", s.form, Means{"form of the equation of state"});
+  visit("split", s.split, Means{"radius that parts fines from coarse grains, over the largest radius", "1"});
+  visit("numbers", s.numbers, Means{"numbers that were determined; those of the card where one was written"});
+  visit("numbers_of_two_coarsest_levels", s.of_pair, kLeftOut,
+        Means{"numbers of the two coarsest levels of a recipe alone"});
+  visit("void_ratio_factors", s.void_ratio_factors, kLeftOut,
+        Means{"void ratio of other preparations over that of the card's, by their names", "1"});
+  visit("mixtures", s.mixtures, Means{"excess pores of each mixture"});
+  visit("band", s.band, kLeftOut, Means{"form of the excess pores"});
+  visit("excess_deviation", s.excess_deviation, Means{"root mean square deviation of W/V_c from its form", "1"});
+  visit("excess_widening", s.excess_widening,
+        Means{"factor on the intervals of w_inf and xi, as the form misses the mixtures", "1"});
+  visit("curves", s.curves, Means{"tests of the fines, measured and by the law"});
+  visit("friction_deviation", s.friction_deviation,
+        Means{"root mean square deviation of the ratios from those of the law", "1"});
+  visit("undetermined", s.undetermined, kLeftOut, Means{"numbers of the shear memory that cannot be told apart"});
 }
 
 struct MaterialLawSummary {
@@ -111,7 +115,7 @@ struct MaterialLawSummary {
 
 void fields(auto&& visit, Of<MaterialLawSummary> auto& s) {
   fields(visit, s.material);
-  visit("cell_law", s.law);
+  visit("cell_law", s.law, Means{"the law of cells"});
 }
 
 }  // namespace softgrain

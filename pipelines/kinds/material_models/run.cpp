@@ -89,6 +89,7 @@ SceneKind material_models_kind() {
       .run = run_material_models,
       .check = check_models,
       .results = material_models_results(),
+      .summary = members_of<MaterialModelsSummary>,
       .keeps = {.measurements = true, .packings = true},
       .explored_from = {"", explored_stages(), explored_stages("loading"), explored_stages("variant")},
       .starter = kMaterialModelsStarter});

@@ -12,45 +12,47 @@ struct ModelScore {
   std::string model;
   ModelKind kind = ModelKind::cells;
   bool blind = false;
-  std::string remark;        ///< why nothing was run; or what to mind
-  std::int64_t samples = 0;  ///< samples that truth and model came through; 0: nothing is known
+  std::string remark;
+  std::int64_t samples = 0;
   std::int64_t bodies = 0;
-  double axial = 0.0;        ///< square root of sum (model - truth)^2/sum truth^2 of points beyond 1 % strain
-  double axial_error = 0.0;  ///< standard error, of the same in every sample
-  double lateral = 0.0;      ///< relative error of the lateral stress, as `axial`
+  double axial = 0.0;  ///< square root of sum (model - truth)^2/sum truth^2 of points beyond 1 % strain
+  double axial_error = 0.0;
+  double lateral = 0.0;
   double lateral_error = 0.0;
-  double axial_at_2 = 0.0;    ///< model/truth - 1 at 2 % strain
-  double axial_at_end = 0.0;  ///< model/truth - 1 at the end of the first stage
-  double ratio_at_2 = 0.0;    ///< q/p, model/truth - 1
+  double axial_at_2 = 0.0;  ///< model/truth - 1 at 2 % strain
+  double axial_at_end = 0.0;
+  double ratio_at_2 = 0.0;
   double ratio_at_6 = 0.0;
-  double unloading = 0.0;    ///< secant modulus of the first unloading, model/truth - 1
-  double truth_error = 0.0;  ///< standard error of the mean axial stress of the truth at the end, relative
+  double unloading = 0.0;
+  double truth_error = 0.0;
   double evaluations = 0.0;  ///< truth over model: of contacts, or faces of cells
   double seconds = 0.0;      ///< truth over model, tests alone
   double seconds_all = 0.0;  ///< truth over model, preparations included
 };
 
 void fields(auto&& visit, Of<ModelScore> auto& s) {
-  visit("variant", s.variant);
-  visit("model", s.model);
-  visit("kind", s.kind);
-  visit("blind", s.blind);
-  visit("remark", s.remark);
-  visit("samples", s.samples);
-  visit("bodies", s.bodies);
-  visit("axial", s.axial);
-  visit("axial_standard_error", s.axial_error);
-  visit("lateral", s.lateral);
-  visit("lateral_standard_error", s.lateral_error);
-  visit("axial_at_2", s.axial_at_2);
-  visit("axial_at_end", s.axial_at_end);
-  visit("q_over_p_at_2", s.ratio_at_2);
-  visit("q_over_p_at_6", s.ratio_at_6);
-  visit("unloading", s.unloading);
-  visit("truth_error", s.truth_error);
-  visit("evaluations", s.evaluations);
-  visit("seconds", s.seconds);
-  visit("seconds_with_preparation", s.seconds_all);
+  visit("variant", s.variant, Means{"name of the variant"});
+  visit("model", s.model, Means{"name of the model"});
+  visit("kind", s.kind, Means{"kind of the model"});
+  visit("blind", s.blind, Means{"whether nothing of the truth was used for it"});
+  visit("remark", s.remark, Means{"why nothing was run; or what to know about it"});
+  visit("samples", s.samples, Means{"samples that truth and model came through; 0: nothing is known", "1"});
+  visit("bodies", s.bodies, Means{"bodies of a sample of the model", "1"});
+  visit("axial", s.axial,
+        Means{"relative L2 error of the axial stress beyond 1 % strain, against the mean of the truth", "1"});
+  visit("axial_standard_error", s.axial_error, Means{"standard error of it", "1"});
+  visit("lateral", s.lateral, Means{"relative L2 error of the lateral stress beyond 1 % strain", "1"});
+  visit("lateral_standard_error", s.lateral_error, Means{"standard error of it", "1"});
+  visit("axial_at_2", s.axial_at_2, Means{"axial stress at 2 % strain, model/truth - 1", "1"});
+  visit("axial_at_end", s.axial_at_end, Means{"axial stress at the end of the first stage, model/truth - 1", "1"});
+  visit("q_over_p_at_2", s.ratio_at_2, Means{"q/p at 2 % strain, model/truth - 1", "1"});
+  visit("q_over_p_at_6", s.ratio_at_6, Means{"q/p at 6 % strain, model/truth - 1", "1"});
+  visit("unloading", s.unloading, Means{"secant modulus of the first unloading, model/truth - 1", "1"});
+  visit("truth_error", s.truth_error,
+        Means{"standard error of the mean axial stress of the truth at the end, relative", "1"});
+  visit("evaluations", s.evaluations, Means{"contact evaluations, or faces of cells, truth over model", "1"});
+  visit("seconds", s.seconds, Means{"time of the tests, truth over model", "1"});
+  visit("seconds_with_preparation", s.seconds_all, Means{"time with preparations, truth over model", "1"});
 }
 
 struct MaterialModelsSummary {
@@ -60,7 +62,7 @@ struct MaterialModelsSummary {
 
 void fields(auto&& visit, Of<MaterialModelsSummary> auto& s) {
   fields(visit, s.material);
-  visit("models", s.scores);
+  visit("models", s.scores, Means{"errors and costs of each model for each variant"});
 }
 
 }  // namespace softgrain

@@ -111,6 +111,7 @@ SceneKind particles_kind() {
       .read = [](const Scene& scene) { read_any_particles(scene, {}); },
       .refuse = [](const Scene& scene, const CommonOptions& options) { read_any_particles(scene, seed_of(options)); },
       .results = particles_results(),
+      .summary = members_of<ParticlesSummary>,
       .explored_from = {"[material.NAME]\ndensity = 1.0\n[[contact]]\npair = [\"NAME\", \"NAME\"]\n",
                         "dimension = 2\n[material.NAME]\ndensity = 1.0\n[[contact]]\npair = [\"NAME\", \"NAME\"]\nlaw "
                         "= \"cohesive\"\n"

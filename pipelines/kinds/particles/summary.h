@@ -23,10 +23,10 @@ struct GrainState {
 };
 
 void fields(auto&& visit, Of<GrainState> auto& s) {
-  visit("id", s.id);
-  visit("position", s.position);
-  visit("velocity", s.velocity);
-  visit("spin", s.spin);
+  visit("id", s.id, Means{"number of the particle in the order of addition", "1"});
+  visit("position", s.position, Means{"centre", "m"});
+  visit("velocity", s.velocity, Means{"velocity", "m/s"});
+  visit("spin", s.spin, Means{"angular velocity", "rad/s"});
 }
 
 struct WallState {
@@ -36,9 +36,9 @@ struct WallState {
 };
 
 void fields(auto&& visit, Of<WallState> auto& s) {
-  visit("name", s.name);
-  visit("position", s.position);
-  visit("velocity", s.velocity);
+  visit("name", s.name, Means{"name of the wall"});
+  visit("position", s.position, Means{"a point of the wall", "m"});
+  visit("velocity", s.velocity, Means{"velocity", "m/s"});
 }
 
 /// One pair that touched; of grains the id, of walls the name.
@@ -51,19 +51,19 @@ struct PairSummary {
 };
 
 void fields(auto&& visit, Of<PairSummary> auto& s) {
-  visit("pair", s.pair);
-  visit("count", s.count);
-  visit("duration", s.duration);
-  visit("max_force", s.max_force);
-  visit("max_overlap", s.max_overlap);
+  visit("pair", s.pair, Means{"ids of particles, names of walls"});
+  visit("count", s.count, Means{"how many times they touched", "1"});
+  visit("duration", s.duration, Means{"total duration", "s"});
+  visit("max_force", s.max_force, Means{"largest normal force that pushes", "N"});
+  visit("max_overlap", s.max_overlap, Means{"largest overlap", "m"});
 }
 
 struct ParticlesSummary {
   SummaryHead head;
-  std::string reason;  ///< why it is not usable
+  std::string reason;
   int dimension = 3;
   std::int64_t particle_count = 0;
-  double time = 0.0;  ///< reached [s]
+  double time = 0.0;
   std::int64_t steps = 0;
   double step = 0.0;              ///< [s]
   double natural_time = kNaN;     ///< [s]
@@ -73,31 +73,32 @@ struct ParticlesSummary {
   std::size_t frames = 0;
   std::vector<GrainState> particles;  ///< the first thousand
   std::vector<WallState> walls;
-  std::optional<std::vector<PairSummary>> contacts;  ///< when they were watched
-  nlohmann::json contact_state;                      ///< contacts, coordination_number, pressure, stress at the end
+  std::optional<std::vector<PairSummary>> contacts;
+  nlohmann::json contact_state;
   nlohmann::json cost;
   nlohmann::json guards;
 };
 
 void fields(auto&& visit, Of<ParticlesSummary> auto& s) {
   fields(visit, s.head);
-  visit("reason", s.reason, kLeftOut);
-  visit("dimension", s.dimension);
-  visit("particle_count", s.particle_count);
-  visit("time", s.time);
-  visit("steps", s.steps);
-  visit("step", s.step);
-  visit("natural_time", s.natural_time);
-  visit("shortest_impact", s.shortest_impact);
-  visit("step_limited_by", s.step_limited_by);
-  visit("kinetic_energy", s.kinetic_energy);
-  visit("frames", s.frames);
-  visit("particles", s.particles);
-  visit("walls", s.walls);
-  visit("contacts", s.contacts, kLeftOut);
-  visit("contact_state", s.contact_state);
-  visit("cost", s.cost);
-  visit("guards", s.guards);
+  visit("reason", s.reason, kLeftOut, Means{"why the result is not usable"});
+  visit("dimension", s.dimension, Means{"2 or 3", "1"});
+  visit("particle_count", s.particle_count, Means{"number of particles", "1"});
+  visit("time", s.time, Means{"time reached", "s"});
+  visit("steps", s.steps, Means{"number of time steps", "1"});
+  visit("step", s.step, Means{"time step", "s"});
+  visit("natural_time", s.natural_time, Means{"smallest sqrt(m/k) of bodies and contacts", "s"});
+  visit("shortest_impact", s.shortest_impact, Means{"shortest duration of an impact", "s"});
+  visit("step_limited_by", s.step_limited_by, Means{"what limits the time step"});
+  visit("kinetic_energy", s.kinetic_energy, Means{"kinetic energy at the end", "J"});
+  visit("frames", s.frames, Means{"number of recorded states", "1"});
+  visit("particles", s.particles, Means{"state of the first thousand particles at the end"});
+  visit("walls", s.walls, Means{"state of the walls at the end"});
+  visit("contacts", s.contacts, kLeftOut, Means{"pairs that touched, when they were watched"});
+  visit("contact_state", s.contact_state,
+        Means{"contacts, coordination number, fabric, pressure and stress at the end"});
+  visit("cost", s.cost, Means{"passes, evaluations, times and memory"});
+  visit("guards", s.guards, Means{"what the guards saw; counts are looks"});
 }
 
 /// Number of all particles; what is listed counts in summaries that do not say it.

@@ -167,19 +167,23 @@ struct PipelineSummary {
   std::map<std::string, PairLawSummary> laws;
   MeasuredSummary measured;
   MacroSummary macro;
-  std::optional<MacroSummary> pair;  ///< runs by the pair law, where those of `macro` are by a multi-contact law
+  std::optional<MacroSummary> pair;
   std::vector<BandRecord> bands;
   std::vector<BandedEnd> band_ends;
+  std::optional<MultiContactSummary> multi_contact{};  ///< of a scene that measures a law table
+  std::vector<EntrySummary> entries{};
 };
 
 void fields(auto&& visit, Of<PipelineSummary> auto& s) {
   fields(visit, s.head);
-  visit("laws", s.laws);
+  visit("laws", s.laws, Means{"fitted laws, by kind of contact"});
   fields(visit, s.measured);
   fields(visit, s.macro);
-  visit("pair", s.pair, kLeftOut);
-  visit("bands", s.bands);
-  visit("band_ends", s.band_ends);
+  visit("pair", s.pair, kLeftOut, Means{"runs by the pair law, where those of `macro` are by a multi-contact law"});
+  visit("bands", s.bands, Means{"bands of the laws that have error bars"});
+  visit("band_ends", s.band_ends, Means{"stresses at the last point with their intervals"});
+  visit("multi_contact", s.multi_contact, kLeftOut, Means{"what was measured with several neighbours at once"});
+  visit("entries", s.entries, kLeftOut, Means{"laws of each kind of packing"});
 }
 
 PipelineSummary summarise(const PipelineSetup& setup, const PipelineResult& r, const Run& run) {
@@ -261,12 +265,12 @@ Outcome run_pipeline(const PipelineSetup& setup, const Run& run) {
   fit(setup, run, result);
   measure_table(setup, run, result);
   run_macro(setup, run, result);
-  nlohmann::json summary = json_of(summarise(setup, result, run));
+  PipelineSummary summary = summarise(setup, result, run);
   if (!result.multi_contact_fit.table.entries.empty()) {
-    summary["multi_contact"] = multi_contact_json(result.multi_contact, setup.measured_table->multi_contact.target);
-    summary["entries"] = entries_json(result.multi_contact_fit.table);
+    summary.multi_contact = summary_of(result.multi_contact, setup.measured_table->multi_contact.target);
+    summary.entries = summaries_of(result.multi_contact_fit.table);
   }
-  return {summary, console_summary(setup, result) + bands_text(result.bands, banded_ends(result.curves))};
+  return {json_of(summary), console_summary(setup, result) + bands_text(result.bands, banded_ends(result.curves))};
 }
 
 void check_pipeline(const PipelineSetup& setup, Findings& out) {
@@ -344,6 +348,7 @@ SceneKind pipeline_kind() {
       .run = run_pipeline,
       .check = check_pipeline,
       .results = {.next = next_of},
+      .summary = members_of<PipelineSummary>,
       .keeps = {.measurements = true, .packings = true, .twins = true},
       .explored_from =
           {"", "[macro]\n" + explored_stages(),

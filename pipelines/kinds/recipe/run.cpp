@@ -400,6 +400,7 @@ SceneKind recipe_kind() {
                                            .run = run_recipe,
                                            .check = check_recipe,
                                            .results = recipe_results(),
+                                           .summary = members_of<RecipeSummary>,
                                            .keeps = {.measurements = true, .packings = true},
                                            .starter = kRecipeStarter});
 }

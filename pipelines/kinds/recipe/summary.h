@@ -14,19 +14,19 @@ struct ConstituentSummary {
   double mass_share = 0.0;
   double density = 0.0;
   double volume_share = 0.0;
-  std::optional<double> youngs_modulus{};  ///< E of its grains [Pa]; empty, as the next two: all grains are alike
+  std::optional<double> youngs_modulus{};
   std::optional<double> poisson_ratio{};
   std::optional<double> friction{};
 };
 
 void fields(auto&& visit, Of<ConstituentSummary> auto& s) {
-  visit("name", s.name);
-  visit("mass_share", s.mass_share);
-  visit("density", s.density);
-  visit("volume_share", s.volume_share);
-  visit("E", s.youngs_modulus, kLeftOut);
-  visit("nu", s.poisson_ratio, kLeftOut);
-  visit("mu", s.friction, kLeftOut);
+  visit("name", s.name, Means{"name of the constituent"});
+  visit("mass_share", s.mass_share, Means{"share of the mass", "1"});
+  visit("density", s.density, Means{"density of its grains", "kg/m^3"});
+  visit("volume_share", s.volume_share, Means{"share of the solid volume", "1"});
+  visit("E", s.youngs_modulus, kLeftOut, Means{"Young's modulus of its grains; absent: all grains are alike", "Pa"});
+  visit("nu", s.poisson_ratio, kLeftOut, Means{"Poisson's ratio of its grains", "1"});
+  visit("mu", s.friction, kLeftOut, Means{"friction of its grains", "1"});
 }
 
 /// Estimates by both forms, see LevelForms.
@@ -37,8 +37,8 @@ struct OnsetByForms {
 };
 
 void fields(auto&& visit, Of<OnsetByForms> auto& s) {
-  visit("levels", s.levels);
-  visit("rods", s.rods);
+  visit("levels", s.levels, Means{"solid fraction phi_J by the form of levels", "1"});
+  visit("rods", s.rods, Means{"solid fraction phi_J by the form of rods", "1"});
   fields(visit, s.onset);
 }
 
@@ -46,26 +46,29 @@ struct RecipeLevelSummary {
   std::int64_t level = 1;
   double diameter_low = 0.0;  ///< [m]
   double diameter_high = 0.0;
-  double share = 0.0;       ///< share of the solid volume of all levels
-  double grains = 0.0;      ///< grains of the level in a cubic metre of the whole
-  std::string packing;      ///< name of the measured packing
-  double onset = 0.0;       ///< phi_J of the level alone
-  OnsetByForms with_finer;  ///< phi_J of it and everything finer
+  double share = 0.0;
+  double grains = 0.0;
+  std::string packing;
+  double onset = 0.0;
+  OnsetByForms with_finer;
   /// Volume that everything finer takes up where it jams, over the voids of this level alone: above 1 its grains float
   /// in fines, below they bear and the fines have room. None for the finest.
   std::optional<double> filling;
 };
 
 void fields(auto&& visit, Of<RecipeLevelSummary> auto& s) {
-  visit("level", s.level);
-  visit("diameter_low", s.diameter_low);
-  visit("diameter_high", s.diameter_high);
-  visit("volume_share", s.share);
-  visit("grains_per_cubic_metre", s.grains);
-  visit("packing", s.packing);
-  visit("onset", s.onset);
-  visit("onset_with_finer", s.with_finer);
-  visit("filling", s.filling, kLeftOut);
+  visit("level", s.level, Means{"number of the level; 1: the coarsest", "1"});
+  visit("diameter_low", s.diameter_low, Means{"smallest diameter", "m"});
+  visit("diameter_high", s.diameter_high, Means{"largest diameter", "m"});
+  visit("volume_share", s.share, Means{"share of the solid volume of all levels", "1"});
+  visit("grains_per_cubic_metre", s.grains, Means{"grains of the level in a cubic metre of the whole", "1/m^3"});
+  visit("packing", s.packing, Means{"name of the measured packing"});
+  visit("onset", s.onset, Means{"solid fraction phi_J of the level alone", "1"});
+  visit("onset_with_finer", s.with_finer, Means{"solid fraction phi_J of the level with everything finer"});
+  visit("filling", s.filling, kLeftOut,
+        Means{"volume that everything finer takes up where it jams, over the voids of this level alone: above 1 its "
+              "grains float in fines",
+              "1"});
 }
 
 /// The coarsest levels with all their grains.
@@ -75,24 +78,25 @@ struct RecipeCheckSummary {
   double span = 1.0;
   Estimate measured;  ///< phi_J
   OnsetByForms predicted;
-  bool weighs = true;          ///< whether it tells which form does better; else the value is in the middle
-  double share_of_rods = 0.5;  ///< share of rods in the value of the whole, see LevelForms::lean
-  double outside = 0.0;        ///< how far the measured one lies outside the interval, which intervals are widened by
+  bool weighs = true;
+  double share_of_rods = 0.5;
+  double outside = 0.0;
   /// K0 as predicted by mixtures of two levels, and of the samples; nothing in results of earlier versions.
   std::optional<PredictedValue> lateral_ratio;
 };
 
 void fields(auto&& visit, Of<RecipeCheckSummary> auto& s) {
-  visit("levels", s.levels);
-  visit("grains", s.grains);
-  visit("span", s.span);
-  visit("measured", s.measured.value);
-  visit("measured_standard_error", s.measured.standard_error);
-  visit("predicted", s.predicted);
-  visit("weighs_forms", s.weighs);
-  visit("share_of_rods", s.share_of_rods);
-  visit("outside", s.outside);
-  visit("K0", s.lateral_ratio, kLeftOut);
+  visit("levels", s.levels, Means{"number of levels with all their grains", "1"});
+  visit("grains", s.grains, Means{"number of grains", "1"});
+  visit("span", s.span, Means{"largest over smallest radius", "1"});
+  visit("measured", s.measured.value, Means{"measured phi_J", "1"});
+  visit("measured_standard_error", s.measured.standard_error, Means{"standard error of it", "1"});
+  visit("predicted", s.predicted, Means{"predicted phi_J"});
+  visit("weighs_forms", s.weighs, Means{"whether it tells which form does better; else the value is in the middle"});
+  visit("share_of_rods", s.share_of_rods, Means{"share of rods in the value of the whole", "1"});
+  visit("outside", s.outside, Means{"how far the measured value lies outside the interval", "1"});
+  visit("K0", s.lateral_ratio, kLeftOut,
+        Means{"lateral over axial stress as predicted by mixtures of two levels, and as measured"});
 }
 
 /// Constrained modulus between two axial stresses, over logarithmic strain; all over E. NaN: an end of the band does
@@ -106,10 +110,10 @@ struct SecantModulus {
 };
 
 void fields(auto&& visit, Of<SecantModulus> auto& s) {
-  visit("from", s.from);
-  visit("to", s.to);
-  visit("value", s.value);
-  range_field(visit, "interval", s.low, s.high);
+  visit("from", s.from, Means{"lower axial stress over E", "1"});
+  visit("to", s.to, Means{"upper axial stress over E", "1"});
+  visit("value", s.value, Means{"constrained modulus over E, of logarithmic strain", "1"});
+  range_field(visit, "interval", s.low, s.high, Means{"95 % interval; null: not known", "1"});
 }
 
 /// Oedometric compression from the start pressure; stresses over E.
@@ -117,19 +121,19 @@ struct RecipeCurve {
   std::string name;
   std::vector<double> strain, axial, lateral;
   std::vector<double> low, high;  ///< band of the axial stress; empty: not known
-  std::string problem;            ///< why it ends, or is not there
+  std::string problem;
   std::optional<SecantModulus> modulus{};
 };
 
 void fields(auto&& visit, Of<RecipeCurve> auto& s) {
-  visit("name", s.name);
-  visit("strain", s.strain);
-  visit("axial", s.axial);
-  visit("lateral", s.lateral);
-  visit("axial_low", s.low);
-  visit("axial_high", s.high);
-  visit("problem", s.problem);
-  visit("constrained_modulus", s.modulus, kLeftOut);
+  visit("name", s.name, Means{"name of the curve"});
+  visit("strain", s.strain, Means{"axial strain", "1"});
+  visit("axial", s.axial, Means{"axial stress over E", "1"});
+  visit("lateral", s.lateral, Means{"lateral stress over E", "1"});
+  visit("axial_low", s.low, Means{"lower end of the 95 % band of the axial stress", "1"});
+  visit("axial_high", s.high, Means{"upper end of the 95 % band of the axial stress", "1"});
+  visit("problem", s.problem, Means{"why the curve ends, or is not there"});
+  visit("constrained_modulus", s.modulus, kLeftOut, Means{"constrained modulus between two stresses"});
 }
 
 /// A level of the shell hierarchy.
@@ -137,79 +141,80 @@ struct ShellLevelSummary {
   std::int64_t level = 0;  ///< 0: the finest
   double diameter_low = 0.0;
   double diameter_high = 0.0;
-  double force = 0.0;   ///< force of one plane at h/Rs = 0.2, over E Rs^2
-  double grains = 0.0;  ///< number of grains that one soft particle represents
+  double force = 0.0;
+  double grains = 0.0;
 };
 
 void fields(auto&& visit, Of<ShellLevelSummary> auto& s) {
-  visit("level", s.level);
-  visit("diameter_low", s.diameter_low);
-  visit("diameter_high", s.diameter_high);
-  visit("force_over_E_Rs2", s.force);
-  visit("grains", s.grains);
+  visit("level", s.level, Means{"number of the level; 0: the finest", "1"});
+  visit("diameter_low", s.diameter_low, Means{"smallest diameter", "m"});
+  visit("diameter_high", s.diameter_high, Means{"largest diameter", "m"});
+  visit("force_over_E_Rs2", s.force, Means{"force of one plane at h/Rs = 0.2 over E Rs^2", "1"});
+  visit("grains", s.grains, Means{"number of grains that one soft particle stands for", "1"});
 }
 
 /// The compressible packing model (de Larrard 1999) for the sizes of the whole, which is a model of others: solid
 /// fraction with a beta for which grains of one size pack as they do here.
 struct CompressibleModelSummary {
-  double one_size = 0.0;          ///< solid fraction of grains of one size, by rods with the gap of the packings here
-  double poured = 0.0;            ///< solid fraction of the whole with K = 4.1
-  double vibrated_pressed = 0.0;  ///< solid fraction of the whole with K = 9
+  double one_size = 0.0;
+  double poured = 0.0;
+  double vibrated_pressed = 0.0;
 };
 
 void fields(auto&& visit, Of<CompressibleModelSummary> auto& s) {
-  visit("solid_fraction_of_one_size", s.one_size);
-  visit("solid_fraction_K_4_1", s.poured);
-  visit("solid_fraction_K_9", s.vibrated_pressed);
+  visit("solid_fraction_of_one_size", s.one_size, Means{"solid fraction of grains of one size", "1"});
+  visit("solid_fraction_K_4_1", s.poured, Means{"solid fraction of the whole, poured (K = 4.1)", "1"});
+  visit("solid_fraction_K_9", s.vibrated_pressed,
+        Means{"solid fraction of the whole, vibrated and pressed (K = 9)", "1"});
 }
 
 /// The whole at a recorded point of its stages.
 struct RecipePoint {
-  std::string stage;   ///< stage that ends at the point or leads to it
-  double axial = 0.0;  ///< axial stress [Pa]
-  Estimate strain;     ///< nominal, from the start of the test
+  std::string stage;
+  double axial = 0.0;
+  Estimate strain;
   Estimate lateral_ratio;
   Estimate void_ratio;
 };
 
 void fields(auto&& visit, Of<RecipePoint> auto& p) {
-  visit("stage", p.stage);
-  visit("axial_stress", p.axial);
-  visit("axial_strain", p.strain);
-  visit("K0", p.lateral_ratio);
-  visit("void_ratio", p.void_ratio);
+  visit("stage", p.stage, Means{"stage that ends at the point or leads to it"});
+  visit("axial_stress", p.axial, Means{"axial stress", "Pa"});
+  visit("axial_strain", p.strain, Means{"nominal strain from the start of the test", "1"});
+  visit("K0", p.lateral_ratio, Means{"lateral over axial stress", "1"});
+  visit("void_ratio", p.void_ratio, Means{"void ratio", "1"});
 }
 
 /// The whole in a stage; moduli in Pa, of logarithmic strain. `measured`: of samples with all its grains.
 struct RecipeStageSummary {
   std::string name;
   StageKind kind = StageKind::oedometric;
-  double stress_end = 0.0;   ///< axial stress at the end of the stage [Pa]
+  double stress_end = 0.0;
   double stress_from = 0.0;  ///< interval of secant and index [Pa]: falls in an unloading
   double stress_to = 0.0;
-  PredictedValue secant;         ///< constrained modulus over the interval
-  PredictedValue tangent_begin;  ///< constrained modulus at the first point: of an unloading the stiffest
-  PredictedValue tangent_end;    ///< at the last point
-  PredictedValue index;          ///< Cc; of an unloading and a reloading Cs
+  PredictedValue secant;
+  PredictedValue tangent_begin;
+  PredictedValue tangent_end;
+  PredictedValue index;
   PredictedValue lateral_ratio;  ///< K0 at the end
-  PredictedValue void_ratio;     ///< at the end
+  PredictedValue void_ratio;
 
   /// "Cc" or "Cs".
   [[nodiscard]] const char* index_name() const { return kind == StageKind::oedometric ? "Cc" : "Cs"; }
 };
 
 void fields(auto&& visit, Of<RecipeStageSummary> auto& s) {
-  visit("name", s.name);
-  visit("kind", s.kind);
-  visit("axial_stress_end", s.stress_end);
-  visit("interval_from", s.stress_from);
-  visit("interval_to", s.stress_to);
-  visit("modulus_secant", s.secant);
-  visit("modulus_begin", s.tangent_begin);
-  visit("modulus_end", s.tangent_end);
-  visit("compression_index", s.index);
-  visit("K0_end", s.lateral_ratio);
-  visit("void_ratio_end", s.void_ratio);
+  visit("name", s.name, Means{"name of the stage"});
+  visit("kind", s.kind, Means{"kind of the stage"});
+  visit("axial_stress_end", s.stress_end, Means{"axial stress at the end of the stage", "Pa"});
+  visit("interval_from", s.stress_from, Means{"axial stress at which the interval of secant and index begins", "Pa"});
+  visit("interval_to", s.stress_to, Means{"axial stress at which it ends", "Pa"});
+  visit("modulus_secant", s.secant, Means{"constrained modulus over the interval, of logarithmic strain", "Pa"});
+  visit("modulus_begin", s.tangent_begin, Means{"constrained modulus at the first point", "Pa"});
+  visit("modulus_end", s.tangent_end, Means{"constrained modulus at the last point", "Pa"});
+  visit("compression_index", s.index, Means{"Cc; of an unloading and a reloading Cs", "1"});
+  visit("K0_end", s.lateral_ratio, Means{"lateral over axial stress at the end", "1"});
+  visit("void_ratio_end", s.void_ratio, Means{"void ratio at the end", "1"});
 }
 
 /// The whole under [[stage]]; empty without them. Stresses in Pa.
@@ -219,22 +224,22 @@ struct RecipeStages {
 };
 
 void fields(auto&& visit, Of<RecipeStages> auto& s) {
-  visit("stages", s.stages);
-  visit("points", s.points);
+  visit("stages", s.stages, Means{"the stages of the test"});
+  visit("points", s.points, Means{"its recorded points"});
 }
 
 struct RecipeOutcome {
   std::vector<ConstituentSummary> constituents;
   std::vector<RecipeLevelSummary> levels;
   double span = 1.0;
-  double gap = 0.0;             ///< gap of the rods
-  double rods_deviation = 0.0;  ///< root mean square of the onsets about them
+  double gap = 0.0;
+  double rods_deviation = 0.0;
   std::optional<Estimate> onset;
-  std::optional<Estimate> solid_fraction;  ///< solid fraction at the start pressure
-  Estimate lateral_ratio;                  ///< K0 at the end of the test, predicted: never that of the check
+  std::optional<Estimate> solid_fraction;
+  Estimate lateral_ratio;  ///< K0 at the end of the test, predicted: never that of the check
   double grains_per_cubic_metre = 0.0;
-  double resolved_grains = 0.0;       ///< grains of a sample with a hundred grains above a third of the largest radius
-  double resolved_evaluations = 0.0;  ///< contact evaluations of that sample, from those of preparation and test here
+  double resolved_grains = 0.0;
+  double resolved_evaluations = 0.0;
   std::optional<RecipeCheckSummary> check;
   std::vector<RecipeCurve> curves;
   std::vector<ShellLevelSummary> shells;
@@ -243,22 +248,25 @@ struct RecipeOutcome {
 };
 
 void fields(auto&& visit, Of<RecipeOutcome> auto& s) {
-  visit("constituents", s.constituents);
-  visit("levels", s.levels);
-  visit("span", s.span);
-  visit("rods_gap", s.gap);
-  visit("rods_deviation", s.rods_deviation);
-  visit("onset", s.onset, kLeftOut);
-  visit("solid_fraction_start", s.solid_fraction, kLeftOut);
-  visit("K0", s.lateral_ratio);
-  visit("grains_per_cubic_metre", s.grains_per_cubic_metre);
-  visit("resolved_grains", s.resolved_grains);
-  visit("resolved_contact_evaluations", s.resolved_evaluations);
-  visit("check", s.check, kLeftOut);
-  visit("curves", s.curves);
-  visit("shells", s.shells);
-  visit("compressible_packing_model", s.compressible_model, kLeftOut);
-  visit("staged", s.staged, kLeftOut);
+  visit("constituents", s.constituents, Means{"the constituents"});
+  visit("levels", s.levels, Means{"levels of sizes, coarsest first"});
+  visit("span", s.span, Means{"largest over smallest radius of the whole", "1"});
+  visit("rods_gap", s.gap, Means{"gap of the rods", "1"});
+  visit("rods_deviation", s.rods_deviation, Means{"root mean square deviation of the onsets from the rods", "1"});
+  visit("onset", s.onset, kLeftOut, Means{"solid fraction phi_J of the whole", "1"});
+  visit("solid_fraction_start", s.solid_fraction, kLeftOut, Means{"solid fraction at the start pressure", "1"});
+  visit("K0", s.lateral_ratio, Means{"predicted lateral over axial stress at the end of the test", "1"});
+  visit("grains_per_cubic_metre", s.grains_per_cubic_metre, Means{"grains in a cubic metre of the whole", "1/m^3"});
+  visit("resolved_grains", s.resolved_grains,
+        Means{"grains of a sample with a hundred grains above a third of the largest radius", "1"});
+  visit("resolved_contact_evaluations", s.resolved_evaluations,
+        Means{"contact evaluations of that sample, estimated", "1"});
+  visit("check", s.check, kLeftOut, Means{"the coarsest levels with all their grains"});
+  visit("curves", s.curves, Means{"oedometric compression from the start pressure"});
+  visit("shells", s.shells, Means{"levels of the shell hierarchy"});
+  visit("compressible_packing_model", s.compressible_model, kLeftOut,
+        Means{"the compressible packing model for the same sizes"});
+  visit("staged", s.staged, kLeftOut, Means{"the whole under the stages of the scene"});
 }
 
 struct RecipeSummary {
@@ -269,8 +277,8 @@ struct RecipeSummary {
 
 void fields(auto&& visit, Of<RecipeSummary> auto& s) {
   fields(visit, s.material);
-  visit("cell_law", s.law);
-  visit("recipe", s.recipe);
+  visit("cell_law", s.law, Means{"the law of cells"});
+  visit("recipe", s.recipe, Means{"the whole, predicted"});
 }
 
 }  // namespace softgrain

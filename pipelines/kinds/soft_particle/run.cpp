@@ -76,6 +76,7 @@ SceneKind soft_particle_kind() {
       .run = run_soft_particle,
       .check = [](const SoftParticleScene& scene, Findings& out) { (void)check_measurements(scene.measure, out); },
       .results = soft_particle_results(),
+      .summary = members_of<SoftParticleSummary>,
       .starter = kSoftParticleStarter});
 }
 
