@@ -209,19 +209,19 @@ std::string exponents_table(const Packs& packs) {
 }
 
 /// What is set side by side at equal sigma_c.
-struct Compared {
+struct ComparedModulus {
   const char* name;
   double ModuliAt::*value;
   double ModuliAt::*error;
   double unit;
 };
-constexpr Compared kCompared[] = {
+constexpr ComparedModulus kCompared[] = {
     {"K [GPa]", &ModuliAt::bulk, &ModuliAt::bulk_error, kGiga},
     {"G [GPa]", &ModuliAt::shear, &ModuliAt::shear_error, kGiga},
     {"mean normal force [N]", &ModuliAt::force, &ModuliAt::force_error, 1.0},
 };
 
-std::string moduli_table(const Packs& packs, const Compared& what) {
+std::string moduli_table(const Packs& packs, const ComparedModulus& what) {
   const std::vector<double> stresses = comparison_stresses(packs);
   std::vector<std::string> header{fmt::format("{} at sigma_c [MPa]", what.name)};
   for (const double s : stresses) header.push_back(format_number(s * kMega, 3));
@@ -239,7 +239,7 @@ std::string moduli_table(const Packs& packs, const Compared& what) {
 
 std::string moduli_tables(const Packs& packs) {
   std::string out;
-  for (const Compared& what : kCompared) out += moduli_table(packs, what);
+  for (const ComparedModulus& what : kCompared) out += moduli_table(packs, what);
   return out;
 }
 
@@ -253,7 +253,7 @@ std::string arrangements_tables(const Packs& packs) {
   for (const OverArrangements& o : over) {
     sliding.row(
         {o.pack, format_count(static_cast<std::int64_t>(o.arrangements)), value_text(o.sliding, o.sliding_error)});
-    for (const Compared& what : kCompared) {
+    for (const ComparedModulus& what : kCompared) {
       std::vector<std::string> row{o.pack + ", " + what.name};
       for (const ModuliAt& m : o.moduli)
         row.push_back(value_text(m.*what.value * what.unit, m.*what.error * what.unit));
