@@ -12,6 +12,7 @@
 
 #include "common/core/enum_names.h"
 #include "common/core/error.h"
+#include "common/core/histogram.h"
 #include "common/core/vec.h"
 #include "common/io/hdf5_file.h"
 
@@ -326,5 +327,14 @@ struct ListColumn {
     slices.finish();
   }
 };
+
+// Histograms.
+
+/// Attributes `low`, `high` (ends of the range), `below`, `above` (numbers of values outside) and the data set
+/// `counts`.
+void write_histogram(const h5::Group& group, const Histogram& histogram);
+
+/// Adds the counts of `more`, which has the same bins.
+void add_counts(Histogram& sum, const Histogram& more);
 
 }  // namespace softgrain

@@ -15,7 +15,6 @@
 #include "common/data/attributes.h"
 #include "common/data/columns.h"
 #include "common/data/fields.h"
-#include "common/data/histogram_io.h"
 
 namespace softgrain {
 

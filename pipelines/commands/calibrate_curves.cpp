@@ -10,7 +10,7 @@
 #include "common/data/law_words.h"
 #include "common/io/text_file.h"
 #include "pipelines/law/law_fit.h"
-#include "pipelines/law/press_test.h"
+#include "pipelines/law/law_library_press.h"
 #include "pipelines/report/report.h"
 
 namespace softgrain {

@@ -17,7 +17,6 @@
 #include "common/io/text_file.h"
 #include "pipelines/commands/commands.h"
 #include "pipelines/commands/law_options.h"
-#include "pipelines/law/law_library_collect.h"
 #include "pipelines/law/law_library_press.h"
 #include "pipelines/law/value_output.h"
 #include "pipelines/results/summary.h"

@@ -18,7 +18,7 @@
 #include "pipelines/kinds/law_table/law_plan.h"
 #include "pipelines/kinds/law_table/scene.h"
 #include "pipelines/kinds/macro/scene.h"
-#include "pipelines/law/press_test.h"
+#include "pipelines/law/law_library_press.h"
 #include "pipelines/results/summary.h"
 #include "pipelines/run/run_context.h"
 

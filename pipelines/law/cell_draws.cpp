@@ -1,4 +1,4 @@
-#include "pipelines/law/cell_draws.h"
+#include "pipelines/law/law_draws.h"
 
 #include <fmt/format.h>
 

@@ -16,7 +16,6 @@
 #include "common/data/card_text.h"
 #include "common/data/multi_contact_replicates.h"
 #include "microsim/multi_contact_arrangements.h"
-#include "pipelines/law/cell_draws.h"
 #include "pipelines/law/law_fit.h"
 
 namespace softgrain {

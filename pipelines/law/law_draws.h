@@ -1,10 +1,12 @@
 // Draws of a law, as its data leave it open, and what it may be off besides: what error bars of a macro run come from.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "common/data/cell_card.h"
 #include "pipelines/law/named_laws.h"
 
 namespace softgrain {
@@ -59,5 +61,11 @@ double form_discrepancy(const MultiContactLaw& law);
 /// forces are shared among neighbours. That of the onset is the root mean square of what would correct the law on
 /// configurations that the fit has not seen, where the table says it.
 std::vector<FormOffset> form_offsets(const MultiContactLaw& law);
+
+/// `count` draws of the numbers of a card, normal with its correlations (those of positive numbers in logarithms), each
+/// as wide as its 95 % interval: that of few samples is Student's. Numbers without correlations, as those that no test
+/// determined, are held, and LawDraws::origin names them. `name`: engine of the curves. Throws InputError for a card
+/// without correlations.
+LawDraws cell_draws(const CellCard& card, const std::string& name, std::int64_t count);
 
 }  // namespace softgrain

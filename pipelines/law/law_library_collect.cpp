@@ -1,4 +1,4 @@
-#include "pipelines/law/law_library_collect.h"
+#include "pipelines/law/law_library.h"
 
 #include <fmt/format.h>
 

@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibrate/experiment_fit.h"
 #include "calibrate/gaussian_process.h"
 #include "common/core/error.h"
 #include "common/core/text.h"
+#include "common/io/text_file.h"
 #include "pipelines/law/law_draws.h"
 #include "pipelines/law/law_library_numbers.h"
 #include "pipelines/law/law_library_predict.h"
-#include "pipelines/law/press_test.h"
 
 namespace softgrain {
 
@@ -196,6 +197,39 @@ PressTestLaw law_of_press_test(const LawLibrary& library, const std::string& pat
   for (std::string& doubt : doubts_of(pressed_law(card, path), out.question)) out.remarks.push_back(std::move(doubt));
   if (std::string means = means_text(out.answer); !means.empty()) out.remarks.push_back(std::move(means));
   return out;
+}
+
+namespace {
+
+/// What the file must say and does not is told with an example.
+std::vector<ForceCurves> curves_with_comments(const std::string& path, const ForceCurveOptions& options) {
+  try {
+    return read_force_curve_files({path}, options);
+  } catch (const InputError& e) {
+    const std::string what = e.what();
+    if (what.find("write a comment") == std::string::npos) throw;
+    throw InputError(what + "; press_test.csv, beside the scenes that softgrain examples lists, is an example");
+  }
+}
+
+}  // namespace
+
+LawCard card_of_press_test(const std::string& path) {
+  ForceCurveOptions options;
+  options.unloading = Unloading::fit;
+  options.by_options = false;
+  ExperimentFit fit = fit_experiment(curves_with_comments(path, options), {}, true);
+  const auto unusable =
+      std::ranges::find_if(fit.card.pairs, [](const PairLaw& law) { return !has_numbers(law.status); });
+  if (unusable != fit.card.pairs.end())
+    throw InputError(path + ": no law can be fitted: " + to_string(unusable->status) + " (" + unusable->reason + ")");
+  fit.card.notes = std::move(fit.remarks);
+  return std::move(fit.card);
+}
+
+FittedLaw load_or_fit_law(const std::string& path) {
+  if (is_curve_file(path)) return {card_of_press_test(path), path, read_text(path)};
+  return load_law(path);
 }
 
 }  // namespace softgrain

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/data/law_card.h"
+#include "pipelines/law/fitted_law.h"
 #include "pipelines/law/law_library.h"
 
 namespace softgrain {
@@ -47,5 +48,16 @@ struct PressTestLaw {
 /// Rs, E, nu and density are those of the file. Throws InputError, IoError.
 PressTestLaw law_of_press_test(const LawLibrary& library, const std::string& path, std::optional<double> friction,
                                int draws = 64);
+
+// A press test as the law of a scene: from the table of a test bench to a law card, with the settings that fit most.
+
+/// The law card of a table of force over overlap: the settings of softgrain calibrate as they stand without --set, and
+/// the kind of contact that was not measured by symmetry. Kind, Rs and E stand in the comments of the table. Remarks of
+/// the fit are notes of the card. Throws InputError with file and line for a table that is none of a press test, and
+/// where no law can be fitted; IoError.
+LawCard card_of_press_test(const std::string& path);
+
+/// A law as load_law() takes it, or that of the table of a press test. Throws as these do.
+FittedLaw load_or_fit_law(const std::string& path);
 
 }  // namespace softgrain

@@ -7,7 +7,6 @@
 #include "common/core/text.h"
 #include "pipelines/law/law_library.h"
 #include "pipelines/law/law_library_press.h"
-#include "pipelines/law/press_test.h"
 
 namespace softgrain {
 

@@ -1,4 +1,3 @@
-#include "pipelines/runs/job_array.h"
 
 #include <fmt/format.h>
 

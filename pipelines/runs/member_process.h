@@ -1,4 +1,4 @@
-// Runs of a set as processes of their own: several at once, or one alone that a cluster starts.
+// Runs of a set as processes of their own: several at once, one alone that a cluster starts, or all as a job array.
 #pragma once
 
 #include <string>
@@ -6,6 +6,7 @@
 
 #include "pipelines/results/set_summary.h"
 #include "pipelines/run/run_context.h"
+#include "pipelines/runs/run_set.h"
 
 namespace softgrain {
 
@@ -25,5 +26,9 @@ void forget_member_entries(const std::string& directory);
 /// the others go on. At a signal all of them are asked to stop. Throws as the set does where its runs follow one
 /// another: Interrupted, IoError, InputError of a run of another scene; the other runs are stopped then.
 void run_side_by_side(const CommonOptions& options, const RunContext& context, std::vector<RunEntry>& entries);
+
+/// Writes DIR/slurm/commands.txt, one command per run, and DIR/slurm/job.sh, which sbatch takes; submits nothing.
+/// Returns what to do with them. Throws IoError; InputError for an option of several lines.
+std::string write_job_array(const CommonOptions& options, const RunPlan& plan, const RunContext& context);
 
 }  // namespace softgrain

@@ -19,10 +19,8 @@
 #include "pipelines/report/report.h"
 #include "pipelines/run/run.h"
 #include "pipelines/run/run_context.h"
-#include "pipelines/runs/job_array.h"
 #include "pipelines/runs/member_process.h"
 #include "pipelines/runs/search.h"
-#include "pipelines/runs/set_sensitivity.h"
 #include "pipelines/runs/set_text.h"
 
 namespace softgrain {

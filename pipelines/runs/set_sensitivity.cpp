@@ -1,4 +1,4 @@
-#include "pipelines/runs/set_sensitivity.h"
+#include "pipelines/runs/set_text.h"
 
 #include <fmt/format.h>
 

@@ -10,7 +10,6 @@
 #include "pipelines/law/terminal_plot.h"
 #include "pipelines/report/sections.h"
 #include "pipelines/runs/search.h"
-#include "pipelines/runs/set_sensitivity.h"
 
 namespace softgrain {
 

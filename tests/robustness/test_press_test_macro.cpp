@@ -6,7 +6,7 @@
 #include "common/data/law_card.h"
 #include "common/data/macro_result.h"
 #include "common/io/text_file.h"
-#include "pipelines/law/press_test.h"
+#include "pipelines/law/law_library_press.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
-#include "pipelines/law/cell_draws.h"
+#include "pipelines/law/law_draws.h"
 
 namespace softgrain {
 namespace {

@@ -1,10 +1,12 @@
 // The table of kinds, and a scene given to the wrong command: the message names the right one.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "common/core/error.h"
 #include "pipelines/kinds/kinds.h"
+#include "pipelines/results/summary.h"
 
 namespace softgrain {
 namespace {
@@ -28,6 +30,34 @@ TEST(Kinds, EveryOneIsWholeAndNamedOnce) {
     EXPECT_STRNE(k.starter, "") << k.name;
     EXPECT_STREQ(kind_of(Scene::parse("kind = \"" + std::string(k.name) + "\"\n", "s.toml")).name, k.name);
   }
+}
+
+TEST(Kinds, EveryMemberOfASummaryHasItsMeaningAndUnit) {
+  for (const SceneKind& k : scene_kinds()) {
+    const std::vector<RecordMember> members = summary_members(k);
+    std::set<std::string> paths;
+    for (const RecordMember& m : members) {
+      EXPECT_TRUE(paths.insert(m.path).second) << k.name << ": " << m.path;
+      EXPECT_NE(m.meaning, "") << k.name << ": " << m.path;
+      if (m.number) EXPECT_NE(m.unit, "") << k.name << ": " << m.path << " is a number without unit";
+    }
+    for (const char* of_every_kind : {"status", "title", "kind", "provenance.seed"})
+      EXPECT_EQ(paths.count(of_every_kind), 1U) << k.name << ": " << of_every_kind;
+    EXPECT_GT(members.size(), members_of<AnySummary>().size()) << k.name << " names no member of its own";
+  }
+}
+
+TEST(Kinds, MembersWithinRecordsAreNamedByTheirPaths) {
+  const std::vector<RecordMember> members = summary_members(kind_of(Scene::parse("kind = \"pipeline\"\n", "s.toml")));
+  const auto unit = [&](const std::string& path) {
+    const auto at = std::ranges::find(members, path, &RecordMember::path);
+    return at == members.end() ? "no member " + path : at->unit;
+  };
+  EXPECT_EQ(unit("forces.NAME[].force"), "N");
+  EXPECT_EQ(unit("laws.NAME.normal.a_per_degree"), "N/degree");
+  EXPECT_EQ(unit("macro.stages[].modulus_begin.mean"), "as the quantity");
+  EXPECT_EQ(unit("macro.seconds"), "s");
+  EXPECT_EQ(unit("entries[].laws[].m0.value"), "1");
 }
 
 TEST(Kinds, TheCommandsThatRunAKindAreNamed) {

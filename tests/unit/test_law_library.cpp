@@ -19,7 +19,6 @@
 #include "pipelines/commands/law_options.h"
 #include "pipelines/law/law_draws.h"
 #include "pipelines/law/law_library.h"
-#include "pipelines/law/law_library_collect.h"
 #include "pipelines/law/law_library_numbers.h"
 #include "pipelines/law/law_library_predict.h"
 #include "pipelines/law/law_library_scene.h"

@@ -13,7 +13,6 @@
 #include "common/io/text_file.h"
 #include "pipelines/law/law_library_press.h"
 #include "pipelines/law/law_library_scene.h"
-#include "pipelines/law/press_test.h"
 #include "tests/support/synthetic_library.h"
 #include "tests/support/temporary_directory.h"
 

@@ -8,7 +8,7 @@
 #include "common/core/few_samples.h"
 #include "common/core/random.h"
 #include "macrosim/body_contacts.h"
-#include "pipelines/kinds/recipe/compressible_model.h"
+#include "pipelines/kinds/recipe/onset.h"
 #include "pipelines/kinds/recipe/onset_pair.h"
 #include "pipelines/kinds/recipe/scene.h"
 #include "pipelines/results/paired_summary.h"

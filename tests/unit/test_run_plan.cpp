@@ -6,7 +6,7 @@
 #include "common/core/error.h"
 #include "common/io/scene.h"
 #include "pipelines/runs/run_set.h"
-#include "pipelines/runs/set_sensitivity.h"
+#include "pipelines/runs/set_text.h"
 
 namespace softgrain {
 namespace {

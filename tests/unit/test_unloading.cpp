@@ -15,7 +15,7 @@
 #include "common/io/text_file.h"
 #include "pipelines/law/law_draws.h"
 #include "pipelines/law/law_values.h"
-#include "pipelines/law/press_test.h"
+#include "pipelines/law/law_library_press.h"
 #include "tests/support/synthetic_law.h"
 #include "tests/support/temporary_directory.h"
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "common/core/statistics.h"
-#include "common/data/histogram_io.h"
+#include "common/data/columns.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/svg_plot.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/core/statistics.h"
-#include "common/data/histogram_io.h"
+#include "common/data/columns.h"
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"

@@ -14,7 +14,7 @@
 #include "pipelines/kinds/macro/lammps_stage.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/macro/summary.h"
-#include "pipelines/law/press_test.h"
+#include "pipelines/law/law_library_press.h"
 #include "pipelines/run/run.h"
 
 namespace softgrain {

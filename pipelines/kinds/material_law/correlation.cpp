@@ -1,4 +1,4 @@
-#include "pipelines/kinds/material_law/correlation.h"
+#include "pipelines/kinds/material_law/fit.h"
 
 #include <algorithm>
 #include <cmath>

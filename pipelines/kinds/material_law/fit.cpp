@@ -16,7 +16,6 @@
 #include "common/core/statistics.h"
 #include "macrosim/cell_matter/face_springs.h"
 #include "pipelines/compare/stage_results.h"
-#include "pipelines/kinds/material_law/correlation.h"
 #include "pipelines/kinds/material_law/fines_in_cells.h"
 #include "pipelines/kinds/material_law/memory_fit.h"
 #include "pipelines/kinds/material_law/preparation_factor.h"

@@ -1,9 +1,11 @@
 // The cell law, fitted to what was measured on fines, coarse grains and mixtures.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
+#include "calibrate/equation_of_state_fit.h"
 #include "common/data/cell_card.h"
 #include "pipelines/kinds/material/run.h"
 #include "pipelines/kinds/material_law/scene.h"
@@ -20,5 +22,11 @@ struct MaterialLaw {
 /// `results` in the order of the variants; `states`: the fit to them, if there was one.
 MaterialLaw fit_material_law(const MaterialLawScene& scene, const std::vector<VariantResult>& results,
                              const std::optional<StateFit>& states, std::uint64_t seed);
+
+/// Correlations of the numbers of a card whose errors are known. Those of the equation of state and of the pores are of
+/// refits to the same drawn samples (StateFit::replicates and ExcessPoresFit::replicates), made smaller where an error
+/// holds more than the scatter of its refits; those of faces are of their own fit, with the others as they are.
+CellCorrelation correlation_of_card(const CellCard& card, const StateFit& states,
+                                    const std::vector<std::array<double, 4>>& pores, const CellCorrelation& faces);
 
 }  // namespace softgrain

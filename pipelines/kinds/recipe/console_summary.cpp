@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/data/law_words.h"
-#include "pipelines/kinds/recipe/compressible_model.h"
+#include "pipelines/kinds/recipe/onset.h"
 #include "pipelines/kinds/recipe/run.h"
 
 namespace softgrain {

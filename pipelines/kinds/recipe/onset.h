@@ -7,6 +7,7 @@
 
 #include "calibrate/equation_of_state_fit.h"
 #include "calibrate/rod_packing.h"
+#include "common/packing/grading.h"
 #include "pipelines/kinds/recipe/scene.h"
 #include "pipelines/kinds/recipe/summary.h"
 
@@ -71,5 +72,12 @@ class LevelForms {
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
+
+/// The model for the sizes of the whole, with one beta for all: that with which grains of one size pack as rods of this
+/// gap do, beta = phi_1 (1 + 1/K). So it differs from our value by what it makes of sizes alone.
+CompressibleModelSummary compressible_model(const Grading& sizes, double gap);
+
+/// "0.701 (K = 4.1) and 0.722 (K = 9), with beta from grains of one size (0.585)".
+std::string compressible_model_text(const CompressibleModelSummary& model);
 
 }  // namespace softgrain
