@@ -267,6 +267,9 @@ NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const Macro
   require_same_material(entry, spec);
   const std::string stands_in = assumed_values(entry, sources);
   if (!stands_in.empty()) append_part(remark, stands_in);
+  if (sources.unloading_ratio > 1.0)
+    append_part(remark, fmt::format("soft particles unload {:g} times as steeply as they load (unloading_ratio)",
+                                    sources.unloading_ratio));
   const LawForm form = wanted.value_or(entry.best);
   MultiContactChoices choices;
   choices.form = form;

@@ -167,6 +167,8 @@ TEST_F(LawTableUse, ParticlesThatRememberUnloadMoreSteeply) {
   EXPECT_NEAR(on.stress_axial[6], off.stress_axial[6], 0.1 * off.stress_axial[6]) << "back where unloading began";
   EXPECT_NE(summary("off").dump().find("has no unloading branch"), std::string::npos);
   EXPECT_EQ(summary("on").dump().find("has no unloading branch"), std::string::npos);
+  EXPECT_NE(summary("on").dump().find("unload 1.5 times as steeply as they load"), std::string::npos);
+  EXPECT_EQ(summary("one").dump().find("unload 1"), std::string::npos);
 }
 
 TEST_F(LawTableUse, AMemoryWhereItCannotBeIsRefused) {
