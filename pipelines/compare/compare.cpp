@@ -99,14 +99,15 @@ void compare_strained(const MacroCurve& c, const MacroCurve& r, SampleComparison
 /// Stage by stage, and of each what it does not impose.
 void compare_staged(const MacroCurve& c, const MacroCurve& r, SampleComparison& s) {
   const std::vector<MatchedStage> stages = match_stages(c, r);
-  s.axial_difference = staged_difference(stages, c.stress_axial, r.stress_axial, Compared::axial);
-  s.lateral_difference =
-      value_or_nan([&] { return staged_difference(stages, c.stress_lateral, r.stress_lateral, Compared::lateral); });
+  s.axial_difference = staged_difference(stages, c.stress_axial, r.stress_axial, ComparedStress::axial);
+  s.lateral_difference = value_or_nan(
+      [&] { return staged_difference(stages, c.stress_lateral, r.stress_lateral, ComparedStress::lateral); });
   s.deviator_difference =
-      value_or_nan([&] { return staged_difference(stages, deviators(c), deviators(r), Compared::deviator); });
+      value_or_nan([&] { return staged_difference(stages, deviators(c), deviators(r), ComparedStress::deviator); });
   s.strain_difference = value_or_nan([&] { return strain_difference(stages, c, r); });
   s.unloading_ratio = unloading_ratio(c, r);
-  for (const MatchedStage& stage : stages) s.axial_imposed = s.axial_imposed || imposed(stage.record, Compared::axial);
+  for (const MatchedStage& stage : stages)
+    s.axial_imposed = s.axial_imposed || imposed(stage.record, ComparedStress::axial);
   const MatchedStage& last = stages.back();
   const double end = common_part(last)[1];
   s.strain_low = c.strain[stages.front().candidate.point.front()];
@@ -117,7 +118,7 @@ void compare_staged(const MacroCurve& c, const MacroCurve& r, SampleComparison& 
   add_ends({at_end(c, last.candidate, c.stress_axial), at_end(r, last.reference, r.stress_axial),
             at_end(c, last.candidate, c.stress_lateral), at_end(r, last.reference, r.stress_lateral)},
            s);
-  s.end_imposed = imposed(last.record, Compared::axial);
+  s.end_imposed = imposed(last.record, ComparedStress::axial);
   if (s.end_imposed) s.axial_end_ratio = kNaN;
 }
 
@@ -238,7 +239,7 @@ double share_in_band(const MacroCurve& candidate, const MacroCurve& reference, b
   if (!band || reference.stress_axial.empty()) return kNaN;
   const double bears = kBears * *std::max_element(reference.stress_axial.begin(), reference.stress_axial.end());
   const std::vector<double> stress = values_at_points(reference, reference.stress_axial, candidate);
-  const std::vector<bool> given = imposed_points(candidate, Compared::axial);
+  const std::vector<bool> given = imposed_points(candidate, ComparedStress::axial);
   std::vector<double> inside;
   for (std::size_t k = 0; k < stress.size(); ++k) {
     if (given[k] || !(stress[k] >= bears)) continue;

@@ -50,8 +50,10 @@ double difference(const std::vector<double>& xa, const std::vector<double>& a, c
 }
 
 /// NaN where curves cannot be compared, and where the test imposes it throughout.
-double stage_difference(const MacroCurve& c, const MacroCurve& twin, Compared what) {
-  const auto column = [&](const MacroCurve& of) { return what == Compared::axial ? of.stress_axial : deviators(of); };
+double stage_difference(const MacroCurve& c, const MacroCurve& twin, ComparedStress what) {
+  const auto column = [&](const MacroCurve& of) {
+    return what == ComparedStress::axial ? of.stress_axial : deviators(of);
+  };
   try {
     return staged_difference(match_stages(c, twin), column(c), column(twin), what);
   } catch (const InputError&) {
@@ -60,7 +62,7 @@ double stage_difference(const MacroCurve& c, const MacroCurve& twin, Compared wh
 }
 
 double axial_difference(const MacroCurve& c, const MacroCurve& twin) {
-  if (by_stages(c.test) && by_stages(twin.test)) return stage_difference(c, twin, Compared::axial);
+  if (by_stages(c.test) && by_stages(twin.test)) return stage_difference(c, twin, ComparedStress::axial);
   return difference(c.strain, c.stress_axial, twin.strain, twin.stress_axial);
 }
 
@@ -75,12 +77,12 @@ double strain_error(const MacroCurve& c, const MacroCurve& twin) {
 
 /// Whether the stress that a test ends with along z is one that was asked for.
 bool ends_imposed(const MacroCurve& c) {
-  const std::vector<bool> given = imposed_points(c, Compared::axial);
+  const std::vector<bool> given = imposed_points(c, ComparedStress::axial);
   return !given.empty() && given.back();
 }
 
 double deviator_difference(const MacroCurve& c, const MacroCurve& twin) {
-  if (by_stages(c.test)) return stage_difference(c, twin, Compared::deviator);
+  if (by_stages(c.test)) return stage_difference(c, twin, ComparedStress::deviator);
   if (!is_shear(c.test)) return kNaN;
   const auto [xa, a] = sheared(c);
   const auto [xb, b] = sheared(twin);

@@ -176,19 +176,19 @@ std::array<bool, 3> stress_axes(const StageRecord& stage) {
   return {all, all, all};
 }
 
-bool imposed(const StageRecord& stage, Compared what) {
+bool imposed(const StageRecord& stage, ComparedStress what) {
   const auto [x, y, z] = stress_axes(stage);
   switch (what) {
-    case Compared::axial:
+    case ComparedStress::axial:
       return z;
-    case Compared::lateral:
+    case ComparedStress::lateral:
       return x && y;
     default:
       return x && z && !slides(stage.way);
   }
 }
 
-std::vector<bool> imposed_points(const MacroCurve& c, Compared what) {
+std::vector<bool> imposed_points(const MacroCurve& c, ComparedStress what) {
   std::vector<bool> out(c.strain.size(), false);
   if (!by_stages(c.test) || c.stage.size() != out.size()) return out;
   for (std::size_t k = 0; k < out.size(); ++k)
@@ -253,7 +253,7 @@ double StageSquares::relative() const {
 }
 
 double staged_difference(const std::vector<MatchedStage>& stages, const std::vector<double>& candidate,
-                         const std::vector<double>& reference, Compared what) {
+                         const std::vector<double>& reference, ComparedStress what) {
   for (const MatchedStage& stage : stages) {
     if (stage.candidate.point.back() >= candidate.size() || stage.reference.point.back() >= reference.size())
       throw InputError("compare: a column has fewer points than its curve");

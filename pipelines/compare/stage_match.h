@@ -10,7 +10,7 @@
 namespace softgrain {
 
 /// What is compared of a curve.
-enum class Compared {
+enum class ComparedStress {
   axial,    ///< stress along z
   lateral,  ///< mean stress along x and y
   deviator  ///< stress along z less that along x; where a stage slides, twice the shear stress: deviators()
@@ -21,11 +21,11 @@ enum class Compared {
 std::array<bool, 3> stress_axes(const StageRecord& stage);
 
 /// Whether a stage imposes the compared stress: every run has it there, and no law is right or wrong by it.
-bool imposed(const StageRecord& stage, Compared what);
+bool imposed(const StageRecord& stage, ComparedStress what);
 
 /// Whether the compared stress is imposed at each recorded point of a curve, by the stage that ends at the point or
 /// comes to it. False for curves that do not say their stages.
-std::vector<bool> imposed_points(const MacroCurve& curve, Compared what);
+std::vector<bool> imposed_points(const MacroCurve& curve, ComparedStress what);
 
 /// One side of a stage: its recorded points, with the one at which it begins, and how far it has come at each.
 struct StageSide {
@@ -68,7 +68,7 @@ struct StageSquares {
 
 /// Relative L2 difference over the stages that do not impose the compared stress.
 double staged_difference(const std::vector<MatchedStage>& stages, const std::vector<double>& candidate,
-                         const std::vector<double>& reference, Compared what);
+                         const std::vector<double>& reference, ComparedStress what);
 
 /// Relative L2 difference of the strains that stages do not impose: those of the axes that go by stress, from the start
 /// of the test.

@@ -80,7 +80,7 @@ Plot stress_plot(const std::vector<MacroCurve>& curves, MacroTest test, bool axi
 /// Stress of the law run at the points of the twin. Not a number where a test in stages imposes it, or where the law
 /// run does not reach the point.
 std::vector<double> values_of_law(const MacroCurve& law, const MacroCurve& twin, Stress member) {
-  const Compared what = member == &MacroCurve::stress_axial ? Compared::axial : Compared::lateral;
+  const ComparedStress what = member == &MacroCurve::stress_axial ? ComparedStress::axial : ComparedStress::lateral;
   try {
     std::vector<double> out = values_at_points(law, law.*member, twin);
     const std::vector<bool> given = imposed_points(twin, what);

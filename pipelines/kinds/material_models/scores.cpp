@@ -181,8 +181,8 @@ ModelScore score(const ModelRun& run, bool blind) {
   const auto t = mean_of(truth, axial_of);
   const auto m = mean_of(pairs.model, axial_of);
   // What the test imposes both have: it says nothing of a model.
-  const std::vector<bool> axial = imposed_points(truth.front(), Compared::axial);
-  const std::vector<bool> lateral = imposed_points(truth.front(), Compared::lateral);
+  const std::vector<bool> axial = imposed_points(truth.front(), ComparedStress::axial);
+  const std::vector<bool> lateral = imposed_points(truth.front(), ComparedStress::lateral);
   const auto free = [&](std::size_t k) { return k < axial.size() && !axial[k]; };
   s.axial = free_difference(m, t, axial, first);
   s.lateral = free_difference(mean_of(pairs.model, lateral_of), mean_of(truth, lateral_of), lateral, first);
