@@ -13,6 +13,7 @@
 #include "common/io/text_file.h"
 #include "pipelines/commands/key_text.h"
 #include "pipelines/kinds/kinds.h"
+#include "pipelines/results/set_summary.h"
 
 namespace softgrain {
 
@@ -162,7 +163,8 @@ std::string summary_text(const SchemaOptions& o) {
   if (!o.table.empty())
     throw InputError(
         fmt::format("schema {} {} --summary: a summary has no tables of keys; leave {} out", o.kind, o.table, o.table));
-  const std::vector<RecordMember> members = summary_members(kind_named(o.kind, "schema"));
+  const std::vector<RecordMember> members =
+      o.kind.empty() ? members_of<SetSummary>() : summary_members(kind_named(o.kind, "schema"));
   if (o.form == SchemaForm::json) return as_json(members);
   return o.form == SchemaForm::markdown ? as_markdown(members) : as_text(members);
 }
@@ -196,17 +198,18 @@ void add_schema_command(CLI::App& app, SchemaOptions& o) {
       ->check(CLI::IsMember(all_enum_names<SchemaForm>()).description(""));
   sub->add_flag_callback(
       "--json", [&o] { o.form = SchemaForm::json; }, "As --to json");
-  sub->add_flag("--summary", o.summary, "Members of the kind's summary.json instead: meaning and unit");
+  sub->add_flag("--summary", o.summary,
+                "Members of the kind's summary.json instead, without KIND of that of several runs: meaning and unit");
   sub->callback([&o] { o.chosen = true; });
 }
 
 ExitStatus command_schema(const SchemaOptions& o) {
-  if (o.kind.empty()) {
-    write_standard_output(list_of_kinds());
-    return ExitStatus::good;
-  }
   if (o.summary) {
     write_standard_output(summary_text(o));
+    return ExitStatus::good;
+  }
+  if (o.kind.empty()) {
+    write_standard_output(list_of_kinds());
     return ExitStatus::good;
   }
   const std::vector<ExploredKey> all = keys_of(kind_named(o.kind, "schema"));

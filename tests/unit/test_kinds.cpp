@@ -6,7 +6,7 @@
 
 #include "common/core/error.h"
 #include "pipelines/kinds/kinds.h"
-#include "pipelines/results/summary.h"
+#include "pipelines/results/set_summary.h"
 
 namespace softgrain {
 namespace {
@@ -32,19 +32,24 @@ TEST(Kinds, EveryOneIsWholeAndNamedOnce) {
   }
 }
 
+void expect_explained(const std::vector<RecordMember>& members, const std::string& of) {
+  std::set<std::string> paths;
+  for (const RecordMember& m : members) {
+    EXPECT_TRUE(paths.insert(m.path).second) << of << ": " << m.path;
+    EXPECT_NE(m.meaning, "") << of << ": " << m.path;
+    if (m.number) EXPECT_NE(m.unit, "") << of << ": " << m.path << " is a number without unit";
+  }
+}
+
 TEST(Kinds, EveryMemberOfASummaryHasItsMeaningAndUnit) {
   for (const SceneKind& k : scene_kinds()) {
     const std::vector<RecordMember> members = summary_members(k);
-    std::set<std::string> paths;
-    for (const RecordMember& m : members) {
-      EXPECT_TRUE(paths.insert(m.path).second) << k.name << ": " << m.path;
-      EXPECT_NE(m.meaning, "") << k.name << ": " << m.path;
-      if (m.number) EXPECT_NE(m.unit, "") << k.name << ": " << m.path << " is a number without unit";
-    }
-    for (const char* of_every_kind : {"status", "title", "kind", "provenance.seed"})
-      EXPECT_EQ(paths.count(of_every_kind), 1U) << k.name << ": " << of_every_kind;
+    expect_explained(members, k.name);
     EXPECT_GT(members.size(), members_of<AnySummary>().size()) << k.name << " names no member of its own";
+    for (const char* of_every_kind : {"status", "title", "kind", "provenance.seed"})
+      EXPECT_EQ(std::ranges::count(members, of_every_kind, &RecordMember::path), 1) << k.name << ": " << of_every_kind;
   }
+  expect_explained(members_of<SetSummary>(), "several runs");
 }
 
 TEST(Kinds, MembersWithinRecordsAreNamedByTheirPaths) {
