@@ -214,7 +214,7 @@ TEST_F(CellsMacro, BeginWithThePoresOfThePreparationThatIsSaid) {
   write_cell_card(card, file("cells.toml"));
   const auto start = [&](const std::string& name, const std::string& fines) {
     scene("", "share = 0.4\n" + fines);
-    expect(run(name, "--set macro.strain=0.01 --set macro.steps=1"), 0, {});
+    expect(run(name, "--set macro.bodies=60 --set macro.strain=0.01 --set macro.steps=1"), 0, {});
     return curve(name);
   };
   const double x = std::pow(1e-4 / card.modulus.value, 1.0 / card.exponent.value);
