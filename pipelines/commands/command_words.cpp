@@ -81,14 +81,26 @@ std::string unknown_command_text(const std::string& given, const std::string& hi
                      join_text(known));
 }
 
+namespace {
+
+/// The option that ends the line or has the name of another option for its value; null: there is none.
+const CLI::Option* option_without_value(const CLI::App& command, const std::string& message) {
+  if (message.starts_with("--") && message.find(" required ") != std::string::npos)
+    return command.get_option_no_throw(message.substr(0, message.find(':')));
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& value : option->results())
+      if (value.starts_with("--") && command.get_option_no_throw(value) != nullptr) return option;
+  return nullptr;
+}
+
+}  // namespace
+
 std::string missing_value_text(const CLI::App& program, const std::string& message) {
-  if (!message.starts_with("--") || message.find(" required ") == std::string::npos) return "";
   const CLI::App* command = &program;
   while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
-  const std::string name = message.substr(0, message.find(':'));
-  const CLI::Option* option = command->get_option_no_throw(name);
+  const CLI::Option* option = option_without_value(*command, message);
   if (option == nullptr || option->get_option_text().empty()) return "";
-  return fmt::format("{0}: nothing follows it; give {0} {1}: {2}", name, option->get_option_text(),
+  return fmt::format("{0}: nothing follows it; give {0} {1}: {2}", option->get_name(), option->get_option_text(),
                      option->get_description());
 }
 

@@ -186,8 +186,8 @@ std::string command_on_line(const CLI::App& app);
 std::string unknown_command_text(const std::string& given, const std::string& hint,
                                  const std::vector<std::string>& known);
 
-/// What to say of an option without its value, by the message of the parser about it: what it takes, as its help says.
-/// Empty for other messages.
+/// What to say of an option that nothing, or another option, follows: what it takes, as its help says. `message`: of
+/// the parser. Empty for other messages.
 std::string missing_value_text(const CLI::App& program, const std::string& message);
 
 /// What to say of an option (or the name of a part of a command) that was given and is unknown: the nearest one of the

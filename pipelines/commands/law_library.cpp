@@ -88,19 +88,19 @@ std::string checks_text(const LawLibrary& library) {
 std::string next_text(const NextMaterials& next) {
   if (next.materials.empty()) return "";
   std::string text = fmt::format(
-      "ln force of one plane: uncertain by {:.3g} (root mean square over the materials that are served). Measured "
-      "next, "
-      "each with those above it:\n{:>8} {:>9} {:>7} {:>15} {:>10} {:>14} {:>11}\n",
+      "ln force of one plane: uncertain by {:.3g}, the root mean square over all materials that are served.\n"
+      "Worth measuring next, each with those above it:\n{:>8} {:>9} {:>7} {:>15} {:>10} {:>14} {:>11}\n",
       next.deviation, "mu", "exponent", "ratio", "solid fraction", "trials", "uncertain now", "then left");
   std::string commands;
   for (std::size_t k = 0; k < next.materials.size(); ++k) {
     const NextMaterial& m = next.materials[k];
     text += fmt::format("{:>8.3f} {:>9.2f} {:>7.2f} {:>15.3f} {:>10.2g} {:>14.3g} {:>11.3g}\n", m.at.friction,
                         m.at.exponent, m.at.polydispersity, m.at.solid_fraction, m.trials, m.deviation, m.left);
+    const std::string trials = std::isfinite(m.trials) ? fmt::format("--set packing.trials={:.0f} ", m.trials) : "";
     commands += fmt::format(
         "softgrain run pipelines/law_library.toml --set material.mu={:.3f} --set packing.exponent={:.2f} "
-        "--set packing.polydispersity={:.2f} --set packing.trials={:.0f} --out results/next_{}\n",
-        m.at.friction, m.at.exponent, m.at.polydispersity, m.trials, k + 1);
+        "--set packing.polydispersity={:.2f} {}--out results/next_{}\n",
+        m.at.friction, m.at.exponent, m.at.polydispersity, trials, k + 1);
   }
   return text + commands;
 }

@@ -125,6 +125,7 @@ TEST(CommandLine, BadOptionsAreBadInput) {
 TEST(CommandLine, AnOptionWithoutItsValueSaysWhatItTakes) {
   expect("law get --press-test", 2,
          "--press-test: nothing follows it; give --press-test TABLE: Press test of one soft particle");
+  expect("law get --mu 0.3 --own --out a.toml", 2, "--own: nothing follows it; give --own TABLE: Law table");
   expect("run x.toml --threads", 2, "--threads: nothing follows it; give --threads N: Threads to use");
   expect("run x.toml --set", 2, "--set: nothing follows it; give --set KEY=VALUE: ");
   expect("law eval l.toml --delta", 2, "--delta: nothing follows it; give --delta D1 D2 ...: ");
