@@ -83,8 +83,10 @@ def different(program, scenes, name, counts, out):
         return f"statuses {statuses}"
     changing = frozenset(compare(runs[0], runs[1], quiet=True))
     for threads, place in zip(counts[1:], runs[2:]):
-        # Reports say how many threads there were; their numbers stand in the other files.
-        found = [f for f in compare(runs[0], place, known=changing, quiet=True) if not f[0].endswith(".html") and
+        # Reports, logs and tables of comparisons hold threads and times, rounded, which two runs may share; their other
+        # numbers stand in the other files.
+        aside = (".html", "log.txt", "table.csv", "table.md")
+        found = [f for f in compare(runs[0], place, known=changing, quiet=True) if not f[0].endswith(aside) and
                  not f[1].endswith(("threads", "memory_before_scene"))]
         if found:
             return f"{threads} threads: {len(found)} places differ: {sorted(found)[:3]}"
