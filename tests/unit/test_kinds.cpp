@@ -37,7 +37,7 @@ void expect_explained(const std::vector<RecordMember>& members, const std::strin
   for (const RecordMember& m : members) {
     EXPECT_TRUE(paths.insert(m.path).second) << of << ": " << m.path;
     EXPECT_NE(m.meaning, "") << of << ": " << m.path;
-    if (m.number) EXPECT_NE(m.unit, "") << of << ": " << m.path << " is a number without unit";
+    EXPECT_TRUE(!m.number || !m.unit.empty()) << of << ": " << m.path << " is a number without unit";
   }
 }
 
