@@ -115,7 +115,7 @@ void write_force_distribution(const h5::Group& group, const MacroCurve& curve) {
     write_histogram(group.create(kForceDistribution), *distribution);
 }
 
-constexpr const char* kStages = "stages";
+constexpr const char* kStageLines = "stages";
 constexpr const char* kModulusStresses = "modulus_stresses";
 constexpr const char* kStageAxes = "stage_stress_axes";
 
@@ -200,7 +200,7 @@ bool read_line(const std::string& line, StageRecord& stage, const auto& list) {
 
 void write_stage_records(const h5::Group& group, const std::vector<StageRecord>& stages) {
   if (stages.empty()) return;
-  group.attribute(kStages, lines_of(stages, kStageWords));
+  group.attribute(kStageLines, lines_of(stages, kStageWords));
   write_stage_axes(group, stages);
   if (std::ranges::any_of(stages, [](const StageRecord& s) { return s.modulus_stress[1] > 0.0; }))
     group.attribute(kModulusStresses, lines_of(stages, kModulusWords));
@@ -220,11 +220,11 @@ void read_modulus_stresses(const h5::Group& group, std::vector<StageRecord>& sta
 
 std::vector<StageRecord> read_stage_records(const h5::Group& group) {
   std::vector<StageRecord> stages;
-  if (!group.has_attribute(kStages)) return stages;
-  std::istringstream lines(group.text(kStages));
+  if (!group.has_attribute(kStageLines)) return stages;
+  std::istringstream lines(group.text(kStageLines));
   for (std::string line; std::getline(lines, line);)
     if (!read_line(line, stages.emplace_back(), kStageWords))
-      throw IoError(fmt::format("attribute '{}': unknown kind in '{}'", kStages, line));
+      throw IoError(fmt::format("attribute '{}': unknown kind in '{}'", kStageLines, line));
   read_modulus_stresses(group, stages);
   read_stage_axes(group, stages);
   return stages;
