@@ -82,7 +82,9 @@ struct Means {
 
 /// Visitors with a member kDescribes want all members, those too that this record does not have.
 template <class Visit>
-concept Describes = requires { std::remove_cvref_t<Visit>::kDescribes; };
+concept Describes = requires(std::remove_cvref_t<Visit> visit) {
+  visit.kDescribes;
+};
 
 /// Whether a member of a record may be without a value.
 template <class T>

@@ -180,8 +180,8 @@ struct MacroStart {
   friend bool operator==(const MacroStart&, const MacroStart&) = default;
 };
 
-/// visit(name, member, Compared{what}): two curves that differ in it cannot be compared; what it is called then.
-struct Compared {
+/// visit(name, member, ComparedAs{what}): two curves that differ in it cannot be compared; what it is called then.
+struct ComparedAs {
   const char* what;
 };
 
@@ -190,10 +190,10 @@ void fields(auto&& visit, Of<MacroStart> auto& s) {
   visit("start", s.bodies);
   visit("radius_min", s.radius_min, not_negative);
   visit("radius_max", s.radius_max, not_negative);
-  visit("youngs_modulus", s.youngs_modulus, not_negative, Compared{"E of the grains [Pa]"});
-  visit("friction", s.friction, not_negative, Compared{"mu of the grains"});
-  visit("wall_friction", s.wall_friction, not_negative, Compared{"mu of the walls"});
-  visit("poisson_ratio", s.poisson_ratio, Limits{kPoissonLowest, kPoissonHighest}, Compared{"nu of the grains"});
+  visit("youngs_modulus", s.youngs_modulus, not_negative, ComparedAs{"E of the grains [Pa]"});
+  visit("friction", s.friction, not_negative, ComparedAs{"mu of the grains"});
+  visit("wall_friction", s.wall_friction, not_negative, ComparedAs{"mu of the walls"});
+  visit("poisson_ratio", s.poisson_ratio, Limits{kPoissonLowest, kPoissonHighest}, ComparedAs{"nu of the grains"});
   visit("size_x", s.size_x, not_negative, kLater);
   visit("size_y", s.size_y, not_negative, kLater);
   visit("size_z", s.size_z, not_negative, kLater);
@@ -201,9 +201,9 @@ void fields(auto&& visit, Of<MacroStart> auto& s) {
 
 /// Rolling resistance of the grains, where they have one.
 void rolling_fields(auto&& visit, Of<RollingResistance> auto& rolling) {
-  visit("rolling_friction", rolling.friction, Limits::not_negative(), Compared{"mu_r of the grains"});
+  visit("rolling_friction", rolling.friction, Limits::not_negative(), ComparedAs{"mu_r of the grains"});
   if (rolling.friction > 0.0)
-    visit("rolling_stiffness_ratio", rolling.stiffness, Limits::not_negative(), Compared{"kr_ratio of the grains"});
+    visit("rolling_stiffness_ratio", rolling.stiffness, Limits::not_negative(), ComparedAs{"kr_ratio of the grains"});
 }
 
 /// Components of a symmetric tensor in the order in which files and reports have them.

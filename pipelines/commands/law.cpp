@@ -12,8 +12,8 @@
 #include "pipelines/commands/law_options.h"
 #include "pipelines/law/law_difference.h"
 #include "pipelines/law/law_json.h"
-#include "pipelines/law/pair_table.h"
 #include "pipelines/law/law_library_press.h"
+#include "pipelines/law/pair_table.h"
 #include "pipelines/law/terminal_plot.h"
 #include "pipelines/law/value_output.h"
 

@@ -52,7 +52,7 @@ Properties properties(const auto& each_field) {
   Properties out;
   each_field([&out](const char*, const auto& member, const auto&... options) {
     [[maybe_unused]] const auto take = [&](const auto& option) {
-      if constexpr (std::is_same_v<std::remove_cvref_t<decltype(option)>, Compared>)
+      if constexpr (std::is_same_v<std::remove_cvref_t<decltype(option)>, ComparedAs>)
         out.emplace_back(option.what, member);
     };
     (take(options), ...);

@@ -39,14 +39,14 @@ PowderSpec spec_of(const PublishedPack& pack) {
   return spec;
 }
 
-struct Means {
+struct MethodMeans {
   MeanError fraction;
   MeanError z;
   MeanError rumpf;
   MeanError branch;
 };
 
-Means method1(const PowderSpec& spec, std::uint64_t seed, std::int64_t samples) {
+MethodMeans method1(const PowderSpec& spec, std::uint64_t seed, std::int64_t samples) {
   std::vector<double> fraction(static_cast<std::size_t>(samples));
   std::vector<double> z(fraction);
   std::vector<double> rumpf(fraction);
@@ -75,11 +75,11 @@ TEST(PowderPublished, SmallPacksAreAsDenseAndAsConnected) {
     spec.stiffness = 1e4;
     return method1(spec, 11, 4);
   };
-  const Means powder = small(kRollingPowder);
+  const MethodMeans powder = small(kRollingPowder);
   EXPECT_NEAR(powder.fraction.mean, kRollingPowder.fraction, 0.014);
   EXPECT_NEAR(powder.z.mean, kRollingPowder.z, 0.07);
   EXPECT_NEAR(powder.branch.mean, 1.0, 0.01);
-  const Means grains = small(kGrains);
+  const MethodMeans grains = small(kGrains);
   EXPECT_NEAR(grains.fraction.mean, kGrains.fraction, 0.010);
   EXPECT_NEAR(grains.z.mean, kGrains.z, 0.18);
   EXPECT_NEAR(grains.rumpf.mean, 1.0, 0.05);
@@ -91,7 +91,7 @@ TEST(PowderPublished, SmallPacksAreAsDenseAndAsConnected) {
 /// Solid fraction and coordination within two joint standard errors, or within 0.006 and 0.03.
 TEST(SlowPowder, TheEightPublishedPacksComeOut) {
   for (const PublishedPack& p : kPublished) {
-    const Means m = method1(spec_of(p), 1, 4);
+    const MethodMeans m = method1(spec_of(p), 1, 4);
     const std::string what = std::string(p.cohesive ? "cohesion" : "no cohesion") + (p.rolling ? ", rolling" : "") +
                              ", mu " + std::to_string(p.mu);
     EXPECT_NEAR(m.fraction.mean, p.fraction, std::max(2.0 * std::hypot(m.fraction.error, p.fraction_error), 0.006))

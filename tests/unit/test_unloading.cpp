@@ -14,8 +14,8 @@
 #include "common/data/law_words.h"
 #include "common/io/text_file.h"
 #include "pipelines/law/law_draws.h"
-#include "pipelines/law/law_values.h"
 #include "pipelines/law/law_library_press.h"
+#include "pipelines/law/law_values.h"
 #include "tests/support/synthetic_law.h"
 #include "tests/support/temporary_directory.h"
 

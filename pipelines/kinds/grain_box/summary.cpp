@@ -11,7 +11,7 @@ namespace softgrain {
 
 namespace {
 
-std::optional<PhaseSummary> last_of(const GrainBoxResult& result, BoxPhase phase) {
+std::optional<PhaseSummary> last_state(const GrainBoxResult& result, BoxPhase phase) {
   const std::vector<const BoxPoint*> points = result.points_of(phase);
   if (points.empty()) return std::nullopt;
   return PhaseSummary{points.size(), *points.back(), result.spec.material.density};
@@ -39,9 +39,9 @@ BoxSummary summary_of(const GrainBoxResult& result, const std::vector<double>& s
                  .test = spec.loading.test,
                  .increments = spec.loading.increments,
                  .growth_passes = state.growth_passes,
-                 .after_compaction = last_of(result, BoxPhase::compaction),
-                 .after_friction = last_of(result, BoxPhase::friction),
-                 .at_end = last_of(result, BoxPhase::loading),
+                 .after_compaction = last_state(result, BoxPhase::compaction),
+                 .after_friction = last_state(result, BoxPhase::friction),
+                 .at_end = last_state(result, BoxPhase::loading),
                  .pressure_of_smallest_shear = pressure_of_smallest_shear(result),
                  .largest_shear = largest_over_pressure(result, &BoxPoint::shear),
                  .largest_moment = largest_over_pressure(result, &BoxPoint::moment),
