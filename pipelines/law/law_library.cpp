@@ -23,7 +23,16 @@ namespace {
 /// errors of leaving one out hold there: materials at corners are predicted from farther away.
 constexpr double kReachOfHull = 0.1;
 
-double on_axis(const LibraryVariable& v, double x) { return v.logarithm ? std::log(x) : x; }
+double on_axis(const LibraryVariable& v, double x) {
+  if (v.axis == LibraryAxis::logarithm) return std::log(x);
+  return v.axis == LibraryAxis::friction ? x / (x + kHalfFriction) : x;
+}
+
+/// The variable again.
+double off_axis(const LibraryVariable& v, double y) {
+  if (v.axis == LibraryAxis::logarithm) return std::exp(y);
+  return v.axis == LibraryAxis::friction ? kHalfFriction * y / (1.0 - y) : y;
+}
 
 std::vector<double> coordinates(const LibraryPoint& at) {
   std::vector<double> out;
@@ -57,7 +66,7 @@ void require_inside(const UnitBox& box, const LibraryPoint& at) {
   const std::vector<double> u = box(coordinates(at));
   for (std::size_t a = 0; a < u.size(); ++a) {
     const LibraryVariable& v = kLibraryVariables[a];
-    const auto real = [&](double x) { return v.logarithm ? std::exp(x) : x; };
+    const auto real = [&](double y) { return off_axis(v, y); };
     if (const std::string why = outside_text(v, real(box.low(a)), real(box.high(a)), at.*v.value, u[a]); !why.empty())
       append_part(wrong, why);
   }
@@ -108,8 +117,7 @@ std::pair<std::size_t, double> most_telling(const GaussianProcess& process, doub
 LibraryPoint material_at(const UnitBox& box, const std::vector<double>& u) {
   const std::vector<double> row = box.row(u);
   LibraryPoint out;
-  for (std::size_t a = 0; a < row.size(); ++a)
-    out.*kLibraryVariables[a].value = kLibraryVariables[a].logarithm ? std::exp(row[a]) : row[a];
+  for (std::size_t a = 0; a < row.size(); ++a) out.*kLibraryVariables[a].value = off_axis(kLibraryVariables[a], row[a]);
   return out;
 }
 

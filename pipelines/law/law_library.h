@@ -21,15 +21,21 @@ struct LibraryPoint {
   double solid_fraction = 0.0;  ///< volume of grains over that of the shell
 };
 
+/// With what the laws change evenly: the variable, its logarithm, or mu/(mu + kHalfFriction), as friction matters most
+/// where there is little.
+enum class LibraryAxis { linear, logarithm, friction };
+inline constexpr double kHalfFriction = 0.15;  ///< friction at which half of its effect is reached
+
 struct LibraryVariable {
   const char* name;
   double LibraryPoint::*value;
-  bool logarithm = false;  ///< whether the laws change evenly with its logarithm
+  LibraryAxis axis = LibraryAxis::linear;
 };
-inline constexpr std::array<LibraryVariable, 4> kLibraryVariables{{{"mu", &LibraryPoint::friction},
-                                                                   {"exponent", &LibraryPoint::exponent},
-                                                                   {"ratio", &LibraryPoint::polydispersity, true},
-                                                                   {"solid fraction", &LibraryPoint::solid_fraction}}};
+inline constexpr std::array<LibraryVariable, 4> kLibraryVariables{
+    {{"mu", &LibraryPoint::friction, LibraryAxis::friction},
+     {"exponent", &LibraryPoint::exponent},
+     {"ratio", &LibraryPoint::polydispersity, LibraryAxis::logarithm},
+     {"solid fraction", &LibraryPoint::solid_fraction}}};
 
 /// What a press on one plane tells, the shell held: F/(E* Rs^2) with E* = E/(1 - nu^2). Forces, as a, b and delta of a
 /// fitted curve are nearly degenerate.
@@ -154,7 +160,7 @@ std::vector<LibraryCheck> check_library(const LawLibrary& library);
 /// A material that is worth measuring.
 struct NextMaterial {
   LibraryPoint at;
-  double trials = 0.0;     ///< positions tried per grain that give its solid fraction, as the library knows; NaN: unknown
+  double trials = 0.0;  ///< positions tried per grain that give its solid fraction, as the library knows; NaN: unknown
   double deviation = 0.0;  ///< of ln force of one plane there, of an answer, before it is measured
   double left = 0.0;       ///< root mean square of these deviations over all materials that are served, afterwards
 };
@@ -166,8 +172,8 @@ struct NextMaterials {
 
 /// Which materials would narrow the answers most, one after the other: each makes the mean square of the deviation of
 /// the force least, over materials spread evenly over all that the library serves (active learning of Cohn, Ghahramani
-/// and Jordan 1996, doi:10.1613/jair.295). Deviations of a Gaussian process do not depend on what will be measured, only
-/// on where, and on the errors, for which the median of those of the library is taken.
+/// and Jordan 1996, doi:10.1613/jair.295). Deviations of a Gaussian process do not depend on what will be measured,
+/// only on where, and on the errors, for which the median of those of the library is taken.
 NextMaterials next_materials(const LawLibrary& library, int count);
 
 /// Whether the answer is to a press test, so that the grains inside are not known.

@@ -21,7 +21,7 @@ class UnitBox {
  public:
   explicit UnitBox(const std::vector<std::vector<double>>& rows);
   [[nodiscard]] std::vector<double> operator()(const std::vector<double>& row) const;
-  [[nodiscard]] std::vector<double> row(const std::vector<double>& u) const;  ///< of a point of the box
+  [[nodiscard]] std::vector<double> row(const std::vector<double>& u) const;                ///< of a point of the box
   [[nodiscard]] const std::vector<std::vector<double>>& points() const { return points_; }  ///< the rows, scaled
   [[nodiscard]] double low(std::size_t a) const { return low_[a]; }
   [[nodiscard]] double high(std::size_t a) const { return high_[a]; }

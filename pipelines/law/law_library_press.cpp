@@ -20,7 +20,6 @@ namespace {
 
 constexpr double kDeep = 0.3;  ///< D of PressNumbers
 constexpr double kShallow = 0.2;
-constexpr double kHalfFriction = 0.15;  ///< friction at which half of its effect is reached
 /// How far beyond the convex hull of the materials a press test may lie, over the ranges of its numbers. They are
 /// measured with errors, and leaving one out reaches as far.
 constexpr double kReachOfPressHull = 0.25;

@@ -261,7 +261,7 @@ NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const Macro
   std::string remark;
   const LawTableEntry entry = law_entry(sources, contents_fraction, remark);
   constexpr double kApart = 0.005;
-  if (sources.solid_fraction && contents_fraction > 0.0 && std::abs(contents_fraction - entry.solid_fraction) > kApart)
+  if (contents_fraction > 0.0 && std::abs(contents_fraction - entry.solid_fraction) > kApart)
     append_part(remark, fmt::format("the law was taken at solid fraction {:.4f}, the contents of the twins have {:.4f}",
                                     entry.solid_fraction, contents_fraction));
   require_same_material(entry, spec);

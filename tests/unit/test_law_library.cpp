@@ -323,6 +323,7 @@ TEST(LawLibrary, TheShippedLibraryHoldsTheChecksOfItsMaterials) {
   const LawLibrary shipped = load_library(std::string(SOFTGRAIN_SOURCE_DIR) + "/results/law_library/library.toml");
   const std::vector<LibraryCheck> checks = check_library(shipped);
   ASSERT_EQ(checks.size(), shipped.checks.size());
+  EXPECT_LT(checks.front().error, 0.11) << "ln force; with processes over mu itself it is 0.13";
   for (std::size_t k = 0; k < shipped.law_numbers(); ++k) {
     EXPECT_NEAR(checks[k].error, shipped.checks[k].error, 0.05 * checks[k].error) << checks[k].name;
     EXPECT_NEAR(checks[k].error_of_mean, shipped.checks[k].error_of_mean, 1e-4) << checks[k].name;
@@ -396,10 +397,9 @@ TEST(LawLibrary, TheErrorOfTheFormIsWhatItIsInTheMeanSquare) {
 
 TEST(LawLibrary, NextMaterialsNarrowTheAnswersMost) {
   LawLibrary with_gap = library();
-  std::erase_if(with_gap.materials,
-                [](const LibraryMaterial& m) { return m.at.friction > 0.5 && m.at.friction < 0.8; });
-  std::erase_if(with_gap.materials,
-                [](const LibraryMaterial& m) { return m.at.friction > 0.79 && m.at.exponent > 3.9; });
+  std::erase_if(with_gap.materials, [](const LibraryMaterial& m) {
+    return m.at.exponent > 3.2 && (m.at.exponent < 3.99 || m.at.friction > 0.7);
+  });
   ASSERT_GE(with_gap.materials.size(), least_materials());
   const NextMaterials next = next_materials(with_gap, 4);
   ASSERT_EQ(next.materials.size(), 4U);
@@ -412,7 +412,7 @@ TEST(LawLibrary, NextMaterialsNarrowTheAnswersMost) {
     EXPECT_GT(m.deviation, m.left) << "where the library knows little";
     EXPECT_NEAR(std::log(m.trials), std::log(1e4) + 20.0 * (m.at.solid_fraction - 0.65), 0.3);
   }
-  EXPECT_GT(next.materials.front().at.friction, 0.5) << "in the gap";
+  EXPECT_GT(next.materials.front().at.exponent, 3.2) << "in the gap";
   EXPECT_LT(next_materials(library(), 1).deviation, next.deviation);
 }
 

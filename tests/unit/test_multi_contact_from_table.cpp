@@ -1,4 +1,5 @@
 // From a law table to the contact loop: choices, refusals, and the same forces as the prediction.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -264,6 +265,16 @@ TEST(TableLawOfAScene, AMemoryOfParticlesGoesWithOnePressureAlone) {
       else
         EXPECT_THROW((void)make_multi_contact_laws(law_entry(), choices), InputError) << to_string(form) << unloading;
     }
+}
+
+/// Forces change by a fifth for 0.01 in solid fraction, so that a law of other contents is named.
+TEST(TableLawOfAScene, OtherContentsAreNamed) {
+  const double its = law_entry().solid_fraction;
+  const auto note_of = [&](double contents) { return scene_law(sources(), spec_of_table(), contents, "law").note({}); };
+  const std::string said = "the contents of the twins have " + fmt::format("{:.4f}", its + 0.01);
+  EXPECT_NE(note_of(its + 0.01).find(said), std::string::npos) << note_of(its + 0.01);
+  EXPECT_EQ(note_of(its + 0.004).find("contents of the twins"), std::string::npos);
+  EXPECT_EQ(note_of(0.0).find("contents of the twins"), std::string::npos) << "no contents";
 }
 
 TEST(TableLawOfAScene, OtherGrainsAreRefused) {
