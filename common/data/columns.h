@@ -327,6 +327,8 @@ struct ListColumn {
     slices.finish();
   }
 };
+template <class Record, class T>
+ListColumn(const char*, std::vector<T> Record::*) -> ListColumn<Record, T>;  // clang 14 deduces none by itself
 
 // Histograms.
 

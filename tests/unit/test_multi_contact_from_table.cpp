@@ -270,7 +270,10 @@ TEST(TableLawOfAScene, AMemoryOfParticlesGoesWithOnePressureAlone) {
 /// Forces change by a fifth for 0.01 in solid fraction, so that a law of other contents is named.
 TEST(TableLawOfAScene, OtherContentsAreNamed) {
   const double its = law_entry().solid_fraction;
-  const auto note_of = [&](double contents) { return scene_law(sources(), spec_of_table(), contents, "law").note({}); };
+  System3 nothing;
+  const auto note_of = [&](double contents) {
+    return scene_law(sources(), spec_of_table(), contents, "law").note(nothing);
+  };
   const std::string said = "the contents of the twins have " + fmt::format("{:.4f}", its + 0.01);
   EXPECT_NE(note_of(its + 0.01).find(said), std::string::npos) << note_of(its + 0.01);
   EXPECT_EQ(note_of(its + 0.004).find("contents of the twins"), std::string::npos);
