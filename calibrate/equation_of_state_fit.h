@@ -1,4 +1,5 @@
-// Fit of the equation of state of packings without shells: pressure over solid fraction, for many spans at once.
+// Fit of the equation of state of packings without shells: pressure over solid fraction, for many spans at once. Its
+// two forms are those of StateForm (common/data/cell_card.h): p/E = K x^n beyond the onset phi_J.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +12,10 @@
 
 namespace softgrain {
 
+/// Samples that share their onset: those of one span and preparation. All numbers are without unit.
 struct StateGroup {
   std::string name;
-  double span = 1.0;
+  double span = 1.0;  ///< largest over smallest radius
   int samples = 0;
   int points = 0;
   Estimate onset;            ///< phi_J with K and n of all groups
@@ -22,16 +24,16 @@ struct StateGroup {
 
 struct StateFitOptions {
   StateForm form = StateForm::porosity;
-  int replicates = 400;
-  std::uint64_t seed = 1;
+  int replicates = 400;    ///< refits to drawn residuals, for errors and intervals
+  std::uint64_t seed = 1;  ///< of these draws
 };
 
 struct StateFit {
   bool usable = false;
   std::string message = "not run";
-  LeastSquaresFit fit;  ///< parameters ln K, n, phi_J of the groups
-  Estimate modulus;
-  Estimate exponent;
+  LeastSquaresFit fit;             ///< parameters ln K, n, phi_J of the groups
+  Estimate modulus;                ///< K, over E
+  Estimate exponent;               ///< n
   std::vector<StateGroup> groups;  ///< groups by span, then name
   double pressure_deviation =
       0.0;  ///< rms of ln(p/p_fit) within samples (each at its own onset): how well the form holds
@@ -57,7 +59,8 @@ struct StateFit {
 /// Least squares of phi at given p: near the onset pressures vanish and samples differ by their onsets above all, a
 /// shift in phi that is the same at every pressure. Points with p <= 0 lie below the onset, of which they tell nothing
 /// more. Points of one sample belong together, so errors come from samples: the residual curve of each sample (over ln
-/// p, about a fit with K of its own for every group) is a unit, and replicates put curves drawn from all samples with
+/// p, about a fit with K of its own for every group) is a unit, and replicates (bootstrap of residuals, Efron and
+/// Tibshirani 1993, ch. 9, ISBN 0412042312) put curves drawn from all samples with
 /// replacement on the fitted model, scaled by sqrt(N/(N - G)) for the N samples that determined G onsets, and fit
 /// again. Intervals are Student's, N - G degrees. This takes the scatter to be alike in all groups; a group of one
 /// sample then has an error too. Whether K is the same for all

@@ -99,6 +99,7 @@ def look(copy, _):
     left = [str(path) for path in (copy / KINDS / "self_test").iterdir() if re.search(r"(?i)example", path.read_text())]
     assert not left, f"these still name the example: {left}"
     entry = (copy / KINDS / "kinds.cpp").read_text()
+    assert ".summary = members_of<SelfTestSummary>" in (copy / KINDS / "self_test/run.cpp").read_text(), "the test Kinds asks for it"
     assert "self_test_kind()" in entry and f'#include "{KINDS}/self_test/scene.h"' in entry
     subprocess.run([sys.executable, "tests/house.py", ".", "--compare", f"{GUIDE}/house.svg"], cwd=copy, check=True,
                    stdout=subprocess.DEVNULL)

@@ -7,6 +7,7 @@ its header, and the numbers that scenes and files say of it. Standard library on
     cmake --build build/release
     python3 tests/guide_keys.py . build/release/softgrain --write
 """
+import re
 import subprocess
 
 from new_files import Changes, parsed, self_test, words
@@ -70,12 +71,16 @@ def write_law(root, name):
     def replace(file, pattern, text):
         changes.replace(file, pattern, renamed(text, name))
 
+    def before_words(file, mark, text):
+        """Inside a string, which clang-format may have broken at any blank."""
+        replace(file, "(?=" + re.escape(mark).replace(r"\ ", r'\ (?:"\s+")?') + ")", text.replace("\\", r"\\"))
+
     include = f'#include "{CONTACT}/SNAKE.h"\n'
     first = f'#include "{CONTACT}/linear_spring.h"\n'
     laws, header_of_all, write, read, *_ = FILES
     before(laws, first, include)
     replace(laws, r"(using AnyLaw =\s*std::variant<.*?)>;", r"\1, CAMEL>;")
-    replace(laws, r"(enum class LawType \{[^}]*?) \}", r"\1, SNAKE }")
+    replace(laws, r"(enum class LawType \{[^}]*?),?\s*\}", r"\1, SNAKE }")
     replace(laws, r"(enum_name_list<LawType>\(\{.*?\})\}\);", r'\1, {LawType::SNAKE, "NAME"}});')
     before(header_of_all, first, include)
     row = f"//   {camel:<14} kn h (1 + h/h0)".ljust(67) + f" {snake}.h\n"
@@ -87,6 +92,10 @@ def write_law(root, name):
     replace(SCENES, r'(\{"hertz-tsuji", [^}]*)"law-card"\}', r'\1"NAME", "law-card"}')
     before(SCENES, '  if (law == "law-card") soft.read(',
            '  if (law == "NAME") out.laws.set(pair.first, pair.second, read_SNAKE(t));\n')
+    # What keys and messages say of the laws that they go with.
+    before_words(SCENES, r'`\"linear-spring\"` or `\"cohesive\"`', r'`\"NAME\"`, ')
+    before_words(SCENES, r'\"linear-spring\" and \"cohesive\"', r'\"NAME\", ')
+    before_words(SCENES, "`linear-spring`, `cohesive`: normal stiffness", "`NAME`, ")
     before("tests/unit/test_block_loop.cpp", "  for (const double adhesion : {0.0, 2e4}) {\n    out.push_back",
            "  out.push_back(CAMEL{1e6, 0.1});\n")
     before("tests/unit/test_law_file.cpp", '          {"disk", CohesiveDisk<false, false>',
@@ -113,6 +122,7 @@ def look(copy, folder, compiler):
     assert "xample" not in (copy / CONTACT / "self_test.h").read_text()
     for file in FILES:
         assert "SelfTest" in (copy / file).read_text() or "self_test" in (copy / file).read_text(), file
+    assert "`self-test`, `linear-spring`, `cohesive`: normal stiffness" in (copy / SCENES).read_text()
     if compiler:
         compiled(copy, compiler, folder)
 

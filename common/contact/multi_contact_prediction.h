@@ -9,12 +9,13 @@
 
 namespace softgrain {
 
-/// A law of soft particles without units.
+/// A law of soft particles without units: forces are over E Rs^2, lengths over Rs. SoftMultiContact has the equations
+/// [SP 1.7.1]; it is valid within `form.pressure.range`.
 struct MultiContactModel {
   LawForm multi_contact = LawForm::directional;
   MultiContactForm form;
-  LostVolumeTable solid;
-  LostVolumeTable soft;
+  LostVolumeTable solid;           ///< w and m against solid neighbours, by their radius over Rs
+  LostVolumeTable soft;            ///< w and m against soft neighbours
   PairConstants smooth{1.0, 1.0};  ///< w and m of a plane without friction
 };
 
@@ -33,7 +34,7 @@ std::vector<double> multi_contact_forces(const MultiContactModel& model,
                                          const std::vector<MultiContactPartner>& partners,
                                          const std::vector<double>& overlap);
 
-/// The equivalent volume S of the particle in the middle.
+/// The equivalent volume S of the particle in the middle, over its own; MultiContactForm says what it is.
 double multi_contact_volume(const MultiContactModel& model, const std::vector<MultiContactPartner>& partners,
                             const std::vector<double>& overlap);
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "common/dynamics/pair_loop.h"
-#include "common/dynamics/steepest_response.h"
 #include "common/neighbours/spatial_order.h"
 #include "common/neighbours/verlet_list.h"
 

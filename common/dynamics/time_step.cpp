@@ -4,8 +4,6 @@
 #include <cmath>
 #include <type_traits>
 
-#include "common/dynamics/steepest_response.h"
-
 namespace softgrain {
 
 namespace {

@@ -12,17 +12,19 @@
 
 namespace softgrain::statics {
 
-/// What the normal force needs.
+/// What the normal force P = 4/3 E* sqrt(R*) h^(3/2) of Hertz needs: 1/E* = (1 - nu_i^2)/E_i + (1 - nu_j^2)/E_j,
+/// 1/R* = 1/R_i + 1/R_j; at a wall R_j is infinite.
 struct NormalConstants {
   double hertz = 0.0;        ///< 4/3 E* sqrt(R*) [Pa m^(1/2)]
-  double root_radius = 0.0;  ///< sqrt(R*)
+  double root_radius = 0.0;  ///< sqrt(R*) [m^(1/2)]
 };
 
-/// What friction and torsion need, the reference state included.
+/// What friction and torsion need, the reference state included. Stiffnesses of an elastic contact circle of radius
+/// a = sqrt(R* h) without slip [QS 2.1]: k* along it (Mindlin 1949, doi:10.1115/1.4009973), k_t* about its normal.
 struct FrictionConstants {
   double shear = 0.0;            ///< k*/a = 8/[(2-nu_i)/G_i + (2-nu_j)/G_j] [Pa]; 0: no friction
   double twist = 0.0;            ///< k_t*/a^3 = 16/3 /(1/G_i + 1/G_j) [Pa]
-  double friction = 0.0;         ///< mu
+  double friction = 0.0;         ///< mu [1], not negative; may be infinite
   bool fresh = false;            ///< apart in the reference state
   double overlap0 = 0.0;         ///< overlap in the reference state, negative when apart [m]
   double contact_radius0 = 0.0;  ///< a0 [m]
@@ -57,12 +59,13 @@ inline ContactPlace place_at_wall(const Vec3& wall_normal, double distance, doub
   return {wall_normal, radius - distance, distance, 0.0, 0.0};
 }
 
-/// P, its stiffness dP/dh and its work (8/15) E* sqrt(R*) h^(5/2).
+/// P = 4/3 E* sqrt(R*) h^(3/2), its stiffness dP/dh and its work (8/15) E* sqrt(R*) h^(5/2).
 struct NormalForce {
-  double force = 0.0;
-  double stiffness = 0.0;
-  double work = 0.0;
+  double force = 0.0;      ///< [N]
+  double stiffness = 0.0;  ///< [N/m]
+  double work = 0.0;       ///< [J]
 };
+/// At an overlap [m] that is not negative.
 inline NormalForce hertz_force(const NormalConstants& c, double overlap) {
   HertzMindlin<Tangential::none, false> law;
   law.k.inverse_d = 1.0;
@@ -73,7 +76,8 @@ inline NormalForce hertz_force(const NormalConstants& c, double overlap) {
   return {response.elastic_force, response.normal_stiffness, 0.4 * response.elastic_force * overlap};
 }
 
-/// u_s = T (u_i - u_j) + Omega_i x R_ij - Omega_j x R_ji.
+/// u_s = T (u_i - u_j) + Omega_i x R_ij - Omega_j x R_ji [m], T the projection on the tangent plane; `moved` is u_i -
+/// u_j, turns are rotations [rad] [QS 2.1].
 inline Vec3 sliding_displacement(const ContactPlace& p, const Vec3& moved, const Vec3& turn_i, const Vec3& turn_j) {
   const Vec3 rolled = moved + cross(p.normal, turn_i * p.arm_i + turn_j * p.arm_j);
   return rolled - p.normal * dot(p.normal, rolled);
@@ -99,11 +103,11 @@ inline double slip_stiffness(double along, double size2, double force2, double l
 
 /// Q on i, its secant stiffness in the sense Q = Qp - stiffness u_s, and its part of Pi.
 struct TangentialForce {
-  Vec3 force{};
-  double work = 0.0;
-  double limit = 0.0;      ///< Qmax
-  double stiffness = 0.0;  ///< secant stiffness, in slip lowered so that |Q| = Qmax
-  double stick = 0.0;      ///< the stiffness without slip
+  Vec3 force{};            ///< [N]
+  double work = 0.0;       ///< [J]
+  double limit = 0.0;      ///< Qmax [N]
+  double stiffness = 0.0;  ///< secant stiffness, in slip lowered so that |Q| = Qmax [N/m]
+  double stick = 0.0;      ///< the stiffness without slip [N/m]
   bool follows = false;    ///< |Q| is mu P of the state as it is
 };
 
@@ -176,12 +180,14 @@ inline TangentialForce tangential_by_current(const FrictionConstants& c, double 
 
 /// M.n on i, its stiffness and its part of Pi.
 struct TorsionMoment {
-  double moment = 0.0;
-  double stiffness = 0.0;
-  double work = 0.0;
+  double moment = 0.0;     ///< [N m]
+  double stiffness = 0.0;  ///< k_t [N m]
+  double work = 0.0;       ///< [J]
 };
 
-/// Torsion is tangential friction of one component: the same two rules. `radius`: a0 or, of a fresh contact, a.
+/// M = M0 - k_t Omega_t, |M| at most (3 pi/16) a mu P: the moment of a circle under the pressure of Hertz that slides
+/// everywhere [QS 2.1]. Torsion is tangential friction of one component: the same two rules. `radius`: a0 or, of a
+/// fresh contact, a [m]; `turned`: Omega_t [rad].
 inline TorsionMoment torsion_moment(const FrictionConstants& c, double radius, double limit, double turned) {
   TorsionMoment out;
   out.stiffness = c.twist * radius * radius * radius;

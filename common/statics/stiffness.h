@@ -9,9 +9,10 @@ namespace softgrain::statics {
 /// How contacts that slide enter: with their symmetric secant stiffness, or exactly.
 enum class Sliding { secant, exact };
 
-/// out = K in, K = -d(force)/d(theta) of the linearised contacts. The negative stiffness of normal forces that turn
-/// with their pair, -P/|r_ij| T, is left out: K then never is negative, and what is left out is smaller than the rest
-/// by the order of the overlap over the radius. With Sliding::exact K is not symmetric.
+/// out = K in, K = -d(force)/d(theta) of the linearised contacts [QS 2.1-2.2]; displacements [m] give forces [N]. The
+/// negative stiffness of normal forces that turn with their pair, -P/|r_ij| T, is left out: K then never is negative,
+/// and what is left out is smaller than the rest by the order of the overlap over the radius. With Sliding::exact K is
+/// not symmetric.
 class Stiffness {
  public:
   Stiffness(const PackProblem& problem, const std::vector<LinkTangent>& tangents, Sliding sliding = Sliding::secant);

@@ -103,6 +103,7 @@ SceneKind example_kind() {
                                             .run = run_example,
                                             .check = check_example,
                                             .results = example_results(),
+                                            .summary = members_of<ExampleSummary>,
                                             .starter = kExampleStarter});
 }
 

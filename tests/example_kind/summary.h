@@ -16,9 +16,9 @@ struct ExampleImpact {
 };
 
 void fields(auto&& visit, Of<ExampleImpact> auto& s) {
-  visit("speed", s.speed);
-  visit("duration", s.duration);
-  visit("closed_form", s.closed_form);
+  visit("speed", s.speed, Means{"speed of the impact", "m/s"});
+  visit("duration", s.duration, Means{"duration of the contact, integrated", "s"});
+  visit("closed_form", s.closed_form, Means{"duration of the contact by the closed form of Hertz", "s"});
 }
 
 struct ExampleSummary {
@@ -29,8 +29,8 @@ struct ExampleSummary {
 
 void fields(auto&& visit, Of<ExampleSummary> auto& s) {
   fields(visit, s.head);
-  visit("grain", s.grain);
-  visit("impacts", s.impacts);
+  visit("grain", s.grain, Means{"the grain in words"});
+  visit("impacts", s.impacts, Means{"all impacts, in the order of the scene"});
 }
 
 /// Files, sections, head lines and numbers of the kind.

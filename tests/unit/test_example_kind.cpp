@@ -76,6 +76,19 @@ TEST_F(ExampleKind, ChecksWithoutRunning) {
   EXPECT_EQ(out.facts["impacts"], 3);
 }
 
+/// As the test Kinds asks of every kind in the table: a kind that is made from the example passes it.
+TEST_F(ExampleKind, ExplainsEveryMemberOfItsSummary) {
+  ASSERT_NE(example_kind().summary, nullptr);
+  std::size_t numbers = 0;
+  for (const RecordMember& m : example_kind().summary()) {
+    EXPECT_NE(m.meaning, "") << m.path;
+    if (!m.path.starts_with("impacts[].")) continue;
+    ++numbers;
+    EXPECT_NE(m.unit, "") << m.path;
+  }
+  EXPECT_EQ(numbers, 3U);
+}
+
 TEST_F(ExampleKind, SaysAllMistakesAtOnce) {
   try {
     example_kind().read(Scene::parse("kind = \"example\"\n[grain]\nraduis = 1\nE = -1\n[impacts]\nspeeds = []\n", "s"));

@@ -8,7 +8,7 @@
 #include "common/core/error.h"
 #include "macrosim/body_contacts.h"
 #include "macrosim/cell_specimen.h"
-#include "pipelines/kinds/material_law/preparation_factor.h"
+#include "pipelines/kinds/material_law/fit.h"
 
 namespace softgrain {
 namespace {

@@ -275,21 +275,20 @@ overlaps = [0.2, 0.3]
 }  // namespace
 
 SceneKind hierarchy_kind() {
-  return scene_kind(TypedKind<HierarchySetup>{
-      .name = "hierarchy",
-      .command = "run",
-      .read = read_hierarchy_setup,
-      .inputs = inputs_of,
-      .run = run_hierarchy,
-      .check = check_hierarchy,
-      .results = {.sections = {{Part::several, report::hierarchy_section}},
-                  .lines = lines_of,
-                  .values = values_of,
-                  .next = next_of},
-      .summary = members_of<HierarchySummary>,
-      .keeps = {.measurements = true},
-      .explored_from = {"", "[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"},
-      .starter = kHierarchyStarter});
+  return scene_kind(TypedKind<HierarchySetup>{.name = "hierarchy",
+                                              .command = "run",
+                                              .read = read_hierarchy_setup,
+                                              .inputs = inputs_of,
+                                              .run = run_hierarchy,
+                                              .check = check_hierarchy,
+                                              .results = {.sections = {{Part::several, report::hierarchy_section}},
+                                                          .lines = lines_of,
+                                                          .values = values_of,
+                                                          .next = next_of},
+                                              .summary = members_of<HierarchySummary>,
+                                              .keeps = {.measurements = true},
+                                              .explored_from = {"", kExploredConfiguration},
+                                              .starter = kHierarchyStarter});
 }
 
 }  // namespace softgrain

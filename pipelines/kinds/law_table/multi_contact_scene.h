@@ -53,6 +53,10 @@ struct MultiContactSetup {
 /// Reads `seed`, [material], [packing], [multi_contact] and every [[configuration]]. Throws InputError.
 MultiContactSetup read_multi_contact_setup(const SceneTable& root);
 
+/// For SceneKind::explored_from: a configuration with the keys that no other arrangement is asked for.
+inline constexpr const char* kExploredConfiguration =
+    "[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n";
+
 /// Reads every [[plan]], of configurations of the setup. Throws InputError.
 void read_plan(const SceneTable& root, MultiContactSetup& setup);
 

@@ -116,18 +116,17 @@ replicates = 10
 }  // namespace
 
 SceneKind law_table_kind() {
-  return scene_kind(TypedKind<LawTableSetup>{
-      .name = "law-table",
-      .command = "run",
-      .read = read_law_table,
-      .inputs = inputs_of,
-      .run = run_law_table,
-      .check = check_law_table,
-      .results = law_table_results(),
-      .summary = members_of<LawTableSummary>,
-      .keeps = {.measurements = true},
-      .explored_from = {"", "[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"},
-      .starter = kLawTableStarter});
+  return scene_kind(TypedKind<LawTableSetup>{.name = "law-table",
+                                             .command = "run",
+                                             .read = read_law_table,
+                                             .inputs = inputs_of,
+                                             .run = run_law_table,
+                                             .check = check_law_table,
+                                             .results = law_table_results(),
+                                             .summary = members_of<LawTableSummary>,
+                                             .keeps = {.measurements = true},
+                                             .explored_from = {"", kExploredConfiguration},
+                                             .starter = kLawTableStarter});
 }
 
 }  // namespace softgrain

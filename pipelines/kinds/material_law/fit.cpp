@@ -18,7 +18,6 @@
 #include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/material_law/fines_in_cells.h"
 #include "pipelines/kinds/material_law/memory_fit.h"
-#include "pipelines/kinds/material_law/preparation_factor.h"
 
 namespace softgrain {
 

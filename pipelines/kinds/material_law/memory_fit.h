@@ -23,19 +23,20 @@ struct ShearPath {
   static ShearPath of(const MacroCurve& curve);
 };
 
-/// Numbers that are fitted; E = 1.
+/// Numbers that are fitted, without unit; CellMemory names those of the memory, ShearMemory and FaceFriction of
+/// macrosim/cell_matter have the equations.
 struct ShearNumbers {
-  double friction = 0.0;   ///< mu_f
-  double stiffness = 0.0;  ///< chi
+  double friction = 0.0;   ///< mu_f: friction coefficient of faces, not negative
+  double stiffness = 0.0;  ///< chi: stiffness of the springs of faces over B A/d, above 0
   CellMemory memory;       ///< values of the estimates alone
 };
 
-/// What is known before: the equation of state (porosity form), the void ratio of the fines where they jam, and the
-/// pressure at which tests start.
+/// What is known before: the equation of state p/E = K x^n (StateForm::porosity), the void ratio of the fines where
+/// they jam, and the pressure at which tests start.
 struct FinesBase {
-  double modulus = 0.0;
-  double exponent = 0.0;
-  double void_ratio = 0.0;
+  double modulus = 0.0;         ///< K, over E
+  double exponent = 0.0;        ///< n
+  double void_ratio = 0.0;      ///< e_J
   double start_pressure = 0.0;  ///< over E
 };
 

@@ -1,4 +1,4 @@
-#include "pipelines/kinds/material_law/preparation_factor.h"
+#include "pipelines/kinds/material_law/fit.h"
 
 #include <algorithm>
 #include <cmath>

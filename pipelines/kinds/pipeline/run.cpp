@@ -340,20 +340,19 @@ strain = 0.15
 }  // namespace
 
 SceneKind pipeline_kind() {
-  return scene_kind(TypedKind<PipelineSetup>{
-      .name = "pipeline",
-      .command = "run",
-      .read = read_pipeline_setup,
-      .inputs = inputs_of,
-      .run = run_pipeline,
-      .check = check_pipeline,
-      .results = {.next = next_of},
-      .summary = members_of<PipelineSummary>,
-      .keeps = {.measurements = true, .packings = true, .twins = true},
-      .explored_from =
-          {"", "[macro]\n" + explored_stages(),
-           "[macro]\n[multi_contact]\n[[configuration]]\narrangement = \"scattered\"\npartner = \"solid\"\n"},
-      .starter = kPipelineStarter});
+  return scene_kind(
+      TypedKind<PipelineSetup>{.name = "pipeline",
+                               .command = "run",
+                               .read = read_pipeline_setup,
+                               .inputs = inputs_of,
+                               .run = run_pipeline,
+                               .check = check_pipeline,
+                               .results = {.next = next_of},
+                               .summary = members_of<PipelineSummary>,
+                               .keeps = {.measurements = true, .packings = true, .twins = true},
+                               .explored_from = {"", "[macro]\n" + explored_stages(),
+                                                 std::string("[macro]\n[multi_contact]\n") + kExploredConfiguration},
+                               .starter = kPipelineStarter});
 }
 
 }  // namespace softgrain

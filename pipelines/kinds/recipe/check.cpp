@@ -9,7 +9,6 @@
 #include "pipelines/kinds/material/run.h"
 #include "pipelines/kinds/material_law/fines_in_cells.h"
 #include "pipelines/kinds/recipe/run.h"
-#include "pipelines/kinds/recipe/scene_parts.h"
 #include "pipelines/kinds/recipe/stages.h"
 
 namespace softgrain {

@@ -1,4 +1,4 @@
-#include "pipelines/kinds/recipe/difference.h"
+#include "pipelines/kinds/recipe/mix_run.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "pipelines/kinds/recipe/law.h"
-#include "pipelines/kinds/recipe/mix_run.h"
 #include "pipelines/kinds/recipe/onset_pair.h"
 #include "pipelines/kinds/recipe/stages.h"
 

@@ -12,7 +12,6 @@
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/material_models/models.h"
-#include "pipelines/kinds/recipe/scene_parts.h"
 #include "pipelines/law/named_laws.h"
 #include "pipelines/run/result_cache.h"
 

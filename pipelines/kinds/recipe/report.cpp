@@ -9,7 +9,7 @@
 #include "common/data/law_words.h"
 #include "pipelines/kinds/law_table/scene.h"
 #include "pipelines/kinds/material_law/scene.h"
-#include "pipelines/kinds/recipe/difference.h"
+#include "pipelines/kinds/recipe/mix_run.h"
 #include "pipelines/kinds/recipe/onset.h"
 #include "pipelines/kinds/recipe/run.h"
 #include "pipelines/kinds/recipe/stages.h"

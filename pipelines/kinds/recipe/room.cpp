@@ -6,7 +6,7 @@
 
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
-#include "pipelines/kinds/recipe/scene_parts.h"
+#include "pipelines/kinds/recipe/scene.h"
 
 namespace softgrain {
 

@@ -16,7 +16,6 @@
 #include "pipelines/kinds/material_law/scene.h"
 #include "pipelines/kinds/recipe/law.h"
 #include "pipelines/kinds/recipe/onset.h"
-#include "pipelines/kinds/recipe/scene_parts.h"
 #include "pipelines/kinds/recipe/stages.h"
 #include "pipelines/run/typed_kind.h"
 

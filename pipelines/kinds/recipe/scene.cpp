@@ -12,7 +12,6 @@
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/material/run.h"
 #include "pipelines/kinds/recipe/run.h"
-#include "pipelines/kinds/recipe/scene_parts.h"
 #include "pipelines/kinds/recipe/stages.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 
