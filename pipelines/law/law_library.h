@@ -154,7 +154,7 @@ std::vector<LibraryCheck> check_library(const LawLibrary& library);
 /// A material that is worth measuring.
 struct NextMaterial {
   LibraryPoint at;
-  double trials = 0.0;     ///< positions tried per grain that give its solid fraction, as the library knows; NaN: unknown
+  double trials = 0.0;  ///< positions tried per grain that give its solid fraction, as the library knows; NaN: unknown
   double deviation = 0.0;  ///< of ln force of one plane there, of an answer, before it is measured
   double left = 0.0;       ///< root mean square of these deviations over all materials that are served, afterwards
 };
@@ -166,8 +166,9 @@ struct NextMaterials {
 
 /// Which materials would narrow the answers most, one after the other: each makes the mean square of the deviation of
 /// the force least, over materials spread evenly over all that the library serves (active learning of Cohn, Ghahramani
-/// and Jordan 1996, doi:10.1613/jair.295). Deviations of a Gaussian process do not depend on what will be measured, only
-/// on where, and on the errors, for which the median of those of the library is taken.
+/// and Jordan 1996, doi:10.1613/jair.295). Deviations of a Gaussian process do not depend on what will be measured,
+/// only on where, and on the errors, for which the median of those of the library is taken. Throws InputError for a
+/// library that answers the force by the mean of its materials.
 NextMaterials next_materials(const LawLibrary& library, int count);
 
 /// Whether the answer is to a press test, so that the grains inside are not known.
@@ -189,9 +190,13 @@ LawTable table_of(const LawLibrary& library, const LibraryAnswer& answer, const 
 /// another shell; empty: in nothing.
 std::string other_shell_text(const LawLibrary& library, const SoftParticleSpec& spec);
 
+/// Why an entry is no measurement of its own; empty: it is one.
+std::string not_measured_text(const LawTableEntry& entry);
+
 /// The entry of a measured table whose solid fraction is nearest to that of a material of the library. Throws
-/// InputError, with all differences, where the entry is of another material or shell, or its solid fraction is more
-/// than kReachOfPackings away; `source` names the table.
+/// InputError where the entry was not measured, so that a library would count twice, and, with all differences, where
+/// it is of another material or shell, or its solid fraction is more than kReachOfPackings away; `source` names the
+/// table.
 const LawTableEntry& own_entry(const LawLibrary& library, const LibraryPoint& at, const LawTable& own,
                                const std::string& source);
 
