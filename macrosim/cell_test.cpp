@@ -110,10 +110,12 @@ struct CellTest {
   static bool ended(CellTestState&) { return false; }
 };
 
-std::string hash_of(const CellCard& card) {
-  std::string text = to_string(card.form);
-  for (const CellCardNumber& n : numbers_of(card))
+std::string hash_of(const CellMatter& matter) {
+  std::string text = to_string(matter.card.form);
+  for (const CellCardNumber& n : numbers_of(matter.card))
     if (n.key != "K0") text += fmt::format(" {:a}", n.estimate.value);
+  if (const auto factor = void_ratio_factor(matter.card, matter.preparation); factor && *factor != 1.0)
+    text += fmt::format(" void ratios times {:a}", *factor);
   return short_hash(text);
 }
 
@@ -124,7 +126,8 @@ CellTestState begin_cell_test(const MacroSpec& spec, const MacroPacking& bodies,
   CellSpecimen specimen = make_cells(spec, bodies);
   CellTestState state{std::move(specimen.packing), blank_curve(spec, bodies, engine, sample)};
   const CellCard& card = spec.cells->card;
-  state.curve.law = {std::nullopt, 0.0, spec.youngs_modulus, card.poisson_ratio, card.grain_friction, hash_of(card)};
+  state.curve.law = {std::nullopt,        0.0, spec.youngs_modulus, card.poisson_ratio, card.grain_friction,
+                     hash_of(*spec.cells)};
   state.curve.note = start_remark(spec, specimen.start);
   state.curve.warning = compression_only_text(spec);
   return state;

@@ -74,6 +74,7 @@ void insert_body(Particles<D>& p, Slot at, const NewBody<D>& b) {
   p.inverse_inertia.insert(p.inverse_inertia.begin() + k, b.inertia > 0.0 ? 1.0 / b.inertia : 0.0);
   p.material.insert(p.material.begin() + k, b.material);
   p.shell.insert(p.shell.begin() + k, b.shell);
+  if (!p.largest_volume.empty()) p.largest_volume.insert(p.largest_volume.begin() + k, 0.0);
 }
 }  // namespace detail
 

@@ -231,9 +231,12 @@ std::optional<double> void_ratio_factor(const CellCard& card, const std::string&
 
 std::string missing_factor_text(const CellCard& card, const std::string& preparation) {
   std::string has = fmt::format("the card was measured on grains prepared '{}'", card.preparation);
-  for (const PreparationFactor& p : card.preparations) has += fmt::format(", with a factor for '{}'", p.preparation);
-  return fmt::format("{} and has none for '{}': kind \"material-law\" measures one ([law] preparations = [\"{}\"])",
-                     has, preparation, preparation);
+  for (std::size_t k = 0; k < card.preparations.size(); ++k)
+    has += fmt::format("{} '{}'", k == 0 ? ", has a factor for" : ",", card.preparations[k].preparation);
+  return fmt::format(
+      "{}{} none for '{}': kind \"material-law\" measures one for every way of preparing but LAMMPS ([law] "
+      "preparations)",
+      has, card.preparations.empty() ? " and has" : " and", preparation);
 }
 
 std::vector<CellCardNumber> numbers_of(const CellCard& card) {

@@ -3,7 +3,9 @@
 // vector, an array of these.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -66,7 +68,14 @@ std::vector<Stored> flat_rows(const std::vector<Record>& records, const auto& li
 
 namespace rows {
 
-/// A number of a file as a member holds it. Throws IoError for a whole one that it cannot hold.
+/// Whether a number with a fraction is within the limits of a whole one; what is no number is not.
+template <class Number>
+bool holds(double stored) {
+  const double end = std::ldexp(1.0, std::numeric_limits<Number>::digits);
+  return stored >= (std::is_signed_v<Number> ? -end : 0.0) && stored < end;
+}
+
+/// A number of a file as a member holds it. Throws IoError where a member of whole numbers cannot hold it.
 template <class Number, class Stored>
 Number number_of(Stored stored, const std::string& what) {
   if constexpr (std::is_enum_v<Number>) {
@@ -74,8 +83,12 @@ Number number_of(Stored stored, const std::string& what) {
   } else if constexpr (std::is_same_v<Number, bool>) {
     return stored != 0;
   } else {
+    bool fits = true;
     if constexpr (std::is_integral_v<Number> && std::is_integral_v<Stored>)
-      if (!std::in_range<Number>(stored)) throw IoError("'" + what + "' holds a number out of range");
+      fits = std::in_range<Number>(stored);
+    else if constexpr (std::is_integral_v<Number>)
+      fits = holds<Number>(stored);
+    if (!fits) throw IoError("'" + what + "' holds a number out of range");
     return static_cast<Number>(stored);
   }
 }

@@ -277,10 +277,11 @@ ExitStatus make_library(const LawOptions& o) {
   if (o.next < 0 || o.next > kMostNext)
     throw InputError(fmt::format("law library: --next {}: must be a whole number from 0 to {}", o.next, kMostNext));
   const std::vector<std::string> files = files_of(o.out);
+  if (!o.out.empty()) require_folder_of(o.out);  // before the checks, which take their time
   for (const std::string& path : files) refuse_to_overwrite(path, "choose another directory, or move it away");
   const LibraryCollection all = library_of(o.files);
-  const std::vector<std::string> written = write_library(all.library, files, provenance_of(o));
   const NextMaterials next = o.next > 0 ? next_materials(all.library, static_cast<int>(o.next)) : NextMaterials{};
+  const std::vector<std::string> written = write_library(all.library, files, provenance_of(o));
   const bool good = std::ranges::none_of(all.left_out, &LeftOutTable::damaged);
   if (o.json) {
     json out{{"command", "law library"},

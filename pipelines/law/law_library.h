@@ -173,7 +173,8 @@ struct NextMaterials {
 /// Which materials would narrow the answers most, one after the other: each makes the mean square of the deviation of
 /// the force least, over materials spread evenly over all that the library serves (active learning of Cohn, Ghahramani
 /// and Jordan 1996, doi:10.1613/jair.295). Deviations of a Gaussian process do not depend on what will be measured,
-/// only on where, and on the errors, for which the median of those of the library is taken.
+/// only on where, and on the errors, for which the median of those of the library is taken. Throws InputError for a
+/// library that answers the force by the mean of its materials.
 NextMaterials next_materials(const LawLibrary& library, int count);
 
 /// Whether the answer is to a press test, so that the grains inside are not known.
@@ -195,9 +196,13 @@ LawTable table_of(const LawLibrary& library, const LibraryAnswer& answer, const 
 /// another shell; empty: in nothing.
 std::string other_shell_text(const LawLibrary& library, const SoftParticleSpec& spec);
 
+/// Why an entry is no measurement of its own; empty: it is one.
+std::string not_measured_text(const LawTableEntry& entry);
+
 /// The entry of a measured table whose solid fraction is nearest to that of a material of the library. Throws
-/// InputError, with all differences, where the entry is of another material or shell, or its solid fraction is more
-/// than kReachOfPackings away; `source` names the table.
+/// InputError where the entry was not measured, so that a library would count twice, and, with all differences, where
+/// it is of another material or shell, or its solid fraction is more than kReachOfPackings away; `source` names the
+/// table.
 const LawTableEntry& own_entry(const LawLibrary& library, const LibraryPoint& at, const LawTable& own,
                                const std::string& source);
 

@@ -211,6 +211,8 @@ const LawTableEntry& own_entry(const LawLibrary& library, const LibraryPoint& at
                                const std::string& source) {
   const LawTableEntry& out = *std::ranges::min_element(
       own.entries, {}, [&](const LawTableEntry& e) { return std::abs(e.solid_fraction - at.solid_fraction); });
+  if (const std::string text = not_measured_text(out); !text.empty())
+    throw InputError(fmt::format("{}: no table of own packings: {}", source, text));
   if (const std::string other = differences_of(library, at, out); !other.empty())
     throw InputError(source + ": is of another material: " + other);
   return out;

@@ -35,8 +35,7 @@ std::vector<LibraryPartner> partners_of(const MultiContactLaw& law) {
 
 /// Why a law is no row; empty: it is one.
 std::string unfit(const LawTableEntry& entry, const MultiContactLaw* law) {
-  if (entry.source == TableSource::combined) return "corrected by a library already";
-  if (entry.source != TableSource::measured) return "concluded from a " + to_string(entry.source) + ", not measured";
+  if (const std::string text = not_measured_text(entry); !text.empty()) return text;
   if (law == nullptr) return "no isotropic law";
   if (law->status != LawStatus::good && law->status != LawStatus::inaccurate) return to_string(law->status);
   if (law->error_held_out > kWorstUnseen)
@@ -62,6 +61,12 @@ Estimate drawn_estimate(double value, const std::vector<std::vector<double>>& dr
 }
 
 }  // namespace
+
+std::string not_measured_text(const LawTableEntry& entry) {
+  if (entry.source == TableSource::measured) return "";
+  if (entry.source == TableSource::combined) return "corrected by a library already";
+  return "concluded from a " + to_string(entry.source) + ", not measured";
+}
 
 MultiContactLaw law_of_answer(const LawLibrary& library, const LibraryAnswer& answer, double poisson_ratio, int draws) {
   const std::size_t count = library.law_numbers();

@@ -166,6 +166,17 @@ TEST(Constituents, RefuseWhatCannotBe) {
          "every [[constituent]] has its own, in all variants");
   expect(mix_of("material", "", "") + "[[variant]]\nname = \"v\"\nratio = 2.0\n", "goes without [[constituent]]");
   expect(mix_of("recipe", kStiff, kSoft, "[shells]\nlevels = 2\n"), "soft particles hold grains of one material");
+  // What is wrong is told, and not what would follow from another E.
+  const std::string pressed =
+      "[packing]\nstart_pressure = \"1 MPa\"\n[[stage]]\nkind = \"oedometric\"\nstress = \"60 MPa\"\n";
+  for (const std::string kind : {"material", "recipe"})
+    for (const std::string& wrong :
+         {mix_of(kind, "E = \"90 GPa\"\nnu = 0.7\nmu = 0.5\n", kSoft, pressed), mix_of(kind, "E = -1.0\n", "", pressed),
+          mix_of(kind, "", "", "[material]\nE = -1.0\n" + pressed)}) {
+      EXPECT_NE(refusal_of(wrong), "");
+      EXPECT_EQ(refusal_of(wrong).find("start_pressure"), std::string::npos) << refusal_of(wrong);
+      EXPECT_EQ(refusal_of(wrong).find("stress"), std::string::npos) << refusal_of(wrong);
+    }
   std::string many = "kind = \"material\"\n[grains]\ncount = 900\n";
   for (int k = 0; k < 10; ++k)
     many += "[[constituent]]\nname = \"c" + std::to_string(k) +

@@ -284,6 +284,14 @@ TEST(LawLibrary, TheCommandOverwritesNothingAndNamesWhatItWrites) {
   expect_in(read_text(csv), "\"ln force\",9,");
   o.out = directory.path() + "/library.csv";
   expect_in(message_of([&] { (void)make_library(o); }), "a library ends with .toml");
+  o.files = {directory.path() + "/none"};  // which would be refused if it were looked for
+  o.out = directory.path() + "/missing/library.toml";
+  try {
+    (void)make_library(o);
+    ADD_FAILURE() << "a folder that is not there";
+  } catch (const IoError& e) {
+    expect_in(e.what(), "there is no folder " + directory.path() + "/missing");
+  }
 }
 
 TEST(LawLibrary, SurvivesItsFile) {
@@ -414,6 +422,10 @@ TEST(LawLibrary, NextMaterialsNarrowTheAnswersMost) {
   }
   EXPECT_GT(next.materials.front().at.exponent, 3.2) << "in the gap";
   EXPECT_LT(next_materials(library(), 1).deviation, next.deviation);
+  LawLibrary by_mean = library();
+  by_mean.checks.front().error_of_mean = 0.5 * by_mean.checks.front().error;
+  ASSERT_TRUE(by_mean.checks.front().by_mean());
+  expect_in(message_of([&] { (void)next_materials(by_mean, 1); }), "by the mean of all materials");
 }
 
 TEST(LawLibrary, WhatIsExpectedNarrowsAndMovesNothing) {

@@ -263,6 +263,11 @@ TEST(LawLibraryOwn, AnOwnTableIsOfTheMaterialThatWasAskedFor) {
   expect_said(other, "exponent = 3.2, asked 3");
   expect_said(other, "ratio = 7, asked 6");
   expect_said(other, "its nearest solid fraction is 0.6200, asked 0.5800");
+  own.entries[1].source = TableSource::library;
+  expect_said(refusal(kAsked, own), "my.toml: no table of own packings: concluded from a library, not measured");
+  own.entries[1].source = TableSource::combined;
+  expect_said(refusal(kAsked, own), "my.toml: no table of own packings: corrected by a library already");
+  own.entries[1].source = TableSource::measured;
   for (LawTableEntry& e : own.entries) e.spec.rmax_over_shell = 0.3;
   expect_said(refusal(kAsked, own), "rmax_over_shell = 0.3, the library has 0.5");
   for (LawTableEntry& e : own.entries) e.spec.exponent = std::nan("");

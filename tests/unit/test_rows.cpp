@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <functional>
 
 #include "common/core/vec.h"
@@ -101,6 +102,24 @@ TEST(RowsOfNumbers, ThatAMemberCannotHoldAreRefused) {
   std::vector<Thing> one(1);
   const std::vector<std::int64_t> marks{1, 0, std::int64_t{1} << 32, 0};
   EXPECT_EQ(complaint([&] { take_rows(marks, one, kMarks, "marks"); }), "'marks' holds a number out of range");
+}
+
+/// Whole members beside others stand in a file as numbers with a fraction.
+TEST(RowsOfNumbers, ThatAWholeMemberCannotHoldAreRefusedInMixedRowsToo) {
+  constexpr auto kMixed = [](auto&& visit, auto& t) {
+    visit(t.size);
+    visit(t.side);
+    visit(t.key);
+  };
+  std::vector<Thing> one(1);
+  take_rows(std::vector<double>{0.5, 1.0, -2147483648.0, 2147483647.0}, one, kMixed, "mixed");
+  EXPECT_EQ(one.front().key, (std::array<std::int32_t, 2>{-2147483647 - 1, 2147483647}));
+  for (const double bad : {2147483648.0, -2147483649.0, 1e300, std::nan("")})
+    EXPECT_EQ(complaint([&] {
+                take_rows(std::vector<double>{0.5, 1.0, bad, 0.0}, one, kMixed, "mixed");
+              }),
+              "'mixed' holds a number out of range")
+        << bad;
 }
 
 }  // namespace softgrain::rows_test

@@ -279,6 +279,17 @@ TEST(UnloadingRatio, TheMemoryGoesWithItsParticle) {
   EXPECT_EQ(ordered.particles.largest_volume, before);
 }
 
+/// One that comes later has had no volume at rest, and the others keep theirs.
+TEST(UnloadingRatio, ABodyThatIsAddedHasNothingToRemember) {
+  PressedParticle pressed(laws_with_ratio(1.3));
+  (void)pressed.at_depth(0.2);
+  keep_largest_volumes(pressed.s);
+  const double most = pressed.s.particles.largest_volume.at(0);
+  ASSERT_GT(most, 0.0);
+  add_ball(pressed.s, {{0.0, 0.05, 0.0}}, kSoftRadius, true);
+  EXPECT_EQ(pressed.s.particles.largest_volume, (std::vector<double>{most, 0.0, 0.0, 0.0}));
+}
+
 /// A state through a file.
 System3 through_a_file(const System3& s, bool has_memory) {
   const TemporaryDirectory directory;

@@ -29,7 +29,9 @@ LawLibrary library_at(const SceneTable& t, const SceneTable& root, const std::st
   try {
     const std::string path = library_file(t, written);
     std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored)) throw InputError(path + ": there is no such file");
+    if (!std::filesystem::is_regular_file(path, ignored))
+      throw InputError(
+          fmt::format("{}: there is no such file; \"{}\" is the library of the program", path, kShippedLibrary));
     return root.has_errors() ? LawLibrary{} : load_library(path);
   } catch (const Error& e) {
     t.throw_error("library", e.what());
