@@ -187,8 +187,8 @@ std::string unknown_command_text(const std::string& given, const std::string& hi
                                  const std::vector<std::string>& known);
 
 /// What to say of an option that nothing, or another option, follows: what it takes, as its help says. `message`: of
-/// the parser. Empty for other messages.
-std::string missing_value_text(const CLI::App& program, const std::string& message);
+/// the parser, where it complained. Empty where no value is missing.
+std::string missing_value_text(const CLI::App& program, const std::string& message = "");
 
 /// What to say of an option (or the name of a part of a command) that was given and is unknown: the nearest one of the
 /// command, or which commands know it. Empty when there was none.

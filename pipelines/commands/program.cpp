@@ -306,6 +306,9 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   app.require_subcommand(0, 1);
   require_command(app, argc, argv);
   app.parse(argc, argv);
+  // The parser takes an option that follows one with a value for the value of it.
+  if (const std::string missing = missing_value_text(app); !missing.empty())
+    throw InputError(missing + " (see softgrain " + command_on_line(app) + "--help)");
   // A file that may not grow beyond a limit is trouble with a file, to be told as such, not a reason to be killed.
   std::signal(SIGXFSZ, SIG_IGN);
   end_at_once_on_signals();

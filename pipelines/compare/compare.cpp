@@ -96,6 +96,19 @@ void compare_strained(const MacroCurve& c, const MacroCurve& r, SampleComparison
       s);
 }
 
+/// Over the stages that slide: from the least to the largest shear strain of what both have in common.
+void add_shear_range(const std::vector<MatchedStage>& stages, const MacroCurve& c, SampleComparison& s) {
+  if (c.shear_strain.size() != c.strain.size()) return;
+  for (const MatchedStage& stage : stages) {
+    if (!slides(stage.record.way)) continue;
+    for (const double at : common_part(stage)) {
+      const double shear = value_at(stage.candidate, c.shear_strain, at);
+      s.shear_low = std::fmin(s.shear_low, shear);  // NaN: the first
+      s.shear_high = std::fmax(s.shear_high, shear);
+    }
+  }
+}
+
 /// Stage by stage, and of each what it does not impose.
 void compare_staged(const MacroCurve& c, const MacroCurve& r, SampleComparison& s) {
   const std::vector<MatchedStage> stages = match_stages(c, r);
@@ -112,6 +125,7 @@ void compare_staged(const MacroCurve& c, const MacroCurve& r, SampleComparison& 
   const double end = common_part(last)[1];
   s.strain_low = c.strain[stages.front().candidate.point.front()];
   s.strain_high = value_at(last.candidate, c.strain, end);
+  add_shear_range(stages, c, s);
   const auto at_end = [&](const MacroCurve& of, const StageSide& side, const std::vector<double>& y) {
     return y.size() == of.strain.size() ? value_at(side, y, end) : kNaN;
   };

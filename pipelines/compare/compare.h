@@ -37,6 +37,8 @@ struct SampleComparison {
   MacroTest test{};
   double strain_low = 0.0;  ///< common range of strain
   double strain_high = 0.0;
+  double shear_low = kNaN;  ///< common range of the shear strain, of tests with stages that slide; NaN without them
+  double shear_high = kNaN;
   /// Relative L2 difference of the axial stress over strain; in tests in stages over match_stages(), of the stages that
   /// do not impose it: NaN where all do.
   double axial_difference = 0.0;

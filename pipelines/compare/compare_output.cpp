@@ -19,19 +19,21 @@ json number(double value) { return json_of(value); }
 json to_json(const MeanError& m) { return json_of(m); }
 
 json to_json(const SampleComparison& s) {
-  return {{"test", to_string(s.test)},
-          {"sample", s.sample},
-          {"strain_range", {s.strain_low, s.strain_high}},
-          {"axial_difference", number(s.axial_difference)},
-          {"lateral_difference", number(s.lateral_difference)},
-          {"deviator_difference", number(s.deviator_difference)},
-          {"strain_difference", number(s.strain_difference)},
-          {"unloading_modulus_ratio", number(s.unloading_ratio)},
-          {"axial_end_ratio", number(s.axial_end_ratio)},
-          {"lateral_end_ratio", number(s.lateral_end_ratio)},
-          {"lateral_stress_ratio",
-           {{"candidate", number(s.lateral_stress_ratio_candidate)},
-            {"reference", number(s.lateral_stress_ratio_reference)}}}};
+  json out{{"test", to_string(s.test)},
+           {"sample", s.sample},
+           {"strain_range", {s.strain_low, s.strain_high}},
+           {"axial_difference", number(s.axial_difference)},
+           {"lateral_difference", number(s.lateral_difference)},
+           {"deviator_difference", number(s.deviator_difference)},
+           {"strain_difference", number(s.strain_difference)},
+           {"unloading_modulus_ratio", number(s.unloading_ratio)},
+           {"axial_end_ratio", number(s.axial_end_ratio)},
+           {"lateral_end_ratio", number(s.lateral_end_ratio)},
+           {"lateral_stress_ratio",
+            {{"candidate", number(s.lateral_stress_ratio_candidate)},
+             {"reference", number(s.lateral_stress_ratio_reference)}}}};
+  if (std::isfinite(s.shear_high)) out["shear_strain_range"] = {s.shear_low, s.shear_high};
+  return out;
 }
 
 json to_json(const MacroPart& part) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numeric>
 
 #include "common/core/few_samples.h"
 #include "common/core/text.h"
@@ -333,9 +334,34 @@ std::vector<double> stress_ratios(const MacroCurve& c, double bearing) {
   return out;
 }
 
-std::vector<std::size_t> points_of_stages(const MacroCurve& c, bool sliding) {
+std::vector<StrainPart> strain_parts(MacroTest test) {
+  if (test != MacroTest::stages) return {StrainPart::whole};
+  return {kPartsOfStages.begin(), kPartsOfStages.end()};
+}
+
+const std::vector<double>& strain_of_part(const MacroCurve& c, StrainPart part) {
+  if (part == StrainPart::shear) return c.shear_strain;
+  return part == StrainPart::axial && !c.strain_z.empty() ? c.strain_z : c.strain;
+}
+
+const char* strain_label(StrainPart part, MacroTest test) {
+  if (part == StrainPart::whole) return strain_label(test);
+  return strain_label(part == StrainPart::shear ? MacroTest::simple_shear : MacroTest::stages);
+}
+
+EndStrain strain_at_end(const MacroCurve& c) {
+  if (c.strain.empty()) return {};
+  const bool sliding = point_slides(c, c.strain.size() - 1) && c.shear_strain.size() == c.strain.size();
+  return sliding ? EndStrain{c.shear_strain.back(), "shear strain"} : EndStrain{c.strain.back()};
+}
+
+std::vector<std::size_t> points_of_stages(const MacroCurve& c, StrainPart part) {
+  std::vector<std::size_t> out(c.strain.size());
+  std::iota(out.begin(), out.end(), std::size_t{0});
+  if (part == StrainPart::whole) return out;
+  const bool sliding = part == StrainPart::shear;
   const auto is_in = [&](std::size_t k) { return (slides(c.test) || point_slides(c, k)) == sliding; };
-  std::vector<std::size_t> out;
+  out.clear();
   for (std::size_t k = 0; k < c.strain.size(); ++k)
     if (is_in(k) || (k + 1 < c.strain.size() && is_in(k + 1))) out.push_back(k);
   return out.size() < 2 ? std::vector<std::size_t>{} : out;

@@ -1,6 +1,7 @@
 // What the stages of a test came to: moduli, strength, change of volume.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -164,9 +165,35 @@ std::vector<StageMeans> stage_means(const std::vector<MacroCurve>& curves, const
 /// Share of the largest p below which a point has no strength to speak of.
 inline constexpr double kBearingShare = 0.01;
 
-/// Recorded points of stages that slide, or those of all others, in both cases with the point that each part begins at;
-/// empty where that are fewer than two. Tests that slide as a whole have only the former.
-std::vector<std::size_t> points_of_stages(const MacroCurve& curve, bool sliding);
+/// What of a test is drawn over one strain. As stages slide, z stands still or dilates: they have a drawing of their
+/// own.
+enum class StrainPart {
+  whole,  ///< everything, over the recorded strain
+  axial,  ///< stages that do not slide, over the strain of z
+  shear   ///< stages that slide, over their shear strain
+};
+
+inline constexpr std::array<StrainPart, 2> kPartsOfStages{StrainPart::axial, StrainPart::shear};
+
+/// The drawings that a test has; of tests in stages a part may have no points.
+std::vector<StrainPart> strain_parts(MacroTest test);
+
+/// Recorded points of a part, with the point that each of its stages begins at; empty where a part of stages has fewer
+/// than two. Tests that slide as a whole have no axial part.
+std::vector<std::size_t> points_of_stages(const MacroCurve& curve, StrainPart part);
+
+/// What a part is drawn over, at all recorded points of the curve.
+const std::vector<double>& strain_of_part(const MacroCurve& curve, StrainPart part);
+
+/// The strain of a part in percent, as the label of an axis.
+const char* strain_label(StrainPart part, MacroTest test);
+
+/// Strain at the end of a curve: where it ends with a stage that slides, the shear strain, and what it is called.
+struct EndStrain {
+  double value = kNaN;
+  const char* name = "strain";
+};
+EndStrain strain_at_end(const MacroCurve& curve);
 
 /// The values at these points.
 std::vector<double> values_at(const std::vector<double>& values, const std::vector<std::size_t>& points);

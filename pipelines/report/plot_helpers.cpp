@@ -176,31 +176,33 @@ std::string law_paragraph(const std::vector<MacroCurve>& curves) {
 
 namespace {
 
-/// The error bars of the curve, of stresses that have them.
-void add_band(const MacroCurve& c, Stress member, double unit, Series& s) {
+/// The error bars of the curve at these points, of stresses that have them.
+void add_band(const MacroCurve& c, Stress member, double unit, const std::vector<std::size_t>& points, Series& s) {
   for (const BandOf of : {BandOf::axial, BandOf::lateral}) {
     if (&(c.*member) != &banded_stress(c, of)) continue;
     const auto band = band_of(c, of, BandPart::all);
     if (!band) continue;
-    for (const double v : band->low) s.band_low.push_back(v / unit);
-    for (const double v : band->high) s.band_high.push_back(v / unit);
+    for (const double v : values_at(band->low, points)) s.band_low.push_back(v / unit);
+    for (const double v : values_at(band->high, points)) s.band_high.push_back(v / unit);
   }
 }
 
 }  // namespace
 
-void add_curves(Plot& plot, const std::vector<MacroCurve>& curves, Stress member, double unit) {
+void add_curves(Plot& plot, const std::vector<MacroCurve>& curves, Stress member, double unit, StrainPart part) {
   std::set<std::string> named;
   for (const MacroCurve& c : curves) {
-    if ((c.*member).size() != c.strain.size() || c.strain.empty()) continue;
+    const std::vector<std::size_t> points = points_of_stages(c, part);
+    const std::vector<double>& strain = strain_of_part(c, part);
+    if ((c.*member).size() != c.strain.size() || strain.size() != c.strain.size() || points.empty()) continue;
     Series s{.label = named.insert(c.engine).second ? engine_name(c) : "", .hover = "", .x = {}, .y = {}};
     s.hover = fmt::format("{}, sample {}{}", engine_name(c), c.sample, c.usable ? "" : " (not usable)");
-    for (const double e : c.strain) s.x.push_back(100.0 * e);
-    for (const double v : c.*member) s.y.push_back(v / unit);
+    for (const double e : values_at(strain, points)) s.x.push_back(100.0 * e);
+    for (const double v : values_at(c.*member, points)) s.y.push_back(v / unit);
     s.style = engine_style(c.engine);
     if (!c.usable) s.style.opacity = 0.4;
     s.group = engine_name(c);
-    add_band(c, member, unit, s);
+    add_band(c, member, unit, points, s);
     plot.add(std::move(s));
   }
 }

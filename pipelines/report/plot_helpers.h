@@ -9,6 +9,7 @@
 #include "common/core/histogram.h"
 #include "common/data/macro_result.h"
 #include "pipelines/compare/measured_stiffness.h"
+#include "pipelines/compare/stage_results.h"
 #include "pipelines/report/run_data.h"
 #include "pipelines/report/svg_plot.h"
 
@@ -59,8 +60,9 @@ Series outline(const Histogram& histogram);
 /// A column of macro curves.
 using Stress = std::vector<double> MacroCurve::*;
 
-/// One line per curve that has the column, over strain in per cent, in units of `unit`; each engine once in the legend.
-void add_curves(Plot& plot, const std::vector<MacroCurve>& curves, Stress member, double unit);
+/// One line per curve that has the column, of this part over its strain in per cent, in units of `unit`; each engine
+/// once in the legend.
+void add_curves(Plot& plot, const std::vector<MacroCurve>& curves, Stress member, double unit, StrainPart part);
 
 // Error against cost: what every cheaper way of a run was off by, and what it cost, both against its own reference.
 

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -129,6 +130,33 @@ TEST(CommandLine, AnOptionWithoutItsValueSaysWhatItTakes) {
   expect("run x.toml --threads", 2, "--threads: nothing follows it; give --threads N: Threads to use");
   expect("run x.toml --set", 2, "--set: nothing follows it; give --set KEY=VALUE: ");
   expect("law eval l.toml --delta", 2, "--delta: nothing follows it; give --delta D1 D2 ...: ");
+}
+
+/// Options of a command that take a value, as its help has them: a flag has two spaces or more behind its name.
+std::vector<std::string> options_with_values(const std::string& command) {
+  const std::regex option("\\n +(?:-\\w, *)?(--[a-zA-Z][a-zA-Z-]*) [^ \\n]");
+  const std::string help = program(command + " --help").output;
+  std::vector<std::string> out;
+  for (std::sregex_iterator at(help.begin(), help.end(), option), end; at != end; ++at) out.push_back((*at)[1]);
+  return out;
+}
+
+/// Last in the line, or with another option of the command behind it.
+TEST(CommandLine, EveryOptionThatTakesAValueSaysSoWithoutOne) {
+  std::size_t options = 0;
+  for (const char* command :
+       {"run", "microsim", "macrosim", "sweep", "calibrate", "compare", "report", "check", "export", "schema", "new",
+        "examples", "law show", "law eval", "law export", "law plan", "law get", "law library"})
+    for (const std::string& option : options_with_values(command)) {
+      ++options;
+      const std::string line = std::string(command) + " " + option;
+      expect(line, 2, option + ": nothing follows it; give " + option + " ");
+      expect(line + " " + option, 2, option);
+      EXPECT_FALSE(fs::exists(option)) << line;
+    }
+  EXPECT_GT(options, 80U);
+  expect("run x.toml --out --quiet", 2, "softgrain: --out: nothing follows it; give --out DIR: ");
+  expect("law get --mu 0.3 --own --out", 2, "--out: nothing follows it; give --out FILE.toml: ");
 }
 
 /// A copy of a scene that comes with the program looks for its law beside it.

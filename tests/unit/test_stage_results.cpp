@@ -100,12 +100,65 @@ TEST(StageResults, UndrainedAndSlidingStages) {
 /// Each part begins where the one before it ends.
 TEST(StageResults, PointsAreThoseOfStagesThatSlideOrOfTheOthers) {
   MacroCurve c = pressed_and_slid().curve;
-  EXPECT_EQ(points_of_stages(c, false), (std::vector<std::size_t>{0, 1, 2, 3, 4}));
-  EXPECT_EQ(points_of_stages(c, true), (std::vector<std::size_t>{4, 5, 6, 7, 8, 9}));
-  EXPECT_EQ(values_at(c.shear_strain, points_of_stages(c, true)).size(), 6U);
+  EXPECT_EQ(points_of_stages(c, StrainPart::axial), (std::vector<std::size_t>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(points_of_stages(c, StrainPart::shear), (std::vector<std::size_t>{4, 5, 6, 7, 8, 9}));
+  EXPECT_EQ(values_at(c.shear_strain, points_of_stages(c, StrainPart::shear)).size(), 6U);
   c.test = MacroTest::direct_shear;
-  EXPECT_EQ(points_of_stages(c, true).size(), c.strain.size());
-  EXPECT_TRUE(points_of_stages(c, false).empty());
+  EXPECT_EQ(points_of_stages(c, StrainPart::shear).size(), c.strain.size());
+  EXPECT_TRUE(points_of_stages(c, StrainPart::axial).empty());
+  EXPECT_EQ(points_of_stages(c, StrainPart::whole).size(), c.strain.size());
+}
+
+/// Curves beside those of other runs, in reports and in the terminal: two drawings, as a run's own report has.
+TEST(StageResults, CurvesOfStagesThatSlideAreApartInComparisons) {
+  MacroCurve c = pressed_and_slid().curve;
+  const std::vector<RunCurve> drawn = stress_curves({{"", {c}}});
+  ASSERT_EQ(drawn.size(), 2U);
+  EXPECT_EQ(drawn[0].plot, "Axial stress");
+  EXPECT_EQ(drawn[0].x_label, "axial strain [%]");
+  EXPECT_EQ(drawn[0].x.size(), 5U);
+  EXPECT_EQ(drawn[1].plot, "Axial stress, stages that slide");
+  EXPECT_EQ(drawn[1].x_label, "shear strain [%]");
+  ASSERT_EQ(drawn[1].x.size(), 6U);
+  EXPECT_NEAR(drawn[1].x.back(), 1.0, 1e-12);
+  EXPECT_EQ(drawn[1].y.back(), c.stress_axial.back());
+  EXPECT_EQ(strain_at_end(c).value, c.shear_strain.back());
+  EXPECT_STREQ(strain_at_end(c).name, "shear strain");
+  // The range that is compared has its shear strains apart.
+  const SampleComparison compared = compare_curves({c}, {c}).samples.front();
+  EXPECT_NEAR(compared.shear_low, 0.0, 1e-12);
+  EXPECT_NEAR(compared.shear_high, 0.01, 1e-12);
+  c.stages[1] = {"b", StageKind::undrained, StageKind::undrained};
+  EXPECT_EQ(stress_curves({{"", {c}}}).size(), 1U);
+  EXPECT_EQ(strain_at_end(c).value, c.strain.back());
+  EXPECT_TRUE(std::isnan(compare_curves({c}, {c}).samples.front().shear_high));
+}
+
+/// Stresses of a macro run, and how far its law is from the twin, over what drives the stages.
+TEST(StageResults, ReportsOfMacroRunsDrawStagesThatSlideOverTheirShearStrain) {
+  const test::TemporaryDirectory directory;
+  const MacroCurve law = pressed_and_slid().curve;
+  MacroCurve twin = law;
+  twin.engine = "shelled";
+  for (double& s : twin.stress_axial) s *= 1.1;
+  const auto page = [&](const std::vector<MacroCurve>& curves) {
+    save_macro(curves, directory.file("macro.h5"));
+    write_text_atomic(directory.file("summary.json"), R"({"status": "good", "kind": "pipeline"})");
+    write_report(directory.path());
+    return read_text(directory.file("report.html"));
+  };
+  const auto has = [](const std::string& html, const std::string& id) {
+    return html.find("id=\"macro-stages-" + id + "-clip\"") != std::string::npos;
+  };
+  const std::string html = page({law, twin});
+  for (const char* id : {"axial", "axial-sliding", "lateral-sliding", "axial-difference", "axial-difference-sliding"})
+    EXPECT_TRUE(has(html, id)) << id;
+  EXPECT_NE(html.find(", shear 0 .. 1<"), std::string::npos) << "the compared range of strain";
+  MacroCurve pressed = law;
+  pressed.stages[1] = {"b", StageKind::undrained, StageKind::undrained};
+  const std::string one = page({pressed});
+  EXPECT_TRUE(has(one, "axial"));
+  EXPECT_FALSE(has(one, "axial-sliding"));
 }
 
 /// In the report of a material with several stages, those that slide have figures of their own.

@@ -11,6 +11,7 @@
 #include "common/core/statistics.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/compare/stage_match.h"
+#include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/macro/summary.h"
 #include "pipelines/report/html.h"
@@ -59,21 +60,35 @@ constexpr double kStressHeight = 310.0;
 constexpr double kDifferenceHeight = 210.0;
 constexpr double kLeftMargin = 66.0;  // [px] for labels of either
 
+/// What figures show: one test of all engines, as far as it is drawn over one strain.
+struct DrawnTest {
+  const std::vector<MacroCurve>& curves;
+  MacroTest test{};
+  StrainPart part{};
+
+  [[nodiscard]] std::string id(const char* what) const {
+    return "macro-" + to_string(test) + what + (part == StrainPart::shear ? "-sliding" : "");
+  }
+  [[nodiscard]] std::string title() const { return to_string(test) + (part == StrainPart::shear ? " that slide" : ""); }
+};
+
 /// Strain, from end to end of all curves; of tests in stages, which go forth and back, as the data ask.
-AxisOptions strain_axis(const std::vector<MacroCurve>& curves, MacroTest test) {
-  if (test == MacroTest::stages) return {.label = "axial strain [%]"};
+AxisOptions strain_axis(const DrawnTest& drawn) {
+  const auto& [curves, test, part] = drawn;
+  if (part != StrainPart::whole) return {.label = strain_label(part, test)};
   return {.label = "strain [%]", .low = 100.0 * first_strain(curves), .high = 102.0 * last_strain(curves)};
 }
 
-Plot stress_plot(const std::vector<MacroCurve>& curves, MacroTest test, bool axial) {
-  const SiPrefix prefix = si_prefix(largest_stress(curves));
-  Plot plot({.id = "macro-" + to_string(test) + (axial ? "-axial" : "-lateral"),
-             .title = std::string(axial ? "Axial" : "Lateral") + " stress, " + to_string(test),
-             .x = strain_axis(curves, test),
+Plot stress_plot(const DrawnTest& drawn, bool axial) {
+  const SiPrefix prefix = si_prefix(largest_stress(drawn.curves));
+  Plot plot({.id = drawn.id(axial ? "-axial" : "-lateral"),
+             .title = std::string(axial ? "Axial" : "Lateral") + " stress, " + drawn.title(),
+             .x = strain_axis(drawn),
              .y = {.label = fmt::format("{} stress [{}Pa]", axial ? "axial" : "lateral", prefix.symbol)},
              .height = kStressHeight,
              .left_margin = kLeftMargin});
-  add_curves(plot, curves, axial ? &MacroCurve::stress_axial : &MacroCurve::stress_lateral, prefix.factor);
+  add_curves(plot, drawn.curves, axial ? &MacroCurve::stress_axial : &MacroCurve::stress_lateral, prefix.factor,
+             drawn.part);
   return plot;
 }
 
@@ -92,15 +107,17 @@ std::vector<double> values_of_law(const MacroCurve& law, const MacroCurve& twin,
   }
 }
 
-/// (law - twin)/twin at the points of the twin, where the twin's stress is above 2 % of its largest.
-Series difference_series(const MacroCurve& law, const MacroCurve& twin, Stress member) {
+/// (law - twin)/twin at the points of the twin in this part, where the twin's stress is above 2 % of its largest.
+Series difference_series(const MacroCurve& law, const MacroCurve& twin, Stress member, StrainPart part) {
   Series s;
   const std::vector<double> by_law = values_of_law(law, twin, member);
   const double floor = std::max(0.02 * *std::max_element((twin.*member).begin(), (twin.*member).end()), 0.0);
-  for (std::size_t i = 0; i < twin.strain.size(); ++i) {
+  const std::vector<double>& strain = strain_of_part(twin, part);
+  if (strain.size() != twin.strain.size()) return s;
+  for (const std::size_t i : points_of_stages(twin, part)) {
     const double reference = (twin.*member)[i];
     if (reference <= floor || !std::isfinite(by_law[i])) continue;
-    s.x.push_back(100.0 * twin.strain[i]);
+    s.x.push_back(100.0 * strain[i]);
     s.y.push_back(100.0 * (by_law[i] / reference - 1.0));
   }
   return s;
@@ -112,13 +129,13 @@ bool complete(const MacroCurve& c, Stress member) {
 
 /// One line per sample, each compared with its own twin.
 void add_differences(Plot& plot, const std::vector<MacroCurve>& laws, const std::vector<MacroCurve>& twins,
-                     Stress member) {
+                     Stress member, StrainPart part) {
   static constexpr Marker markers[] = {Marker::circle, Marker::triangle, Marker::square, Marker::diamond};
   std::size_t index = 0;
   for (const MacroCurve& law : laws) {
     for (const MacroCurve& twin : twins) {
       if (law.sample != twin.sample || !complete(law, member) || !complete(twin, member)) continue;
-      Series s = difference_series(law, twin, member);
+      Series s = difference_series(law, twin, member, part);
       if (s.x.empty()) continue;
       s.label = fmt::format("sample {}", law.sample);
       s.style = {.color = palette::black, .width = 1.3, .marker = markers[index++ % 4], .marker_size = 2.6};
@@ -127,18 +144,27 @@ void add_differences(Plot& plot, const std::vector<MacroCurve>& laws, const std:
   }
 }
 
-Plot difference_plot(const std::vector<MacroCurve>& curves, MacroTest test, bool axial) {
-  const auto laws = curves_of(curves, "law");
-  const auto twins = curves_of(curves, "shelled");
-  const double first = test == MacroTest::stages ? 0.0 : first_strain(curves);
-  const double last = last_strain(curves);
-  Plot plot({.id = "macro-" + to_string(test) + (axial ? "-axial" : "-lateral") + "-difference",
+/// From end to end of the drawn strains.
+std::pair<double, double> drawn_range(const DrawnTest& drawn) {
+  if (drawn.part == StrainPart::whole) return {first_strain(drawn.curves), last_strain(drawn.curves)};
+  double last = 0.0;
+  for (const MacroCurve& c : drawn.curves)
+    for (const double e : values_at(strain_of_part(c, drawn.part), points_of_stages(c, drawn.part)))
+      last = std::max(last, e);
+  return {0.0, last};
+}
+
+Plot difference_plot(const DrawnTest& drawn, bool axial) {
+  const auto laws = curves_of(drawn.curves, "law");
+  const auto twins = curves_of(drawn.curves, "shelled");
+  const auto [first, last] = drawn_range(drawn);
+  Plot plot({.id = drawn.id(axial ? "-axial-difference" : "-lateral-difference"),
              .title = std::string("Law minus resolved twin, ") + (axial ? "axial" : "lateral"),
-             .x = strain_axis(curves, test),
+             .x = strain_axis(drawn),
              .y = {.label = "difference [%]"},
              .height = kDifferenceHeight,
              .left_margin = kLeftMargin});
-  add_differences(plot, laws, twins, axial ? &MacroCurve::stress_axial : &MacroCurve::stress_lateral);
+  add_differences(plot, laws, twins, axial ? &MacroCurve::stress_axial : &MacroCurve::stress_lateral, drawn.part);
   if (plot.empty()) return plot;
   plot.add({.label = "",
             .hover = "no difference",
@@ -155,38 +181,46 @@ std::string stress_source(const std::vector<MacroCurve>& curves) {
 }
 
 /// Stress above, and below how far the law is from the twin.
-std::string stress_figure(const std::vector<MacroCurve>& curves, MacroTest test, bool axial) {
-  const Plot stress = stress_plot(curves, test, axial);
+std::string stress_figure(const DrawnTest& drawn, bool axial) {
+  const Plot stress = stress_plot(drawn, axial);
   if (stress.empty()) return "";
-  const Plot difference = difference_plot(curves, test, axial);
-  std::string caption = axial ? stress_source(curves) + "; one line per sample." : "Mean of both lateral directions.";
+  const Plot difference = difference_plot(drawn, axial);
+  std::string caption =
+      axial ? stress_source(drawn.curves) + "; one line per sample." : "Mean of both lateral directions.";
   if (!difference.empty())
     caption += " Below: relative to the twin of the same sample, where its stress exceeds 2 % of its largest value.";
   return figure(stress.svg() + (difference.empty() ? "" : difference.svg()), caption);
 }
 
-std::string coordination_figure(const std::vector<MacroCurve>& curves, MacroTest test) {
-  Plot plot({.id = "macro-" + to_string(test) + "-coordination",
-             .title = "Coordination number, " + to_string(test),
-             .x = strain_axis(curves, test),
+std::string coordination_figure(const DrawnTest& drawn) {
+  Plot plot({.id = drawn.id("-coordination"),
+             .title = "Coordination number, " + drawn.title(),
+             .x = strain_axis(drawn),
              .y = {.label = "neighbours per body"},
              .height = kStressHeight});
-  add_curves(plot, curves, &MacroCurve::coordination_bodies, 1.0);
+  add_curves(plot, drawn.curves, &MacroCurve::coordination_bodies, 1.0, drawn.part);
   return plot.empty() ? ""
                       : figure(plot.svg(), "Bodies and walls that a body touches, a soft particle being one body.");
 }
 
 std::string mean_text(const MeanError& m, double unit) { return format_with_error(m.mean * unit, m.error * unit); }
 
+/// Common strains in percent, with those of stages that slide.
+std::string range_text(const SampleComparison& s) {
+  const auto text = [](double low, double high) {
+    return format_number(100 * low, 3) + " .. " + format_number(100 * high, 3);
+  };
+  const std::string axial = text(s.strain_low, s.strain_high);
+  return std::isfinite(s.shear_high) ? axial + ", shear " + text(s.shear_low, s.shear_high) : axial;
+}
+
 std::string comparison_table(const Comparison& c) {
   HtmlTable table({"sample", "strain range [%]", "axial difference [%]", "lateral difference [%]", "axial ratio at end",
                    "lateral/axial, law", "lateral/axial, twin"});
   for (const SampleComparison& s : c.samples) {
-    table.row({std::to_string(s.sample),
-               format_number(100 * s.strain_low, 3) + " .. " + format_number(100 * s.strain_high, 3),
-               format_number(100 * s.axial_difference, 3), format_number(100 * s.lateral_difference, 3),
-               format_number(s.axial_end_ratio, 3), format_number(s.lateral_stress_ratio_candidate, 3),
-               format_number(s.lateral_stress_ratio_reference, 3)});
+    table.row({std::to_string(s.sample), range_text(s), format_number(100 * s.axial_difference, 3),
+               format_number(100 * s.lateral_difference, 3), format_number(s.axial_end_ratio, 3),
+               format_number(s.lateral_stress_ratio_candidate, 3), format_number(s.lateral_stress_ratio_reference, 3)});
   }
   table.row({"mean", "", mean_text(c.axial_difference, 100), mean_text(c.lateral_difference, 100),
              mean_text(c.axial_end_ratio, 1), mean_text(c.lateral_stress_ratio_candidate, 1),
@@ -241,8 +275,13 @@ std::string macro_section(const RunData& run) {
     const auto laws = curves_of(curves, "law");
     const auto twins = curves_of(curves, "shelled");
     if (tests.size() > 1) body += "<h3>" + escape(to_string(test)) + "</h3>\n";
-    body += figure_row({stress_figure(curves, test, true), stress_figure(curves, test, false)});
-    body += stage_parts(curves, test) + figure_row({coordination_figure(curves, test)});
+    std::vector<std::string> coordination;
+    for (const StrainPart part : strain_parts(test)) {
+      const DrawnTest drawn{curves, test, part};
+      body += figure_row({stress_figure(drawn, true), stress_figure(drawn, false)});
+      coordination.push_back(coordination_figure(drawn));
+    }
+    body += stage_parts(curves, test) + figure_row(coordination);
     body += tensor_parts(curves, "macro-" + to_string(test));
     body += comparison_part(laws, twins) + bodies_table(curves) + law_paragraph(curves);
   }
@@ -286,15 +325,15 @@ std::string end_line(const std::vector<MacroCurve>& curves) {
   for (const MacroCurve& c : curves) {
     if (!c.usable || c.stress_axial.empty()) continue;
     stress.push_back(c.stress_axial.back());
-    strain.push_back(c.strain.back());
+    strain.push_back(strain_at_end(c).value);
   }
   const std::size_t left_out = curves.size() - stress.size();
   if (stress.empty()) return left_out > 0 ? "No usable run." : "";
   const MeanError mean = mean_error(stress);
-  return fmt::format("Axial stress {} Pa at strain {} ({}; {} {}{}).",
+  return fmt::format("Axial stress {} Pa at {} {} ({}; {} {}{}).",
                      stress.size() > 1 ? format_with_error(mean.mean, mean.error) : format_number(mean.mean, 4),
-                     format_number(mean_error(strain).mean, 3), to_string(curves.front().test), stress.size(),
-                     stress.size() > 1 ? "samples, mean" : "sample",
+                     strain_at_end(curves.front()).name, format_number(mean_error(strain).mean, 3),
+                     to_string(curves.front().test), stress.size(), stress.size() > 1 ? "samples, mean" : "sample",
                      left_out > 0 ? fmt::format("; {} not usable", left_out) : "");
 }
 

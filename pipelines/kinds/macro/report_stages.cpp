@@ -34,30 +34,20 @@ std::vector<double> volumetric_strains(const MacroCurve& c) {
 /// Where a quantity stands that curves do not hold, for add_curves().
 constexpr Stress kPlace = &MacroCurve::stress_deviator;
 
-/// Curves with the quantity, as far as stages slide, over the shear strain, or as far as they do not.
-std::vector<MacroCurve> part_of_stages(std::vector<MacroCurve> curves, bool sliding) {
-  for (MacroCurve& c : curves) {
-    const std::vector<std::size_t> points = points_of_stages(c, sliding);
-    c.*kPlace = values_at(c.*kPlace, points);
-    c.strain = values_at(sliding ? c.shear_strain : c.strain, points);
-  }
-  return curves;
-}
-
 /// A quantity over the strain that drives the stages: where some slide, in two figures.
 template <class Quantity>
 std::vector<std::string> over_strain(const std::vector<MacroCurve>& curves, const std::string& id, const char* title,
                                      const char* label, const char* caption, Quantity&& of) {
   const std::vector<MacroCurve> all = with_column(curves, kPlace, of);
   std::vector<std::string> figures;
-  for (const bool sliding : {false, true}) {
-    const char* strain = strain_label(sliding ? MacroTest::simple_shear : MacroTest::stages);
+  for (const StrainPart part : kPartsOfStages) {
+    const bool sliding = part == StrainPart::shear;
     Plot plot({.id = sliding ? id + "-sliding" : id,
                .title = std::string(title) + (sliding ? " that slide" : ""),
-               .x = {.label = strain},
+               .x = {.label = strain_label(part, MacroTest::stages)},
                .y = {.label = label},
                .height = 310.0});
-    add_curves(plot, part_of_stages(all, sliding), kPlace, 1.0);
+    add_curves(plot, all, kPlace, 1.0, part);
     if (!plot.empty()) figures.push_back(figure(plot.svg(), caption));
   }
   return figures;
@@ -96,7 +86,7 @@ std::string sliding_figure(std::vector<MacroCurve> curves) {
       out.push_back(c.stress_axial[k] > 0.0 ? c.stress_xz[k] / c.stress_axial[k] : kNaN);
     return out;
   };
-  add_curves(plot, part_of_stages(with_column(std::move(curves), kPlace, ratio), true), kPlace, 1.0);
+  add_curves(plot, with_column(std::move(curves), kPlace, ratio), kPlace, 1.0, StrainPart::shear);
   return plot.empty() ? "" : figure(plot.svg(), "The friction that is mobilised on planes normal to z.");
 }
 

@@ -51,10 +51,12 @@ std::string stage_line(const std::string& engine, const StageMeans& s) {
 std::string console_summary(const LawIdentity& law, const std::vector<MacroCurve>& curves) {
   std::string text = "law: " + identity_text(law) + "\n";
   if (const auto density = density_of(curves, curves.front().engine)) text += density_text(*density) + "\n";
-  for (const MacroCurve& c : curves)
-    text += fmt::format("{} sample {}: axial stress {:.5g} Pa at strain {:.3f}, lateral ratio {}, {:.1f} s{}\n",
-                        c.engine, c.sample, c.stress_axial.back(), c.strain.back(), lateral_ratio(c), c.cost.seconds,
+  for (const MacroCurve& c : curves) {
+    const EndStrain strain = strain_at_end(c);
+    text += fmt::format("{} sample {}: axial stress {:.5g} Pa at {} {:.3f}, lateral ratio {}, {:.1f} s{}\n", c.engine,
+                        c.sample, c.stress_axial.back(), strain.name, strain.value, lateral_ratio(c), c.cost.seconds,
                         c.usable ? "" : " (" + c.note + ")");
+  }
   std::vector<std::string> engines;
   for (const MacroCurve& c : curves)
     if (std::ranges::find(engines, c.engine) == engines.end()) engines.push_back(c.engine);

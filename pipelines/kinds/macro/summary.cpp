@@ -84,6 +84,39 @@ struct Below {
   std::string stresses;
 };
 
+/// Axial stress of a part of a test, mean over the samples that have all its points; without points where none has any.
+RunCurve mean_stress_curve(const NamedCurves& one, StrainPart part) {
+  std::vector<std::array<std::vector<double>, 2>> samples;
+  std::size_t points = 0;
+  for (const MacroCurve& c : one.curves) {
+    const std::vector<double>& strain = strain_of_part(c, part);
+    if (!c.usable || !recorded(c, c.stress_axial) || strain.size() != c.strain.size()) continue;
+    const std::vector<std::size_t> taken = points_of_stages(c, part);
+    samples.push_back({values_at(strain, taken), values_at(c.stress_axial, taken)});
+    points = std::max(points, taken.size());
+  }
+  std::erase_if(samples, [&](const auto& s) { return s[0].size() != points; });
+  const MacroTest test = one.curves.empty() ? MacroTest::oedometric : one.curves.front().test;
+  RunCurve out{part == StrainPart::shear ? "Axial stress, stages that slide" : "Axial stress",
+               strain_label(part, test),
+               "axial stress",
+               "Pa",
+               one.name,
+               {},
+               {}};
+  for (std::size_t k = 0; k < points; ++k) {
+    double strain = 0.0;
+    double stress = 0.0;
+    for (const auto& s : samples) {
+      strain += 100.0 * s[0][k];
+      stress += s[1][k];
+    }
+    out.x.push_back(strain / static_cast<double>(samples.size()));
+    out.y.push_back(stress / static_cast<double>(samples.size()));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<NamedCurves> by_engine(const std::vector<MacroCurve>& curves) {
@@ -115,27 +148,11 @@ std::vector<RunValue> stress_values(const std::vector<NamedCurves>& all) {
 
 std::vector<RunCurve> stress_curves(const std::vector<NamedCurves>& all) {
   std::vector<RunCurve> out;
-  for (const NamedCurves& one : all) {
-    std::size_t points = 0;
-    for (const MacroCurve& c : one.curves)
-      if (c.usable && recorded(c, c.stress_axial)) points = std::max(points, c.strain.size());
-    const MacroTest test = one.curves.empty() ? MacroTest::oedometric : one.curves.front().test;
-    RunCurve curve{"Axial stress", strain_label(test), "axial stress", "Pa", one.name, {}, {}};
-    double samples = 0.0;
-    curve.x.assign(points, 0.0);
-    curve.y.assign(points, 0.0);
-    for (const MacroCurve& c : one.curves) {
-      if (!c.usable || !recorded(c, c.stress_axial) || c.strain.size() != points) continue;
-      samples += 1.0;
-      for (std::size_t k = 0; k < points; ++k) {
-        curve.x[k] += 100.0 * c.strain[k];
-        curve.y[k] += c.stress_axial[k];
-      }
+  for (const NamedCurves& one : all)
+    for (const StrainPart part : strain_parts(one.curves.empty() ? MacroTest::oedometric : one.curves.front().test)) {
+      RunCurve curve = mean_stress_curve(one, part);
+      if (!curve.x.empty()) out.push_back(std::move(curve));
     }
-    for (std::vector<double>* column : {&curve.x, &curve.y})
-      for (double& v : *column) v /= samples;
-    if (samples > 0.0) out.push_back(std::move(curve));
-  }
   return out;
 }
 

@@ -32,13 +32,14 @@ std::string capital(std::string word) {
   return word;
 }
 
-std::string stress_figure(const ComparedCurves& scene, Stress member, const std::string& what) {
+std::string stress_figure(const ComparedCurves& scene, Stress member, const std::string& what, StrainPart part) {
   const SiPrefix prefix = si_prefix(largest(scene.curves, member));
-  Plot plot({.id = "macro-" + scene.name + "-" + what,
-             .title = capital(what) + " stress, " + scene.name,
-             .x = {.label = "strain [%]"},
+  const bool sliding = part == StrainPart::shear;
+  Plot plot({.id = "macro-" + scene.name + "-" + what + (sliding ? "-sliding" : ""),
+             .title = capital(what) + " stress, " + scene.name + (sliding ? ", stages that slide" : ""),
+             .x = {.label = part == StrainPart::whole ? "strain [%]" : strain_label(part, MacroTest::stages)},
              .y = {.label = fmt::format("{} stress [{}Pa]", what, prefix.symbol)}});
-  add_curves(plot, scene.curves, member, prefix.factor);
+  add_curves(plot, scene.curves, member, prefix.factor, part);
   const bool periodic = !scene.curves.empty() && scene.curves.front().boundary == Boundary::periodic;
   return plot.empty() ? ""
                       : figure(plot.svg(), periodic ? "From the contacts of a periodic cell; one line per sample."
@@ -108,10 +109,14 @@ std::string scene_part(const std::vector<ComparedScene>& compared, const Compare
   const bool shear =
       !scene.curves.empty() && (is_shear(scene.curves.front().test) || scene.curves.front().test == MacroTest::stages);
   std::string body = "<h3>" + escape(scene.name) + "</h3>\n";
-  body += figure_row({stress_figure(scene, &MacroCurve::stress_axial, "axial"),
-                      shear ? stress_figure(scene, &MacroCurve::stress_deviator, "deviator")
-                            : stress_figure(scene, &MacroCurve::stress_lateral, "lateral"),
-                      force_figure(scene)});
+  std::vector<std::string> figures;
+  for (const StrainPart part : strain_parts(scene.curves.empty() ? MacroTest{} : scene.curves.front().test)) {
+    figures.push_back(stress_figure(scene, &MacroCurve::stress_axial, "axial", part));
+    figures.push_back(shear ? stress_figure(scene, &MacroCurve::stress_deviator, "deviator", part)
+                            : stress_figure(scene, &MacroCurve::stress_lateral, "lateral", part));
+  }
+  figures.push_back(force_figure(scene));
+  body += figure_row(figures);
   return body + table_of(score_engines(scene.curves)) + facts_of(compared, scene.name) + law_paragraph(scene.curves);
 }
 

@@ -74,9 +74,9 @@ std::string line_figure(const std::vector<Variant>& variants, PlotOptions option
   return plot.empty() ? "" : figure(plot.svg(), caption);
 }
 
-/// Values at the points of a curve that belong to stages that slide, or to the others.
-Column only_stages(const Column& column, bool sliding) {
-  return [=](const MacroCurve& c) { return values_at(column(c), points_of_stages(c, sliding)); };
+/// Values at the points of a curve that belong to a part.
+Column only_stages(const Column& column, StrainPart part) {
+  return [=](const MacroCurve& c) { return values_at(column(c), points_of_stages(c, part)); };
 }
 
 /// A quantity over what drives the stages: over the strain of z, and where stages slide, as z stands still or dilates
@@ -84,16 +84,15 @@ Column only_stages(const Column& column, bool sliding) {
 std::vector<std::string> figures_over_strain(const std::vector<Variant>& variants, const PlotOptions& options,
                                              const char* caption, const Column& y) {
   std::vector<std::string> figures;
-  for (const bool sliding : {false, true}) {
+  for (const StrainPart part : kPartsOfStages) {
     PlotOptions own = options;
-    if (sliding) {
+    if (part == StrainPart::shear) {
       own.id += "-sliding";
       own.title += ", stages that slide";
     }
-    own.x = {.label = strain_label(sliding ? MacroTest::simple_shear : MacroTest::stages)};
-    const Column strain = [=](const MacroCurve& c) { return scaled(sliding ? c.shear_strain : c.strain_z, 100.0); };
-    std::string one =
-        line_figure(variants, std::move(own), caption, only_stages(strain, sliding), only_stages(y, sliding));
+    own.x = {.label = strain_label(part, MacroTest::stages)};
+    const Column strain = [=](const MacroCurve& c) { return scaled(strain_of_part(c, part), 100.0); };
+    std::string one = line_figure(variants, std::move(own), caption, only_stages(strain, part), only_stages(y, part));
     if (!one.empty()) figures.push_back(std::move(one));
   }
   return figures;
