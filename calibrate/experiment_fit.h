@@ -77,4 +77,8 @@ std::vector<ForceOffset> force_offsets(const ForceCurves& curves);
 /// they are not determined. Returns all.
 std::vector<ForceOffset> subtract_offsets(ForceCurves& curves);
 
+/// Whether overlaps may not count from first touch: readings begin far from zero, in steps of the curve, and at least
+/// five of them are without contact. Empty: no doubt.
+std::string touch_doubt(const ForceCurves& curves);
+
 }  // namespace softgrain

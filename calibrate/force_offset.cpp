@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "common/core/few_samples.h"
 #include "common/core/statistics.h"
@@ -203,7 +205,49 @@ std::optional<ForceOffset> offset_of(const ForceCurve& sample) {
   return std::nullopt;
 }
 
+/// Median distance of neighbouring overlaps.
+double usual_step(const std::vector<ForcePoint>& points) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < points.size(); ++k) steps.push_back(points[k].delta - points[k - 1].delta);
+  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
+  return steps[steps.size() / 2];
+}
+
+/// Delta where the force begins to rise, of a curve that was recorded before touch though none of its overlaps is about
+/// zero: overlaps would begin within a few steps of zero, so these are readings of a machine that has its own zero.
+std::optional<double> onset_without_touch(const ForceCurve& sample) {
+  constexpr double kStepsFromZero = 5.0;
+  constexpr std::size_t kLeastIdle = 5;
+  if (!sample.before_touch.empty() || sample.normal.size() < kLeastPoints) return std::nullopt;
+  if (sample.normal.front().delta <= kStepsFromZero * usual_step(sample.normal)) return std::nullopt;
+  const WeightedCurve curve(sample.normal);
+  if (!std::ranges::all_of(curve.weight, [](double w) { return std::isfinite(w); })) return std::nullopt;
+  const OffsetLaw law = best_of(profile(curve, true));
+  if (idle_readings(sample, law.delta).size() < kLeastIdle) return std::nullopt;
+  return law.delta;
+}
+
 }  // namespace
+
+std::string touch_doubt(const ForceCurves& curves) {
+  std::size_t doubtful = 0;
+  double onset = std::numeric_limits<double>::infinity();
+  double first = std::numeric_limits<double>::infinity();
+  for (const ForceCurve& sample : curves.samples)
+    if (const auto delta = onset_without_touch(sample)) {
+      ++doubtful;
+      onset = std::min(onset, *delta);
+      first = std::min(first, sample.normal.front().delta);
+    }
+  if (doubtful == 0) return "";
+  const double mm = 1e3 * curves.spec.shell_radius;
+  return fmt::format(
+      "overlap counts from first touch, but those of {} of {} samples begin at {:.3g} mm, with readings without "
+      "contact; "
+      "where the displacement has another zero, give its value at touch (\"# touch = {:.3g} mm\" or less: there the "
+      "force begins to rise), else threshold and exponent of the law are wrong",
+      doubtful, curves.samples.size(), mm * first, mm * onset);
+}
 
 std::vector<ForceOffset> force_offsets(const ForceCurves& curves) {
   std::vector<ForceOffset> out;

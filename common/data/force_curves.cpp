@@ -59,9 +59,12 @@ struct ColumnName {
 
 const std::vector<ColumnName>& column_names() {
   static const std::vector<ColumnName> names{
-      {"hn", Unit::length, "hn [mm]", {"hn", "h_n", "h", "overlap", "displacement", "indentation"}},
+      {"hn",
+       Unit::length,
+       "hn [mm]",
+       {"hn", "h_n", "h", "overlap", "displacement", "indentation", "weg", "standardweg"}},
       {"Delta", Unit::none, "Delta", {"delta", "delta_n", "hn/rs", "h/rs"}},
-      {"Fn", Unit::force, "Fn [N]", {"fn", "f_n", "f", "force", "normal force", "load"}},
+      {"Fn", Unit::force, "Fn [N]", {"fn", "f_n", "f", "force", "normal force", "load", "kraft", "standardkraft"}},
       {"standard error",
        Unit::force,
        "se [N]",

@@ -146,6 +146,14 @@ std::optional<double> scaled(std::string_view number, int power) {
   return value;
 }
 
+/// Whether "1" and ",5 mm" were "1,5 mm"; "0.1" and ",0.2", or "1" and ",2,3", are lists.
+bool is_rest_of_decimal_comma(std::string_view number, std::string_view rest) {
+  constexpr std::string_view kDigits = "0123456789";
+  if (!rest.starts_with(',') || number.find_first_of(".eE") != std::string_view::npos) return false;
+  const std::size_t end = rest.find_first_not_of(kDigits, 1);
+  return end != 1 && rest.size() > 1 && (end == std::string_view::npos || (rest[end] != ',' && rest[end] != '.'));
+}
+
 std::string unknown_unit(std::string_view name, Unit unit) {
   const std::span<const KnownUnit> units = known_units(unit);
   if (units.empty()) return "unit '" + std::string(name) + "' is not allowed, this number has no unit";
@@ -177,6 +185,8 @@ double parse_quantity(const std::string& text, Unit unit) {
     found = u;
     known = true;
   }
+  if (is_rest_of_decimal_comma(number, name))
+    throw InputError("has a decimal comma; write a point: \"" + std::string(number) + "." + name.substr(1) + "\"");
   if (!known) throw InputError(unknown_unit(name, unit));
   const std::optional<double> value = scaled(number, found.power);
   if (!value || !std::isfinite(*value * found.factor)) throw InputError("is not representable as a number");

@@ -199,9 +199,12 @@ ExitStatus calibrate_curves(const CommonOptions& options) {
   ExperimentSummary summary;
   std::vector<std::string>& remarks = summary.head.remarks;
   remarks = fit.remarks;
-  for (const ForceCurves& kind : fit.curves)
+  for (const ForceCurves& kind : fit.curves) {
+    if (const std::string doubt = touch_doubt(kind); !doubt.empty())
+      summary.head.warnings.push_back(to_string(kind.kind) + ": " + doubt);
     for (const std::string& one : implausible_forces(kind))
       summary.head.warnings.push_back(to_string(kind.kind) + ": " + one);
+  }
   add_missing_kind(fit, remarks);
   remarks.push_back(friction_text(fit.card.spec));
   if (const std::string remark = kt_remark(fit.card); !remark.empty()) summary.head.warnings.push_back(remark);

@@ -164,6 +164,18 @@ std::string shipped_counterpart(const fs::path& path) {
   return "";
 }
 
+/// A file of the working directory that was meant, where the scene lies elsewhere: `--set file=...` is read relative to
+/// the scene. Its full path; empty: there is none.
+std::string counterpart_here(const std::string& path, const std::vector<std::string>& words) {
+  std::error_code ignored;
+  for (const std::string& word : words) {
+    if (!word.ends_with(".toml")) continue;
+    const fs::path within = fs::path(path).lexically_relative(fs::path(word).parent_path());
+    if (!within.empty() && fs::is_regular_file(within, ignored)) return fs::absolute(within, ignored).string();
+  }
+  return "";
+}
+
 /// Whether a scene among these words may have named the file: it lies in the scene's folder, or below.
 bool is_beside_a_scene(const std::string& path, const std::vector<std::string>& words) {
   return std::ranges::any_of(words, [&](const std::string& word) {
@@ -179,7 +191,9 @@ std::string about_missing_file(const std::string& path, const std::vector<std::s
     text += fmt::format(" (softgrain examples {} --out FILE copies it)", fs::path(shipped).stem().string());
   if (std::ranges::find(words, path) != words.end() || !is_beside_a_scene(path, words)) return text;
   text += "; paths in a scene are relative to its own folder";
-  if (!shipped.empty())
+  if (const std::string here = counterpart_here(path, words); !here.empty())
+    text += fmt::format(", also with --set; the file in the working directory is {}", here);
+  else if (!shipped.empty())
     text += ": name that file, or copy the scene with softgrain examples NAME --out FILE, which does";
   return text;
 }

@@ -65,6 +65,7 @@ void check_force_curves(const CsvFile& table, Findings& out) {
     out.add("largest_delta", largest_delta,
             fmt::format("Rs = {:g} m: overlaps up to Delta = {:.3g}", curves.spec.shell_radius, largest_delta));
   out.add("largest_force", largest_force, fmt::format("forces up to {:.4g} N", largest_force));
+  if (const std::string doubt = touch_doubt(curves); !doubt.empty()) out.warn(doubt);
   if (!options.shell_radius && !options.youngs_modulus)
     for (const std::string& one : implausible_forces(curves)) out.warn(one);
   if (const std::string turns = judge_turns(curves, {}).why; !turns.empty()) out.warn(turns);
@@ -128,7 +129,9 @@ void check_table(const std::string& path, const std::vector<std::string>& overri
                          [&](const char* part) { return c.name.find(part) != std::string::npos; });
     });
   };
-  if (has_column(table, {"fn", "f_n", "force", "normal force", "load"}) || has("f"))
+  if (has_column(table, {"fn", "f_n", "force", "normal force", "load", "kraft", "standardkraft", "hn", "overlap",
+                         "displacement", "indentation", "weg", "standardweg"}) ||
+      has("f"))
     check_force_curves(table, out);
   else if (has("x") && has("y") && has("z"))
     check_packing(table, out);

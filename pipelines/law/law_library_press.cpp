@@ -223,6 +223,8 @@ LawCard card_of_press_test(const std::string& path) {
   if (unusable != fit.card.pairs.end())
     throw InputError(path + ": no law can be fitted: " + to_string(unusable->status) + " (" + unusable->reason + ")");
   fit.card.notes = std::move(fit.remarks);
+  for (const ForceCurves& kind : fit.curves)
+    if (const std::string doubt = touch_doubt(kind); !doubt.empty()) fit.card.notes.push_back(doubt);
   return std::move(fit.card);
 }
 

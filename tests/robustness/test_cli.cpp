@@ -171,6 +171,12 @@ TEST(CommandLine, AFileThatACopiedSceneLacksIsTheOneOfTheProgram) {
         "paths in a scene are relative to its own folder", "softgrain examples NAME --out FILE"})
     expect("check '" + scene + "'", 4, words);
   expect("check '" + scene + "'", 4, missing);
+  // --set is relative to the scene too; a file that lies in the working directory is named by its full path.
+  const std::string beside = "beside_" + std::to_string(::getpid()) + ".csv";
+  write_text_atomic(beside, "opening [mm],passing [%]\n1,0\n2,100\n");
+  expect("check '" + shipped + "sand_modulus.toml' --set 'grains.sizes={form=\"sieve-curve\",file=\"" + beside + "\"}'",
+         4, ", also with --set; the file in the working directory is " + fs::absolute(beside).string());
+  fs::remove(beside);
   // What the command line names itself is not that of a scene.
   expect("check nowhere/quickstart.toml", 4,
          "/pipelines/quickstart.toml (softgrain examples quickstart --out FILE copies it)");

@@ -174,6 +174,15 @@ TEST_F(ForceCurveFile, AsManySamplesAsRowsTakeNoLonger) {
   EXPECT_LT(seconds(false, {"too few points: 1 of the normal force in the longest sample"}), 10.0 * one);
 }
 
+TEST_F(ForceCurveFile, GermanTitlesOfTestingMachinesAreKnown) {
+  const ForceCurves english = read(kGood);
+  for (const char* titles : {"Weg [mm], Kraft [mN]", "Standardweg [mm], Standardkraft [mN]"}) {
+    const ForceCurves german = read(replaced(kGood, "hn [mm], Fn [mN]", titles));
+    ASSERT_EQ(german.samples.size(), english.samples.size());
+    EXPECT_EQ(german.samples[0].normal.back().force, english.samples[0].normal.back().force) << titles;
+  }
+}
+
 TEST_F(ForceCurveFile, WrongFilesAreNamedWithTheirLine) {
   expect_refused(replaced(kGood, "hn [mm]", "hn"), {"data.csv:6", "hn", "no unit", "hn [mm]"});
   expect_refused(replaced(kGood, "Fn [mN]", "Fn [mm]"), {"data.csv:6", "unknown unit 'mm'", "kN"});

@@ -114,6 +114,31 @@ TEST(ForceOffset, WhatTooFewReadingsTellIsOpen) {
   EXPECT_TRUE(says(fit, "record some before touch")) << fit.remarks.size();
 }
 
+/// Readings of a machine that touches at `touch` (over Rs) while it counts from its own zero.
+ForceCurves counted_from_elsewhere(double touch, int before, double offset) {
+  ForceCurves curves = pressed({.offset = offset, .points = 60, .first = 0.005});
+  ForceCurve& curve = curves.samples[0];
+  std::vector<ForcePoint> all;
+  for (int k = before; k > 0; --k) all.push_back({touch - 0.005 * k, offset + 0.002 * (k % 2), std::nan("")});
+  for (const ForcePoint& p : curve.normal) all.push_back({touch + p.delta, p.force, std::nan("")});
+  curve.normal = std::move(all);
+  return curves;
+}
+
+TEST(ForceOffset, ReadingsFarFromZeroWithoutContactQuestionTheTouchPoint) {
+  for (const double offset : {0.0, 0.5}) {
+    const std::string doubt = touch_doubt(counted_from_elsewhere(0.27, 12, offset));
+    EXPECT_NE(doubt.find("those of 1 of 1 samples begin at 3.36 mm"), std::string::npos) << doubt;
+    EXPECT_NE(doubt.find("# touch = "), std::string::npos) << doubt;
+  }
+  EXPECT_EQ(touch_doubt(pressed({})), "");
+  EXPECT_EQ(touch_doubt(pressed({.offset = 0.5, .before = 5})), "");
+  EXPECT_EQ(touch_doubt(pressed({.offset = 1.5, .first = 0.12})), "") << "in contact from the first reading on";
+  ForceCurves known = counted_from_elsewhere(0.27, 12, 0.5);
+  known.samples[0].before_touch = {0.5, 0.5};
+  EXPECT_EQ(touch_doubt(known), "") << "overlaps below zero say where touch was";
+}
+
 TEST(ForceOffset, EverySampleHasItsOwn) {
   ForceCurves curves = pressed({.offset = 0.5});
   curves.samples.push_back(pressed({.offset = -0.2, .seed = 4}).samples[0]);

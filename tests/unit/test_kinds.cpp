@@ -310,7 +310,7 @@ name = "b"
 kind = "cell"
 )",
      R"(s:2: blind = [ "gap" ]: 'gap' is no variant
-s:4: count = 200: 200 grains are too few for a periodic cell: packed, its shortest side is about 0.0576 m, and images of the largest (radius 0.0143 m) must be two diameters apart, 0.0587 m: 630 or more have room ([grains] count)
+s:4: count = 200: 200 grains are too few for a periodic cell: packed, its shortest side is about 4.03 radii of the largest, and images of that one must be two diameters apart, 4.1 radii: 630 or more have room ([grains] count)
 s:8: places = "own": does not go with kind = "coarse"
 s:10: name = "a": is used twice
 s:12: smallest = 0.4: must be above 0 and below 0.333333333333333

@@ -69,9 +69,15 @@ TEST(MacroBand, TheMeanOverSamplesHasTheIntervalOfStudent) {
   std::vector<MacroCurve> curves{curve("law", 0, {0.0, 90.0}), curve("law", 1, {0.0, 110.0}),
                                  curve("shelled", 0, {0.0, 100.0})};
   EXPECT_TRUE(banded_ends(curves).empty()) << "no bands";
+  BandRecord record;
+  record.engine = "law";
+  const auto missing = missing_bands({record}, {});
+  ASSERT_EQ(missing.size(), 1U) << "a band that was asked for is missing";
+  EXPECT_TRUE(missing[0].starts_with("law has no interval")) << missing[0];
   for (int k = 0; k < 2; ++k) give_bands(curves[static_cast<std::size_t>(k)], 0.03, 0.04);
   const auto ends = banded_ends(curves);
   ASSERT_EQ(ends.size(), 2U) << "axial and lateral";
+  EXPECT_TRUE(missing_bands({record}, ends).empty());
   EXPECT_EQ(ends[0].stress, 100.0);
   EXPECT_NEAR(ends[0].law, 3.0, 1e-12);
   EXPECT_NEAR(ends[0].discrepancy, 4.0, 1e-12);

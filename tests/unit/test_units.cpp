@@ -93,5 +93,20 @@ TEST(Units, WrongUnitNamesTheKnownOnes) {
   EXPECT_THROW((void)parse_quantity("3 M", Unit::length), InputError);
 }
 
+TEST(Units, DecimalCommaIsNamed) {
+  const auto message = [](const char* text) -> std::string {
+    try {
+      (void)parse_quantity(text, Unit::length);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(message("0,002 mm"), "has a decimal comma; write a point: \"0.002 mm\"");
+  EXPECT_EQ(message("1,5"), "has a decimal comma; write a point: \"1.5\"");
+  for (const char* text : {"0.1,0.2", "1,2,3", "1,mm", "1,", "1,2.5 mm"})
+    EXPECT_TRUE(message(text).starts_with("unknown unit")) << text << ": " << message(text);
+}
+
 }  // namespace
 }  // namespace softgrain

@@ -298,4 +298,15 @@ std::string bands_text(const std::vector<BandRecord>& bands, const std::vector<B
   return text;
 }
 
+std::vector<std::string> missing_bands(const std::vector<BandRecord>& bands, const std::vector<BandedEnd>& ends) {
+  std::vector<std::string> out;
+  for (const BandRecord& b : bands)
+    if (std::ranges::none_of(ends, [&](const BandedEnd& e) { return e.engine == b.engine; }))
+      out.push_back(fmt::format(
+          "{} has no interval: not every run with a draw of the law came to the end of the test (a note says which "
+          "did not); strain less, or change the seed",
+          b.engine));
+  return out;
+}
+
 }  // namespace softgrain

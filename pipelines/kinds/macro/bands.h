@@ -59,4 +59,7 @@ std::string banded_text(const BandedEnd& end);
 /// All of them, and what they came from.
 std::string bands_text(const std::vector<BandRecord>& bands, const std::vector<BandedEnd>& ends);
 
+/// A warning for every engine that was asked for a band and has none at its last point.
+std::vector<std::string> missing_bands(const std::vector<BandRecord>& bands, const std::vector<BandedEnd>& ends);
+
 }  // namespace softgrain

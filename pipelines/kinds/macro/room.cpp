@@ -90,11 +90,10 @@ std::string short_of(const MacroSetup& setup, std::uint64_t seed, const std::str
     if (there >= 1.0) continue;
     const double more = static_cast<double>(spec.bodies) * kMargin / there;
     return fmt::format(
-        "{} {} {} for a periodic cell: packed{}, its shortest side is about {:.3g} m, and images of the largest "
-        "(radius {:.3g} m) must be two diameters apart, {:.3g} m: {} or more have room",
+        "{} {} {} for a periodic cell: packed{}, its shortest side is about {:.3g} radii of the largest, and images "
+        "of that one must be two diameters apart, {:.3g} radii: {} or more have room",
         spec.bodies, what, sure ? "are too few" : "may be too few", sure ? "" : " and strained",
-        kShortestPeriod * largest * std::cbrt(there), largest, kShortestPeriod * largest,
-        std::max(least, rounded_up(more)));
+        kShortestPeriod * std::cbrt(there), kShortestPeriod, std::max(least, rounded_up(more)));
   }
   return "";
 }

@@ -257,6 +257,7 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
   MacroRunSummary summary = summarise(macro, identity, curves, usable);
   summary.bands = bands;
   summary.band_ends = banded_ends(curves);
+  for (const std::string& one : missing_bands(bands, summary.band_ends)) summary.head.warnings.push_back(one);
   summary.head.files = {
       {"macro", run.path("macro.h5")}, {"initial", run.path("macro_initial.h5")}, {"report", run.path("report.html")}};
   if (macro.law.card() != nullptr && is_curve_file(macro.law_file)) keep_fitted_law(*macro.law.card(), run, summary);

@@ -56,8 +56,8 @@ class RoomForImages {
     const SceneTable t = root_.table_or_empty(table);
     const auto seed = scene_.material.seed;
     if (const std::string problem = room_problem(setup, seed, "grains"); t.has(key) && !problem.empty())
-      t.throw_error(key, fmt::format("{}: {} ([{}] {}); levels closer to each other ([levels] ratio) take fewer", what,
-                                     problem, table, key));
+      t.throw_error(key, fmt::format("{}: {} ([{}] {}){}; levels closer to each other ([levels] ratio) take fewer",
+                                     what, problem, table, key, std::string(key) == "count" ? enough_for_all() : ""));
     const std::string doubt = room_doubt(setup, seed, "grains");
     if (doubt.empty()) return asked;
     if (t.has(key)) {
@@ -74,6 +74,20 @@ class RoomForImages {
         fmt::format("{}: {} grains in place of the default {} ([{}] {}), for a periodic cell with room", what,
                     setup.spec.bodies, asked, table, key));
     return setup.spec.bodies;
+  }
+
+  /// Number of grains with which all packings of levels can be placed, for a message about the first that cannot.
+  std::string enough_for_all() const {
+    std::int64_t enough = 0;
+    for (std::size_t v = 0; v < scene_.material.variants.size(); ++v) {
+      if (scene_.material.variants[v].same_packings || scene_.checked == v) continue;
+      MacroSetup setup = scene_.material.variants[v].setup;
+      while (!room_problem(setup, scene_.material.seed, "grains").empty())
+        setup.spec.bodies += std::max<std::int64_t>(1, setup.spec.bodies / 20);
+      enough = std::max(enough, setup.spec.bodies);
+    }
+    constexpr std::int64_t kRounded = 100;
+    return fmt::format(", {} in all packings", (enough + kRounded - 1) / kRounded * kRounded);
   }
 
   const SceneTable& root_;
