@@ -147,6 +147,8 @@ std::optional<double> scaled(std::string_view number, int power) {
 }
 
 std::string unknown_unit(std::string_view name, Unit unit) {
+  if (name.size() > 1 && name[0] == ',' && name[1] >= '0' && name[1] <= '9')
+    return "has a comma; write a decimal point, as in 0.5, and nothing between thousands";
   const std::span<const KnownUnit> units = known_units(unit);
   if (units.empty()) return "unit '" + std::string(name) + "' is not allowed, this number has no unit";
   std::string text = "unknown unit '" + std::string(name) + "', known are";

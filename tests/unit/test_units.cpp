@@ -93,5 +93,14 @@ TEST(Units, WrongUnitNamesTheKnownOnes) {
   EXPECT_THROW((void)parse_quantity("3 M", Unit::length), InputError);
 }
 
+TEST(Units, ADecimalCommaIsNamedAndNotTakenForAUnit) {
+  for (const auto& [text, unit] : {std::pair{"0,5 MPa", Unit::pressure}, std::pair{"0,5", Unit::none}}) try {
+      (void)parse_quantity(text, unit);
+      ADD_FAILURE() << "no error: " << text;
+    } catch (const InputError& e) {
+      EXPECT_STREQ(e.what(), "has a comma; write a decimal point, as in 0.5, and nothing between thousands");
+    }
+}
+
 }  // namespace
 }  // namespace softgrain
