@@ -107,8 +107,11 @@ struct SceneTable::Impl {
 
   std::shared_ptr<Impl> make_child(const std::string& key, const toml::table* table, bool is_element) const;
   [[nodiscard]] std::string setting_beside(const toml::node& node) const;
-  /// Adds keys that nobody asked for.
-  void find_unknown(std::vector<SceneError>& out) const;
+  /// Adds the places of a known key, in this table and those below: "'mu' in [material]", "'material.mu'" for --set.
+  void find_key(const std::string& key, bool as_setting, std::set<std::string>& out) const;
+  [[nodiscard]] std::string help_for_unknown(const std::string& key, const toml::node& node, const Impl& top) const;
+  /// Adds keys that nobody asked for; `top` is the table of the scene in which they may belong elsewhere.
+  void find_unknown(std::vector<SceneError>& out, const Impl& top) const;
 };
 
 /// A value as it is shown in messages, shortened when long.

@@ -132,11 +132,30 @@ std::string SceneTable::Impl::setting_beside(const toml::node& node) const {
   return "";
 }
 
-void SceneTable::Impl::find_unknown(std::vector<SceneError>& out) const {
+void SceneTable::Impl::find_key(const std::string& key, bool as_setting, std::set<std::string>& out) const {
+  if (known.contains(key))
+    out.insert(as_setting ? "'" + (path.empty() ? key : path + "." + key) + "'" : "'" + key + "' " + location());
+  for (const auto& [name_here, tables] : children)
+    for (const auto& table : tables) table->find_key(key, as_setting, out);
+}
+
+/// What to write instead of an unknown key. A key of this name in another table is meant more probably than another
+/// name here: "--set mu=0.5" means "material.mu".
+std::string SceneTable::Impl::help_for_unknown(const std::string& key, const toml::node& node, const Impl& top) const {
+  constexpr std::size_t kMostTables = 3;
+  std::set<std::string> elsewhere;
+  top.find_key(key, document->overridden.contains(&node), elsewhere);
+  if (elsewhere.size() == 1) return "nearest known key is " + *elsewhere.begin();
+  if (!elsewhere.empty() && elsewhere.size() <= kMostTables) return "nearest known keys are " + join_text(elsewhere);
+  const std::string near = nearest_word(key, {known.begin(), known.end()});
+  if (!near.empty()) return "nearest known key is '" + near + "'";
+  return known.empty() ? "" : "known keys are " + join_text(known);
+}
+
+void SceneTable::Impl::find_unknown(std::vector<SceneError>& out, const Impl& top) const {
   if (broken) return;
-  const std::vector<std::string> asked(known.begin(), known.end());
   std::vector<std::string> absent;
-  for (const std::string& key : asked)
+  for (const std::string& key : known)
     if (content == nullptr || !content->contains(key)) absent.push_back(key);
   if (content != nullptr)
     for (const auto& [name_here, node] : *content) {
@@ -145,16 +164,14 @@ void SceneTable::Impl::find_unknown(std::vector<SceneError>& out) const {
       if (document->errors && document->errors->meant.contains(dotted(key))) continue;
       // With a word that is not that of the file other keys may have been asked for: then only typing errors count.
       if (misread && nearest_word(key, absent).empty()) continue;
-      const std::string near = nearest_word(key, asked);
-      const std::string help =
-          !near.empty() ? "nearest known key is '" + near + "'" : "known keys are " + join_text(known);
-      const std::string scope = out_of_scope_text(key) + (near.empty() ? setting_beside(node) : "");
+      const std::string help = help_for_unknown(key, node, top);
+      const std::string scope = out_of_scope_text(key) + (help.starts_with("nearest") ? "" : setting_beside(node));
       out.push_back({.line = line_of(node),
                      .text = where(key, node) + ": unknown key '" + key + "' " + location() +
-                             (known.empty() ? "" : "; " + help) + (scope.empty() ? "" : "; " + scope)});
+                             (help.empty() ? "" : "; " + help) + (scope.empty() ? "" : "; " + scope)});
     }
   for (const auto& [key, tables] : children)
-    for (const auto& table : tables) table->find_unknown(out);
+    for (const auto& table : tables) table->find_unknown(out, top);
 }
 
 bool SceneTable::has(const std::string& key) const { return impl_->find(key) != nullptr; }
@@ -275,7 +292,7 @@ void SceneTable::check(const std::function<void()>& rule) const {
 
 void SceneTable::finish() const {
   std::vector<SceneError> unknown;
-  impl_->find_unknown(unknown);
+  impl_->find_unknown(unknown, *impl_);
   if (!unknown.empty()) throw BadScene(impl_->document->name, unknown);
 }
 

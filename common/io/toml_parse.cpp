@@ -78,6 +78,35 @@ std::size_t line_of_assertion(const std::string& text) {
   return static_cast<std::size_t>(found - ends.begin()) + 1;
 }
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// The line of this number, from 1; empty where there is none.
+std::string_view line_of_text(std::string_view text, std::size_t number) {
+  for (; number > 1; --number) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos) return {};
+    text.remove_prefix(end + 1);
+  }
+  return text.substr(0, text.find('\n'));
+}
+
+/// What people who do not know TOML write: 0,5 for 0.5, a unit without quotation marks, a text whose end is missing.
+/// "; how it is written", or nothing.
+std::string usual_slip(std::string_view line) {
+  if (line.find("\"\"\"") == std::string_view::npos && std::ranges::count(line, '"') % 2 == 1)
+    return "; a quotation mark is not closed";
+  const std::size_t mark = line.find('=');
+  if (mark == std::string_view::npos) return "";
+  std::string_view value = line.substr(mark + 1);
+  value.remove_prefix(std::min(value.find_first_not_of(" \t[+-"), value.size()));
+  if (value.empty() || !is_digit(value.front())) return "";
+  value.remove_prefix(std::min(value.find_first_not_of("0123456789._"), value.size()));
+  if (value.size() > 1 && value[0] == ',' && is_digit(value[1])) return "; numbers have a decimal point: 0.5, not 0,5";
+  value.remove_prefix(std::min(value.find_first_not_of(" \t"), value.size()));
+  const bool unit = !value.empty() && std::string_view(",]#\r\"").find(value.front()) == std::string_view::npos;
+  return unit ? "; a number with a unit is written in quotation marks, as in \"16 mm\"" : "";
+}
+
 }  // namespace
 
 std::size_t line_of_long_key(std::string_view text, std::size_t most) { return KeyScan(text).line_of_long_key(most); }
@@ -89,8 +118,9 @@ toml::table parse_toml(const std::string& text, const std::string& name) {
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& e) {
-    throw InputError(name + ":" + std::to_string(e.source().begin.line) +
-                     ": not valid TOML: " + std::string(e.description()));
+    const std::size_t line = e.source().begin.line;
+    throw InputError(name + ":" + std::to_string(line) + ": not valid TOML: " + std::string(e.description()) +
+                     usual_slip(line_of_text(text, line)));
   } catch (const TomlAssertion&) {
     throw InputError(name + ":" + std::to_string(line_of_assertion(text)) +
                      ": not valid TOML: a key must begin with a letter, a digit, '_', '-' or a quotation mark");

@@ -46,7 +46,13 @@ ExitStatus compare_inside(const CommonOptions& options) {
   json summary = to_json(result);
   summary["status"] = to_string(result.undefined.empty() ? RunStatus::good : RunStatus::not_usable);
   summary["candidate"] = summary["reference"] = path;
-  return finish(options, std::move(summary), to_text(result));
+  std::string console = to_text(result);
+  if (report::is_unfinished(path)) {
+    const std::string note = "the run has not come to its end: only what was there by now is compared";
+    summary["remarks"].push_back(note);
+    console += "note: " + note + "; run --resume goes on with it\n";
+  }
+  return finish(options, std::move(summary), console);
 }
 
 /// Directories as the report in `out` finds them, wherever both are moved together.

@@ -235,6 +235,10 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
 void require_inputs(const Command& command, const CommonOptions& options) {
   const auto given = static_cast<int>(options.inputs.size());
   if (given >= command.least && given <= command.most) return;
+  const auto cut = [](const std::string& s) { return s.find('=') == std::string::npos || s.ends_with('='); };
+  if (const auto found = std::ranges::find_if(options.overrides, cut);
+      given > command.most && found != options.overrides.end())
+    throw InputError(fmt::format("--set {}: must be of the form key=value, without blanks beside '='", *found));
   const std::string wanted = command.least == command.most ? fmt::format("{}", command.least)
                              : given < command.least       ? fmt::format("at least {}", command.least)
                                                            : fmt::format("at most {}", command.most);

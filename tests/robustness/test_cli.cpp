@@ -109,6 +109,8 @@ TEST(CommandLine, BadOptionsAreBadInput) {
   expect("run x.toml y.toml", 2, "run needs 1 SCENE.toml, 2 given");
   expect("run", 2, "run needs 1 SCENE.toml, 0 given");
   expect("compare", 2, "compare needs at least 1 RUN, 0 given");
+  expect("run x.toml --set material.mu 0.5", 2, "--set material.mu: must be of the form key=value, without blanks");
+  expect("run x.toml --set material.mu= 0.5", 2, "--set material.mu=: must be of the form key=value, without blanks");
   expect("compare absent_a absent_b absent_c", 4, "absent_a: no such file or directory");
   expect("sweep x.toml y.toml --over a=1", 2, "sweep needs 1 SCENE.toml, 2 given");
   expect("calibrate x.csv --seeds 1..2", 2, "--seeds");

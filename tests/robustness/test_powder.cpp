@@ -1,5 +1,6 @@
 // Cohesive powders through the built program: a small pack comes to rest, other threads change nothing, what does not
 // rest is said, what cannot be is refused.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -42,6 +43,7 @@ class Powder : public ::testing::Test {
     const ProgramOutcome outcome =
         run_the_program("microsim '" + scene() + "' --quiet --out '" + out(name) + "' " + more);
     EXPECT_EQ(outcome.status, status) << outcome.output;
+    output_ = outcome.output;
     return json::parse(read_text(out(name) + "/summary.json"));
   }
   void expect_refused(const std::string& more, const std::string& word) {
@@ -51,10 +53,15 @@ class Powder : public ::testing::Test {
   }
 
   TemporaryDirectory directory_;
+  std::string output_;  ///< of the last run
 };
 
 TEST_F(Powder, DisksWithoutCohesionJam) {
   const json s = run("out", "--threads 1", 0);
+  const double error = s["statistics"]["Phi"]["deviation"].get<double>() / std::sqrt(2.0);
+  EXPECT_NE(output_.find(fmt::format("Phi {:.4f} +- {:.4f}", s["mean"]["Phi"].get<double>(), error)),
+            std::string::npos)
+      << output_;
   EXPECT_EQ(s["status"], "good");
   EXPECT_GT(s["mean"]["Phi"].get<double>(), 0.76);
   EXPECT_LT(s["mean"]["Phi"].get<double>(), 0.85);

@@ -221,7 +221,9 @@ TEST_F(PowderVariants, CheckAndReport) {
   const std::string html = read_text(out("report.html"));
   for (const char* words : {"powder-published-Phi", "powder-published-z", "smooth", "0.810 ± 0.010", "mean_repulsive"})
     EXPECT_NE(html.find(words), std::string::npos) << words;
-  EXPECT_NE(read_text(out("rough/report.html")).find("positive definite"), std::string::npos);
+  const std::string rough = read_text(out("rough/report.html"));
+  for (const char* words : {"positive definite", "mean ± standard error", "standard deviation"})
+    EXPECT_NE(rough.find(words), std::string::npos) << words;
 }
 
 /// The scenes that are handed out.

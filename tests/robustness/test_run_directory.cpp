@@ -169,6 +169,15 @@ TEST_F(RunDirectory, ComparisonsDoNotReplaceRuns) {
   expect(run_the_program("compare " + run + run + "--out " + other), 0);
 }
 
+TEST_F(RunDirectory, ComparingInsideAnUnfinishedRunSaysSo) {
+  fs::create_directories(out("work"));
+  save(synthetic::measurements(12), out("measurements.h5"));
+  const std::string compare = "compare '" + file("out") + "'";
+  expect(run_the_program(compare), 0, {"relaxations", "note: the run has not come to its end", "--resume"});
+  fs::remove_all(out("work"));
+  EXPECT_EQ(run_the_program(compare).output.find("has not come to its end"), std::string::npos);
+}
+
 TEST_F(RunDirectory, ResumeOfAFinishedRunRefusesAnotherSceneSeedOrLaw) {
   LawCard stiffer = synthetic::card();
   stiffer.pairs[0].normal.a.value *= 2.0;

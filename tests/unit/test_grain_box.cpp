@@ -12,6 +12,7 @@
 #include "microsim/grain_box/box_measure.h"
 #include "microsim/grain_box/grain_box_run.h"
 #include "pipelines/kinds/grain_box/scene.h"
+#include "pipelines/kinds/grain_box/summary.h"
 #include "tests/support/temporary_directory.h"
 
 namespace {
@@ -496,6 +497,17 @@ end_strain = 0.01
   EXPECT_EQ(l.control[1], AxisControl::stress);
   EXPECT_EQ(l.stress[2], 10e6);
   EXPECT_EQ(l.strain_rate[0], 1.0);
+}
+
+TEST(GrainBoxSummary, MeansOverArrangementsHaveTheirErrorsInTheTerminal) {
+  const ModuliAt low{.pressure = 3e7, .bulk = 1.4e9, .bulk_error = 2e7, .shear = 9e8, .shear_error = 1e7, .points = 3};
+  const ModuliAt high{
+      .pressure = 6e7, .bulk = 1.938e9, .bulk_error = 1.7e7, .shear = 1.366e9, .shear_error = 1.6e7, .points = 3};
+  const ModuliAt none{.pressure = 9e7, .bulk = std::nan(""), .points = 1};
+  EXPECT_EQ(arrangements_text({{"pack", 3, {low, high, none}, 0.5027, 0.002}}),
+            "pack, mean of 3 arrangements +- standard error: at sigma_c 60 MPa K 1.938 +- 0.017 GPa, G 1.366 +- 0.016 "
+            "GPa; sliding 0.5027 +- 0.002\n");
+  EXPECT_EQ(arrangements_text({}), "");
 }
 
 }  // namespace

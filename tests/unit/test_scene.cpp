@@ -98,6 +98,31 @@ TEST(Scene, UnknownKeyWithoutNearOneListsTheKnown) {
             "scene.toml:1: unknown key 'zzzzzz' at the top level; known keys are beta");
 }
 
+/// What was written in the wrong table, or without its table on the command line, is named with the right one.
+TEST(Scene, UnknownKeyThatAnotherTableHasNamesThatTable) {
+  const auto read = [](const Scene& scene) {
+    (void)scene.root().count("seed", 0, 10, 1);
+    (void)scene.root().table("material").number("mu", Unit::none);
+    for (const char* name : {"solid", "soft"})
+      (void)scene.root().table_or_empty(name).number("angle", Unit::none, Range::any(), 1.0);
+  };
+  const auto complaint = [&](const std::string& text, const std::vector<std::string>& settings) {
+    const Scene scene = Scene::parse(text, "scene.toml", settings);
+    read(scene);
+    return message_of([&] { scene.root().finish(); });
+  };
+  const std::string text = "[material]\nmu = 0.3\n";
+  EXPECT_EQ(complaint(text, {"mu=0.5"}),
+            "scene.toml (--set mu): unknown key 'mu' at the top level; nearest known key is 'material.mu'");
+  EXPECT_EQ(complaint("mu = 0.5\n" + text, {}),
+            "scene.toml:1: unknown key 'mu' at the top level; nearest known key is 'mu' in [material]");
+  EXPECT_EQ(complaint(text + "seed = 3\n", {}),
+            "scene.toml:3: unknown key 'seed' in [material]; nearest known key is 'seed' at the top level");
+  EXPECT_EQ(complaint(text, {"angle=2"}),
+            "scene.toml (--set angle): unknown key 'angle' at the top level; nearest known keys are 'soft.angle', "
+            "'solid.angle'");
+}
+
 /// A word from the command line may ask for other keys than the scene has beside it.
 TEST(Scene, UnknownKeyBesideASettingSaysHowToReplaceTheTable) {
   const Scene scene = Scene::parse("[sizes]\nform = \"fuller\"\nzzz = 2.0\n", "scene.toml", {"sizes.form=list"});

@@ -103,25 +103,25 @@ std::vector<Column> structure_columns() {
           {"holes", hole([](const PowderHoles& h) { return static_cast<double>(h.count); })}};
 }
 
-/// Mean of the values with the sample deviation in brackets.
-std::string mean_text(const std::vector<double>& values, int digits) {
-  if (values.empty()) return "–";
-  const MeanError m = mean_error(values);
-  if (m.n < 2) return format_number(m.mean, digits);
-  return fmt::format("{} ({})", format_number(m.mean, digits), format_number(m.deviation, 2));
-}
-
 std::string cell_text(double value, const Column& column) {
   if (column.yes_no) return value > 0.0 ? "yes" : "no";
   return format_number(value, column.digits);
 }
 
-std::string summary_text(const std::vector<double>& values, const Column& column) {
-  if (!column.yes_no) return mean_text(values, column.digits);
-  return fmt::format("{} of {}", std::count(values.begin(), values.end(), 1.0), values.size());
+/// Mean of the values with its standard error; of a flag how many say yes.
+std::string mean_text(const std::vector<double>& values, const Column& column) {
+  if (column.yes_no) return fmt::format("{} of {}", std::count(values.begin(), values.end(), 1.0), values.size());
+  if (values.empty()) return "–";
+  const MeanError m = mean_error(values);
+  return m.n < 2 ? format_number(m.mean, column.digits) : format_with_error(m.mean, m.error);
 }
 
-/// One row per sample and one of means over usable samples; columns without any value are left out.
+std::string deviation_text(const std::vector<double>& values, const Column& column) {
+  return column.yes_no || values.size() < 2 ? "–" : format_number(mean_error(values).deviation, 2);
+}
+
+/// One row per sample, then means over usable samples and how much these scatter; columns without any value are left
+/// out.
 std::string table_of(const std::vector<PackSummary>& samples, std::vector<Column> columns) {
   std::erase_if(columns, [&](const Column& c) {
     return std::all_of(samples.begin(), samples.end(), [&](const PackSummary& s) { return std::isnan(c.of(s)); });
@@ -140,9 +140,14 @@ std::string table_of(const std::vector<PackSummary>& samples, std::vector<Column
     }
     table.row(std::move(row));
   }
-  std::vector<std::string> row{"mean (deviation)"};
-  for (std::size_t c = 0; c < columns.size(); ++c) row.push_back(summary_text(values[c], columns[c]));
-  table.row(std::move(row));
+  std::vector<std::string> means{"mean ± standard error"};
+  std::vector<std::string> deviations{"standard deviation"};
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    means.push_back(mean_text(values[c], columns[c]));
+    deviations.push_back(deviation_text(values[c], columns[c]));
+  }
+  table.row(std::move(means));
+  table.row(std::move(deviations));
   return table.html();
 }
 

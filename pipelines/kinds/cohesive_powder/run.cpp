@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "common/core/cost.h"
 #include "common/core/error.h"
 #include "common/core/parallel_tasks.h"
+#include "common/core/text.h"
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
 #include "common/io/text_file.h"
@@ -174,6 +176,15 @@ std::string add_consolidation(const std::vector<Sample>& samples, PowderSummary&
   return summary.consolidation ? consolidation_text(*summary.consolidation) + "\n" : "";
 }
 
+/// "0.7178 +- 0.0020" of an entry of the statistics; without an error where it has one sample.
+std::string mean_with_error(const json& statistics, int digits) {
+  if (statistics["mean"].is_null()) return "-";
+  std::optional<double> error;
+  if (!statistics["deviation"].is_null())
+    error = statistics["deviation"].get<double>() / std::sqrt(statistics["samples"].get<double>());
+  return with_error(statistics["mean"].get<double>(), error, {.value = {digits, true}, .error = {digits, true}});
+}
+
 /// Means over samples that came to rest; returns the line about them for people.
 std::string add_means(const PowderSetup& setup, const std::vector<Sample>& samples, const PowderStructures& structures,
                       PowderSummary& summary) {
@@ -187,12 +198,8 @@ std::string add_means(const PowderSetup& setup, const std::vector<Sample>& sampl
                   {"z_deviation", z["deviation"]}};
   summary.mean.update(structure_means_json(structures, usable_samples(samples)));
   if (structures.mean_curve) summary.scattering = {structures.fit, structures.other_ranges};
-  const auto text = [](const json& x, int digits) {
-    return x.is_null() ? std::string("-") : fmt::format("{:.{}f}", x.get<double>(), digits);
-  };
-  return fmt::format("{} samples of {} disks: Phi {} (deviation {}), z {} ({})\n", setup.samples, setup.spec.disks,
-                     text(fraction["mean"], 4), text(fraction["deviation"], 4), text(z["mean"], 3),
-                     text(z["deviation"], 3));
+  return fmt::format("{} samples of {} disks: Phi {}, z {} (standard errors of the means)\n", setup.samples,
+                     setup.spec.disks, mean_with_error(fraction, 4), mean_with_error(z, 3));
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ Outcome run_grain_boxes(const GrainBoxSetup& setup, const Run& run) {
                           .remarks = grain_box_remarks(results),
                           .files = {{"record", run.path("grain_box.h5")}, {"report", run.path("report.html")}}};
   if (setup.packs.front().material.sizes) summary.sizes = summaries_of(drawn_sizes(setup, run.seed));
-  return {json_of(summary), console_summary(results)};
+  return {json_of(summary), console_summary(results) + arrangements_text(over_arrangements(results))};
 }
 
 /// As SceneKind::starter.

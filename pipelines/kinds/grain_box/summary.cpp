@@ -71,6 +71,23 @@ std::vector<ArrangementsSummary> arrangements_of(const std::vector<GrainBoxResul
   return out;
 }
 
+std::string arrangements_text(const std::vector<OverArrangements>& packs) {
+  const ErrorForm in_gpa{.value = {4}, .error = {2}};
+  std::string text;
+  for (const OverArrangements& over : packs) {
+    text += fmt::format("{}, mean of {} arrangements +- standard error:", over.pack, over.arrangements);
+    const auto last =
+        std::ranges::find_if(over.moduli.rbegin(), over.moduli.rend(), [](const ModuliAt& m) { return m.points > 1; });
+    if (last != over.moduli.rend())
+      text += fmt::format(" at sigma_c {:.4g} MPa K {} GPa, G {} GPa;", last->pressure * 1e-6,
+                          with_error(last->bulk * 1e-9, last->bulk_error * 1e-9, in_gpa),
+                          with_error(last->shear * 1e-9, last->shear_error * 1e-9, in_gpa));
+    text +=
+        fmt::format(" sliding {}\n", with_error(over.sliding, over.sliding_error, {.error = {2}, .undefined = "-"}));
+  }
+  return text;
+}
+
 std::vector<std::string> grain_box_remarks(const std::vector<GrainBoxResult>& results) {
   std::vector<std::string> remarks;
   for (const GrainBoxResult& r : results)  // first, as the first remark is taken for the reason

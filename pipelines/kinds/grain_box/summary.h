@@ -194,4 +194,7 @@ std::vector<BoxSummary> summaries_of(const std::vector<GrainBoxResult>& results)
 /// K, G and sliding shares over the arrangements of every pack; empty where each has one.
 std::vector<ArrangementsSummary> arrangements_of(const std::vector<GrainBoxResult>& results);
 
+/// A line for each pack: its means over arrangements with standard errors, K and G at the largest round stress.
+std::string arrangements_text(const std::vector<OverArrangements>& packs);
+
 }  // namespace softgrain
