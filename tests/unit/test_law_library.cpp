@@ -428,6 +428,18 @@ TEST(LawLibrary, NextMaterialsNarrowTheAnswersMost) {
   expect_in(message_of([&] { (void)next_materials(by_mean, 1); }), "by the mean of all materials");
 }
 
+/// What leaving materials out shows is true of the answers that are to come, too.
+TEST(LawLibrary, NextMaterialsCountDeviationsAsWidened) {
+  LawLibrary widened = library();
+  widened.checks.front().factor = 2.0;
+  const NextMaterials once = next_materials(library(), 1);
+  const NextMaterials twice = next_materials(widened, 1);
+  EXPECT_NEAR(twice.deviation, 2.0 * once.deviation, 1e-12);
+  EXPECT_EQ(twice.materials.front().at.friction, once.materials.front().at.friction);
+  EXPECT_NEAR(twice.materials.front().deviation, 2.0 * once.materials.front().deviation, 1e-12);
+  EXPECT_NEAR(twice.materials.front().left, 2.0 * once.materials.front().left, 1e-12);
+}
+
 TEST(LawLibrary, WhatIsExpectedNarrowsAndMovesNothing) {
   const std::vector<std::vector<double>> points{{0.0}, {0.2}, {0.4}, {0.6}, {0.9}};
   GaussianProcess process(points, {0.1, 0.5, 0.7, 0.6, 0.1}, std::vector<double>(5, 0.05));

@@ -242,6 +242,55 @@ TEST(LawLibraryOwn, TheErrorOfTheFormIsThatOfTheOwnPackings) {
   EXPECT_NEAR(form_discrepancy(law), 0.25, 1e-9) << "the larger of the two";
 }
 
+TEST(LawLibraryOwn, NumbersBesideTheLawCountByTheirVariances) {
+  LawTableEntry own = synthetic::library_entry(kAsked, 0.02, 77);
+  own.slide_plane.kt_ratio = {0.2, 0.05, 0.1, 0.3};
+  LibraryAnswer prior = ask_library(prior_library(), kAsked);
+  const auto at = std::ranges::find(prior.numbers, "kt/kn plane", &LibraryNumber::name);
+  ASSERT_NE(at, prior.numbers.end());
+  at->value = 0.3;
+  at->deviation = 0.1;
+  const CorrectedAnswer both = corrected(prior_library(), prior, own);
+  const LibraryNumber& n = both.answer.numbers[static_cast<std::size_t>(at - prior.numbers.begin())];
+  EXPECT_NEAR(n.value, 0.8 * 0.2 + 0.2 * 0.3, 1e-12) << "errors of 0.05 and 0.1: weights as 4 and 1";
+  EXPECT_NEAR(n.deviation, std::sqrt(1.0 / (1.0 / (0.05 * 0.05) + 1.0 / (0.1 * 0.1))), 1e-12);
+}
+
+TEST(LawLibraryOwn, BothReachAsFarAsTheFartherOne) {
+  const LawTableEntry own = synthetic::library_entry(kAsked, 0.02, 77);
+  LibraryAnswer prior = ask_library(prior_library(), kAsked);
+  prior.range.volume_max = own.volume_max + 0.1;
+  prior.range.overlap_max = own.overlap_max - 0.01;
+  prior.range.grain_overlap_max = own.grain_overlap_max + 0.01;
+  const LawTableEntry entry = combined_entry(corrected(prior_library(), prior, own), own);
+  EXPECT_EQ(entry.volume_max, own.volume_max + 0.1);
+  EXPECT_EQ(entry.overlap_max, own.overlap_max);
+  EXPECT_EQ(entry.grain_overlap_max, own.grain_overlap_max + 0.01);
+  prior.range.overlap_max = own.overlap_max + 0.01;
+  EXPECT_EQ(combined_entry(corrected(prior_library(), prior, own), own).overlap_max, own.overlap_max + 0.01);
+}
+
+/// The stiffness against rolling goes with E/(1 - nu^2) as forces do; shares of forces stay.
+TEST(LawLibraryOwn, MomentsOfAnotherPoissonRatioAreScaledAsForces) {
+  LawTableEntry measured = synthetic::library_entry(kAsked, 0.02, 77, 0.3);
+  measured.slide_plane.rolls = true;
+  measured.slide_plane.rolling = {0.4, 0.02, 0.36, 0.44};
+  measured.slide_plane.rolling_friction = {0.05, 0.01, 0.03, 0.07};
+  const SideNumbers sides = side_numbers(measured, measured.laws.front());
+  const std::vector<std::string> names = side_names();
+  const auto rolling = static_cast<std::size_t>(std::ranges::find(names, "rolling plane") - names.begin());
+  ASSERT_LT(rolling + 1, names.size());
+  EXPECT_NEAR(sides.values[rolling], 0.4 * 0.91, 1e-12);
+  EXPECT_NEAR(sides.errors[rolling], 0.02 * 0.91, 1e-12);
+  EXPECT_EQ(sides.values[rolling + 1], 0.05);
+  std::vector<LibraryNumber> numbers;
+  for (std::size_t k = 0; k < names.size(); ++k) numbers.push_back({names[k], sides.values[k], sides.errors[k]});
+  LawTableEntry other = synthetic::library_entry(kAsked, 0.02, 77, 0.45);
+  set_side_numbers(numbers, other, other.laws.front());
+  EXPECT_NEAR(other.slide_plane.rolling.value, 0.4 * 0.91 / (1.0 - 0.45 * 0.45), 1e-12);
+  EXPECT_NEAR(other.slide_plane.rolling_friction.value, 0.05, 1e-12);
+}
+
 TEST(LawLibraryOwn, AnOwnTableIsOfTheMaterialThatWasAskedFor) {
   LawTable own;
   for (const double fraction : {0.62, 0.655, 0.70}) {

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include "common/contact/make_laws.h"
 #include "common/core/error.h"
+#include "common/core/limits.h"
 #include "common/core/text.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
@@ -74,6 +76,14 @@ TEST(PressLibrary, ErrorsOfTheTestWidenTheAnswer) {
       << "the onset goes by the ratio of both forces alone";
 }
 
+TEST(PressLibrary, ErrorsOfTheTestAndOfTheLibraryAddInSquares) {
+  PressQuestion q{press_of(kInside), {}, kInside.friction};
+  const double sure = ask_by_press_test(pressed_library(), q).numbers[0].deviation;
+  for (const double off : {-sure, sure}) q.draws.push_back({q.numbers.ln_deep + off, q.numbers.ln_shallow + off});
+  EXPECT_NEAR(ask_by_press_test(pressed_library(), q).numbers[0].deviation, std::sqrt(2.0) * sure, 0.1 * sure)
+      << "neither of them stands for both";
+}
+
 TEST(PressLibrary, RefusesWhatNoMaterialGave) {
   PressNumbers hard = press_of(kInside);
   hard.ln_deep += 3.0;
@@ -82,6 +92,17 @@ TEST(PressLibrary, RefusesWhatNoMaterialGave) {
                 (void)ask_by_press_test(pressed_library(), {hard, {}, 0.35});
               }),
               "no measured material gave such a press test");
+  double least = kInfinity;
+  double most = 0.0;
+  for (const LibraryMaterial& m : pressed_library().materials) {
+    const double ratio = std::exp(m.press->ln_shallow - m.press->ln_deep);
+    least = std::min(least, ratio);
+    most = std::max(most, ratio);
+  }
+  expect_says(complaint([&] {
+                (void)ask_by_press_test(pressed_library(), {hard, {}, 0.35});
+              }),
+              fmt::format("{:.2g} to {:.2g} of that at 0.2", least, most));
   expect_says(complaint([&] {
                 (void)ask_by_press_test(pressed_library(), {press_of(kInside), {}, 5.0});
               }),

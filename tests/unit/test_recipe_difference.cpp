@@ -274,6 +274,25 @@ TEST(RecipeDifference, NumbersThatManyReplicatesDoNotHaveHaveNoError) {
   EXPECT_NE(paired_text(s).find("(no error: 30 % of the replicates"), std::string::npos) << paired_text(s);
 }
 
+/// Checks that miss their predictions by as much on the same side say nothing of the difference.
+TEST(RecipeDifference, ChecksThatMissAlikeCancel) {
+  const auto missed = [](const std::string& share, const std::string& rest, double by) {
+    MixRun run = synthetic_run(share, rest, 1);
+    run.summary.recipe.check.emplace();
+    run.summary.recipe.check->measured.value = 0.6 + by;
+    run.summary.recipe.check->predicted.onset = {0.6, 0.0, 0.6, 0.6};
+    run.summary.recipe.check->outside = std::abs(by);
+    return run;
+  };
+  const auto widened = [](const MixRun& a, const MixRun& b) {
+    return PairedOnsets(a, b).joined(0, a.scene.levels.size()).widen;
+  };
+  const MixRun above = missed("0.6", "0.4", 0.004);
+  EXPECT_NEAR(widened(above, missed("0.65", "0.35", 0.004)), 0.0, 1e-15);
+  EXPECT_NEAR(widened(above, missed("0.65", "0.35", 0.001)), 0.003, 1e-12);
+  EXPECT_NEAR(widened(above, missed("0.65", "0.35", -0.001)), 0.005, 1e-12) << "one above, one below";
+}
+
 TEST(RecipeDifference, OfSinglePackingsHasNoError) {
   const OnsetDifference d = onset_difference(synthetic_run("0.6", "0.4", 1, 1), synthetic_run("0.65", "0.35", 2, 1));
   EXPECT_TRUE(std::isinf(d.estimate.standard_error));

@@ -9,6 +9,7 @@
 #include "common/core/error.h"
 #include "macrosim/body_contacts.h"
 #include "macrosim/preparation.h"
+#include "macrosim/test_protocol.h"
 #include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/recipe/stages.h"
 
@@ -220,6 +221,39 @@ TEST(RecipeStages, IntervalsHoldTheScatterOfPackingsAndAreMissingWithoutOneOfThe
   EXPECT_EQ(table.rows[3][0], "load");
   EXPECT_EQ(table.rows[3][1], "1000000");
   EXPECT_EQ(table.rows[3][4], "");
+}
+
+/// Packings of grains half as stiff as the mean of the whole were loaded to half of its stresses.
+TEST(RecipeStages, PackingsBearOverTheModulusOfTheWhole) {
+  RecipeScene scene = read_staged(kLoad);
+  StateFit states;
+  std::vector<VariantResult> results;
+  for (MaterialVariant& v : scene.material.variants) {
+    v.setup.spec.youngs_modulus = 0.5 * scene.youngs_modulus;
+    states.groups.push_back({v.name, 1.0, 1, 2, {0.6, 0.001, 0.598, 0.602}});
+    MacroCurve c;
+    c.usable = true;
+    c.stages = {{"load", StageKind::oedometric, StageKind::oedometric, {2e5, 1e6}}};
+    const auto points = static_cast<std::size_t>(recorded_points(v.setup.spec));
+    c.stage.assign(points, 0.0);
+    for (std::size_t k = 0; k < points; ++k) {
+      c.strain.push_back(0.001 * static_cast<double>(k));
+      c.more[kSolidFraction].push_back(0.61 + 0.001 * static_cast<double>(k));
+      c.stress_axial.push_back(1e5 * static_cast<double>(k + 1));
+      c.stress_lateral.push_back(4e4 * static_cast<double>(k + 1));
+    }
+    results.push_back({&v, "", {c}, nullptr});
+  }
+  const StatePaths paths = paths_of(scene, results, states);
+  ASSERT_FALSE(paths.packings.empty());
+  for (const StatePath& p : paths.packings) {
+    EXPECT_DOUBLE_EQ(p.axial[1], 4e5) << p.name;
+    EXPECT_DOUBLE_EQ(p.lateral[1], 1.6e5) << p.name;
+    EXPECT_NEAR(p.state[1], state_of_phi(paths.form, 0.6, 0.611), 1e-12) << "states are of the density alone";
+  }
+  EXPECT_DOUBLE_EQ(paths.stages[0].modulus_stress[1], 2e6);
+  scene.youngs_modulus *= 0.5;
+  EXPECT_DOUBLE_EQ(paths_of(scene, results, states).packings.front().axial[1], 2e5);
 }
 
 /// The whole that answers as one packing is that packing again at its own onset.

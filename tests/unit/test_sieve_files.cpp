@@ -145,6 +145,9 @@ TEST(SieveFiles, OpeningsOfStandardsTellTheUnit) {
         Numbers{"0.032", "0.5", "12"}, Numbers{"0.022", "0.036", "13.2", "26.5"}})
     EXPECT_EQ(unit_of_numbers(numbers), "mm") << numbers.front() << ", " << numbers.back();
   EXPECT_EQ(unit_of_numbers({"22", "32", "36", "63", "500"}), "um");
+  // Up to 125 it may be either: sieves of 22 to 125 mm are as usual as those of 22 to 125 um.
+  EXPECT_FALSE(unit_of_numbers({"22", "36", "63", "125"}));
+  EXPECT_EQ(unit_of_numbers({"22", "36", "63", "140"}), "um");
   for (const Numbers& numbers : {Numbers{"0.063", "3.2"}, Numbers{"0.063", "0.132"}, Numbers{"0.063", "34"}})
     EXPECT_FALSE(unit_of_numbers(numbers)) << numbers.back();
 }

@@ -73,6 +73,21 @@ TEST(ThreadChoice, NothingToChooseWithOneThread) {
   EXPECT_EQ(choice.threads(), 1);
 }
 
+/// Of threads that wait all the time half as many again are too many, less what waits on a quiet machine too.
+TEST(ThreadChoice, AsManyFewerAsWait) {
+  struct Waiting {
+    double threads;
+    int left;
+  };
+  constexpr double kSeconds = 0.02;
+  for (const auto& [waiting, left] : {Waiting{0.1, 8}, {0.2, 7}, {0.65, 7}, {0.75, 7}, {0.8, 6}, {2.0, 5}, {5.0, 1}}) {
+    ThreadChoice choice(8);
+    const double waited = waiting * kSeconds;
+    choice.took({kSeconds, 8.0 * kSeconds - waited, 1.0, waited, -1.0});
+    EXPECT_EQ(choice.threads(), left) << waiting;
+  }
+}
+
 /// Two threads on two cores; of the second core another program takes every other slice, however short. The first
 /// thread begins a pass when the second one has ended the last.
 struct SharedCore {
