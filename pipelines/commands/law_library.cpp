@@ -324,6 +324,11 @@ ExitStatus get_law(const LawOptions& o) {
     answer = std::move(law.answer);
     table = std::move(law.table);
     if (const std::string means = means_text(answer); !means.empty()) remarks.push_back(means);
+    if (o.modulus.empty())
+      remarks.push_back(
+          fmt::format("the table is for E = {} MPa, and macro scenes take it from there; forces go with E "
+                      "(--E gives that of your grains)",
+                      matter.youngs_modulus / 1e6));
   }
   if (!o.out.empty()) save_law_table(table, o.out, provenance_of(o));
   if (o.json)

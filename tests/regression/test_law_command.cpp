@@ -85,6 +85,7 @@ TEST(LawCommand, OutLeavesOtherFilesAlone) {
   expect(get + directory.file("run.toml") + "'", 2, "run.h5 is there already");
   EXPECT_EQ(read_text(directory.file("run.h5")), "results");
   for (int k = 0; k < 2; ++k) expect(get + directory.file("law.toml") + "'", 0, "written: ");
+  expect(get + directory.file("law.toml") + "'", 0, "the table is for E = 0.5 MPa");
   const std::string card = "law export '" + kRoot + "/" + kCard + "' --to ";
   expect(card + "csv --out '" + notes + "'", 2, "notes.toml: is there already, is no csv export");
   for (const char* format : {"lammps-table", "csv", "json"})
