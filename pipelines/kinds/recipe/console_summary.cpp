@@ -11,15 +11,14 @@
 
 namespace softgrain {
 
-namespace {
-
-/// "544 (480 to 610)", times `unit`; measured values behind it.
 std::string value_text(const PredictedValue& v, double unit) {
   const Estimate& e = v.predicted;
   std::string text = interval_text(e.value * unit, e.low * unit, e.high * unit);
   if (v.measured) text += fmt::format(" [all grains {:.4g}]", v.measured->mean * unit);
   return text;
 }
+
+namespace {
 
 std::string stages_summary(const RecipeStages& staged) {
   constexpr double kMega = 1e-6;

@@ -271,11 +271,20 @@ namespace {
 std::vector<HeadLine> lines_of(const report::RunData& run) {
   const auto r = run.summary_as<RecipeSummary>().recipe;
   if (r.levels.empty() || !r.onset) return {};
-  return {{"Recipe", fmt::format("{} levels, largest over smallest {}; begins to carry pressure at a solid fraction of "
-                                 "{}; a cubic metre holds {} "
-                                 "grains.",
-                                 r.levels.size(), report::format_number(r.span, 3), interval_text(*r.onset),
-                                 report::format_number(r.grains_per_cubic_metre, 2))}};
+  std::vector<HeadLine> out{
+      {"Recipe",
+       fmt::format("{} levels, largest over smallest {}; begins to carry pressure at a solid fraction of {}; a "
+                   "cubic metre holds {} grains.",
+                   r.levels.size(), report::format_number(r.span, 3), interval_text(*r.onset),
+                   report::format_number(r.grains_per_cubic_metre, 2))}};
+  if (!r.staged) return out;
+  constexpr double kMega = 1e-6;
+  for (const RecipeStageSummary& s : r.staged->stages)
+    out.push_back({fmt::format("{} to {:.4g} MPa", s.name, kMega * s.stress_end),
+                   fmt::format("constrained modulus {} MPa from {:.4g} to {:.4g} MPa, K0 {}, void ratio {}.",
+                               value_text(s.secant, kMega), kMega * s.stress_from, kMega * s.stress_to,
+                               value_text(s.lateral_ratio, 1.0), value_text(s.void_ratio, 1.0))});
+  return out;
 }
 
 std::vector<RunValue> values_of(const report::RunData& run) {

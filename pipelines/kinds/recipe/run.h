@@ -33,6 +33,9 @@ KindResults recipe_results();
 /// What a run says in the terminal.
 std::string console_summary(const RecipeSummary& summary);
 
+/// "544 (480 to 610)", times `unit`; measured values behind it.
+std::string value_text(const PredictedValue& v, double unit);
+
 namespace report {
 std::string recipe_section(const RunData& run);
 }
