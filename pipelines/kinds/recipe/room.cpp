@@ -76,18 +76,23 @@ class RoomForImages {
     return setup.spec.bodies;
   }
 
-  /// Number of grains with which all packings of levels can be placed, for a message about the first that cannot.
-  std::string enough_for_all() const {
-    std::int64_t enough = 0;
+  /// Whether all packings of levels, of so many grains each, can be placed. Sizes are drawn anew for each number.
+  bool all_have_room(std::int64_t bodies) const {
     for (std::size_t v = 0; v < scene_.material.variants.size(); ++v) {
       if (scene_.material.variants[v].same_packings || scene_.checked == v) continue;
       MacroSetup setup = scene_.material.variants[v].setup;
-      while (!room_problem(setup, scene_.material.seed, "grains").empty())
-        setup.spec.bodies += std::max<std::int64_t>(1, setup.spec.bodies / 20);
-      enough = std::max(enough, setup.spec.bodies);
+      setup.spec.bodies = bodies;
+      if (!room_problem(setup, scene_.material.seed, "grains").empty()) return false;
     }
-    constexpr std::int64_t kRounded = 100;
-    return fmt::format(", {} in all packings", (enough + kRounded - 1) / kRounded * kRounded);
+    return true;
+  }
+
+  /// For a message about the first packing that has no room.
+  std::string enough_for_all() const {
+    constexpr std::int64_t kStep = 100;
+    std::int64_t bodies = scene_.material.variants.front().setup.spec.bodies / kStep * kStep + kStep;
+    while (!all_have_room(bodies)) bodies += std::max(kStep, bodies / (20 * kStep) * kStep);
+    return fmt::format(", {} in all packings", bodies);
   }
 
   const SceneTable& root_;
