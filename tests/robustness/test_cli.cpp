@@ -158,7 +158,7 @@ TEST(CommandLine, EveryOptionThatTakesAValueSaysSoWithoutOne) {
     }
   EXPECT_GT(options, 80U);
   expect("run x.toml --out --quiet", 2, "softgrain: --out: nothing follows it; give --out DIR: ");
-  expect("law get --mu 0.3 --own --out", 2, "--out: nothing follows it; give --out FILE.toml: ");
+  expect("law get --mu 0.3 --own --out", 2, "--own: nothing follows it; give --own TABLE: Law table");
 }
 
 /// A copy of a scene that comes with the program looks for its law beside it.
