@@ -48,7 +48,7 @@ ExitStatus compare_inside(const CommonOptions& options) {
   summary["candidate"] = summary["reference"] = path;
   std::string console = to_text(result);
   if (report::is_unfinished(path)) {
-    const std::string note = "the run has not come to its end: only what was there by now is compared";
+    const std::string note = "the run has not come to its end: what is there so far is compared";
     summary["remarks"].push_back(note);
     console += "note: " + note + "; run --resume goes on with it\n";
   }

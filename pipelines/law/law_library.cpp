@@ -25,7 +25,7 @@ constexpr double kReachOfHull = 0.1;
 
 double on_axis(const LibraryVariable& v, double x) {
   if (v.axis == LibraryAxis::logarithm) return std::log(x);
-  return v.axis == LibraryAxis::friction ? x / (x + kHalfFriction) : x;
+  return v.axis == LibraryAxis::friction ? on_friction_axis(x) : x;
 }
 
 /// The variable again.

@@ -26,6 +26,9 @@ struct LibraryPoint {
 enum class LibraryAxis { linear, logarithm, friction };
 inline constexpr double kHalfFriction = 0.15;  ///< friction at which half of its effect is reached
 
+/// Where friction lies on its axis.
+constexpr double on_friction_axis(double mu) { return mu / (mu + kHalfFriction); }
+
 struct LibraryVariable {
   const char* name;
   double LibraryPoint::*value;

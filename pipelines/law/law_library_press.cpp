@@ -26,7 +26,7 @@ constexpr double kReachOfPressHull = 0.25;
 constexpr std::size_t kDraws = 32;
 
 std::vector<double> coordinates(const PressNumbers& n, double friction) {
-  return {n.ln_deep, n.ln_shallow - n.ln_deep, friction / (friction + kHalfFriction)};
+  return {n.ln_deep, n.ln_shallow - n.ln_deep, on_friction_axis(friction)};
 }
 
 bool has_press_numbers(const LawLibrary& library) {

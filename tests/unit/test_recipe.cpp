@@ -418,10 +418,10 @@ TEST(RecipeScene, RaisesDefaultCountsThatHaveNoRoomAndRefusesGivenOnes) {
   const std::string none = refusal(levels, sizes + "\ncount = 1100");
   for (const char* part :
        {"count", "packing levels-1-2", "1100 grains are too few for a periodic cell",
-        "or more have room ([grains] count)", " can just be placed in every packing; levels closer", " radii of the largest"})
+        "or more have room ([grains] count)", " are enough to place every packing; levels closer", " radii of the largest"})
     EXPECT_NE(none.find(part), std::string::npos) << part << "\n" << none;
   // Grains that the first refusal asks for, in all packings, are not refused again.
-  const std::size_t end = none.find(" can just be placed in every packing");
+  const std::size_t end = none.find(" are enough to place every packing");
   const std::size_t begin = none.rfind(' ', end - 1) + 1;
   EXPECT_NO_THROW((void)read_recipe(levels, sizes + "\ncount = " + none.substr(begin, end - begin))) << none;
   for (const char* part : {"boundary", "macro:"}) EXPECT_EQ(none.find(part), std::string::npos) << none;

@@ -92,7 +92,7 @@ class RoomForImages {
     constexpr std::int64_t kStep = 100;
     std::int64_t bodies = scene_.material.variants.front().setup.spec.bodies / kStep * kStep + kStep;
     while (!all_have_room(bodies)) bodies += std::max(kStep, bodies / (20 * kStep) * kStep);
-    return fmt::format("; {} can just be placed in every packing", bodies);
+    return fmt::format("; {} are enough to place every packing", bodies);
   }
 
   const SceneTable& root_;
