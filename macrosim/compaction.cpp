@@ -3,14 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "common/core/error.h"
 #include "common/core/particles.h"
+#include "common/data/attributes.h"
+#include "common/data/rows.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/time_step.h"
 #include "common/dynamics/verlet.h"
 #include "common/io/interrupt.h"
 #include "common/neighbours/verlet_list.h"
+#include "common/state/system_io.h"
 #include "macrosim/grain_materials.h"
 #include "macrosim/placed_spheres.h"
 #include "macrosim/preparation.h"
@@ -26,10 +31,13 @@ double mean_radius(const System3& s) {
   return sum / s.particles.grains;
 }
 
-DampedOptions options_under(double pressure, const HardBodies& hard, const MacroSpec& spec, bool last) {
+double load_under(double pressure, const HardBodies& hard) {
   const Vec3 size = hard.size();
-  return pressing_options(spec, last, pressure * size[0] * size[1], hard.system.particles.grains,
-                          mean_radius(hard.system));
+  return pressure * size[0] * size[1];
+}
+
+DampedOptions options_under(double load, const HardBodies& hard, const MacroSpec& spec, bool last) {
+  return pressing_options(spec, last, load, hard.system.particles.grains, mean_radius(hard.system));
 }
 
 [[noreturn]] void not_jammed(const MacroSpec& spec, HardBodies& hard, const RelaxationResult& rest) {
@@ -74,20 +82,131 @@ class PressingProgress {
   double to_close_ = 0.0;
 };
 
+/// Where a preparation under way stands, beside its hard bodies.
+struct PreparationState {
+  bool coarse = false;           ///< the coarse bodies of "dense", which jam by themselves
+  MacroPacking begun;            ///< what the step began with
+  bool presses = false;          ///< the step: whether the box is pressed, or shrinks
+  double over = 1.0;             ///< pressure over the one asked for
+  double load = 0.0;             ///< on a face of the box as it was when this pressure began [N]
+  double seconds = 0.0;          ///< of the step so far
+  PressedBox::Motion box{};      ///< of a box that is pressed
+  RelaxationState relaxation{};  ///< of the bodies in it
+};
+
+void state_fields(auto&& visit, auto& s) {
+  visit("coarse", s.coarse);
+  visit("presses", s.presses);
+  visit("over", s.over);
+  visit("load", s.load);
+  visit("seconds", s.seconds);
+  visit("resisted_at", s.box.resisted_at);
+  visit("passes", s.relaxation.so_far.passes);
+  visit("fire_step", s.relaxation.fire.step);
+  visit("fire_mixing", s.relaxation.fire.mixing);
+  visit("fire_downhill", s.relaxation.fire.downhill);
+}
+
+constexpr auto kBoxMotion = [](auto&& visit, auto& motion) {
+  visit(motion.velocity);
+  visit(motion.strained);
+  visit(motion.resisted);
+};
+
+void write_state(const h5::Group& group, const PreparationState& state, const System3& system) {
+  state_fields(AttributeWriter{group}, state);
+  write_macro_packing(group.create("begun"), state.begun);
+  write_system(group.create("system"), system);
+  if (!state.presses) return;
+  write_row(group, "box_motion", state.box, kBoxMotion);
+  const BodyStiffness& stiffness = state.relaxation.stiffness;
+  group.write("translation", stiffness.translation);
+  group.write("rotation", stiffness.rotation);
+  group.write("force", stiffness.force);
+  group.write("contacts", std::vector<std::int64_t>(stiffness.contacts.begin(), stiffness.contacts.end()));
+}
+
+/// All but the system, which needs its laws first.
+void read_state(const h5::Group& group, PreparationState& state) {
+  state_fields(AttributeReader{group}, state);
+  state.begun = read_macro_packing(group.open("begun"));
+  if (!state.presses) return;
+  read_row(group, "box_motion", state.box, kBoxMotion);
+  BodyStiffness& stiffness = state.relaxation.stiffness;
+  stiffness.translation = group.doubles("translation");
+  stiffness.rotation = group.doubles("rotation");
+  stiffness.force = group.doubles("force");
+  for (const std::int64_t n : group.integers("contacts")) stiffness.contacts.push_back(static_cast<std::int32_t>(n));
+}
+
+std::optional<PreparationState> kept_state(const PreparationWatch& watch) {
+  std::optional<PreparationState> kept;
+  if (watch.keeper != nullptr)
+    watch.keeper->load([&kept](const h5::Group& group) { read_state(group, kept.emplace()); });
+  return kept;
+}
+
+/// The hard bodies of one step of a preparation, begun with a packing or taken up where they were kept.
+class PreparationStep {
+ public:
+  PreparationStep(const MacroSpec& spec, PreparationState begins, bool taken_up, double friction, double restitution,
+                  PreparationKeeper* keeper)
+      : state(std::move(begins)),
+        hard(spec, state.begun, friction, restitution),
+        keeper_(keeper),
+        taken_up_(taken_up) {}
+
+  /// Whether it went on from a state that was kept; what comes from the beginning of the step has to be known before.
+  bool take_up() {
+    if (!taken_up_) return false;
+    keeper_->load([this](const h5::Group& group) { read_system(group.open("system"), hard.system); });
+    hard.seconds_before = state.seconds;
+    return true;
+  }
+  /// Whether the state is to be kept now: it is time, or a signal came.
+  [[nodiscard]] bool is_due() const { return keeper_ != nullptr && (interrupt_requested() || keeper_->due()); }
+  void keep() {
+    state.seconds = hard.seconds();
+    keeper_->save([this](const h5::Group& group) { write_state(group, state, hard.system); });
+  }
+
+  PreparationState state;
+  HardBodies hard;
+
+ private:
+  PreparationKeeper* keeper_;
+  bool taken_up_;
+};
+
 /// Relaxes bodies and walls together under a pressure that falls to the one asked for.
-void press(HardBodies& hard, const MacroSpec& spec, double first, const PreparationWatch& watch) {
+void press(PreparationStep& step, const MacroSpec& spec, double first, const PreparationWatch& watch) {
+  HardBodies& hard = step.hard;
+  PreparationState& state = step.state;
   const double asked = spec.start_pressure * spec.youngs_modulus;
   const PressingProgress progress(hard, first);
-  for (double over = std::max(first, 1.0);; over = std::max(1.0, over * kPressureFall)) {
-    const bool last = over <= 1.0;
-    const double pressure = over * asked;
+  bool taken_up = step.take_up();
+  if (!taken_up) state.over = std::max(first, 1.0);
+  for (;; state.over = std::max(1.0, state.over * kPressureFall)) {
+    const bool last = state.over <= 1.0;
+    const double pressure = state.over * asked;
     BoxControl control{{true, true, true}, {{pressure, pressure, pressure}}, true};
-    const DampedOptions options = options_under(pressure, hard, spec, last);
+    if (!taken_up) state.load = load_under(pressure, hard);
+    const DampedOptions options = options_under(state.load, hard, spec, last);
     control.tolerance = pressing_stress_tolerance(spec, last);
     PressedBox walls(hard.box, control, [&](const RelaxationResult& so_far) {
-      if (watch) watch(progress.at(hard, over, so_far.residual, options.tolerance));
+      watch(progress.at(hard, state.over, so_far.residual, options.tolerance));
     });
-    const RelaxationResult rest = DampedRelaxation<3>(options).relax(hard.system, walls);
+    if (taken_up) walls.go_on_with(state.box);
+    const RelaxationState from = taken_up ? std::move(state.relaxation) : RelaxationState{};
+    const auto keep = [&](const RelaxationState& now) {
+      if (!step.is_due()) return;
+      state.box = walls.motion();
+      state.relaxation = now;
+      step.keep();
+    };
+    const RelaxationResult rest =
+        DampedRelaxation<3>(options).relax(hard.system, walls, {taken_up ? &from : nullptr, keep});
+    taken_up = false;
     if (last && rest.end != RelaxationEnd::converged) not_jammed(spec, hard, rest);
     if (last) return;
   }
@@ -115,17 +234,20 @@ double step_at(const HardBodies& hard, double pressure, double rate, const Macro
 
 /// Shrinks the box at the rate of the inertial number until its walls bear the pressure, in the mean over a little
 /// time.
-void shrink(MacroPacking& packing, const MacroSpec& spec, const PreparationWatch& watch) {
+void shrink(PreparationStep& step, const MacroSpec& spec, const PreparationWatch& watch) {
   constexpr int kWindow = 50;  ///< steps
-  HardBodies hard(spec, packing, spec.protocol.friction, spec.protocol.restitution);
+  HardBodies& hard = step.hard;
   const double pressure = spec.start_pressure * spec.youngs_modulus;
   const double diameter = 2.0 * mean_radius(hard.system);
   const double rate = spec.protocol.inertial_number / (diameter * std::sqrt(spec.density / pressure));
   const double start = hard.fraction();
-  set_velocities(hard, rate, true);
   VelocityVerlet<3> motion(step_at(hard, pressure, rate, spec));
-  motion.initialise(hard.system);
+  if (!step.take_up()) {
+    set_velocities(hard, rate, true);
+    motion.initialise(hard.system);
+  }
   for (double mean = 0.0; mean < pressure;) {
+    if (step.is_due()) step.keep();
     stop_if_interrupted("compacting");
     set_velocities(hard, rate, false);
     mean = 0.0;
@@ -137,9 +259,8 @@ void shrink(MacroPacking& packing, const MacroSpec& spec, const PreparationWatch
     if (!(now < 1.0))
       throw UnusableResult(fmt::format("{}: bodies fill {:.4f} of the box, whose walls bear {:.3g} E",
                                        not_jammed_text(spec), now, mean / spec.youngs_modulus));
-    if (watch) watch(std::min(0.8, 0.8 * std::log(now / start) / std::log(0.62 / std::min(start, 0.6))));
+    watch(std::min(0.8, 0.8 * std::log(now / start) / std::log(0.62 / std::min(start, 0.6))));
   }
-  hard.take_over(packing);
 }
 
 /// Fines at random places between the coarse bodies, their radii times the share that is returned, which is as small
@@ -182,7 +303,7 @@ double grow_fines(MacroPacking& packing, const MacroSpec& spec, std::size_t coar
   HardBodies hard(spec, packing);
   for (std::size_t u = 0; u < coarse; ++u) hard.system.particles.inverse_mass[u] = 0.0;
   const double most = spec.protocol.first_pressure * spec.start_pressure * spec.youngs_modulus;
-  DampedOptions options = options_under(most, hard, spec, false);
+  DampedOptions options = options_under(load_under(most, hard), hard, spec, false);
   options.max_passes = kPasses;
   const double first = share;
   for (;;) {
@@ -191,7 +312,7 @@ double grow_fines(MacroPacking& packing, const MacroSpec& spec, std::size_t coar
     rebuild_neighbours(hard.system);
     DampedRelaxation<3>(options).relax(hard.system);
     share = next;
-    if (watch) watch(0.3 * (1.0 - std::log(share) / std::log(first)));
+    watch(0.3 * (1.0 - std::log(share) / std::log(first)));
     if (share >= 1.0 || contact_stress(hard.system, hard.box)[0] > most) break;
   }
   hard.take_over(packing);
@@ -200,18 +321,34 @@ double grow_fines(MacroPacking& packing, const MacroSpec& spec, std::size_t coar
 
 }  // namespace
 
-void bring_into_touch(const MacroSpec& spec, MacroPacking& packing, const PreparationWatch& watch) {
+void bring_into_touch(const MacroSpec& spec, MacroPacking& packing, const PreparationWatch& watch, bool coarse) {
   const bool moves = spec.protocol.inertial_number > 0.0;
-  if (moves) shrink(packing, spec, watch);
-  HardBodies hard(spec, packing, spec.protocol.friction);
-  press(hard, spec, spec.protocol.first_pressure, [&](double share) {
-    if (watch) watch(moves ? 0.8 + 0.2 * share : share);
+  std::optional<PreparationState> kept = kept_state(watch);
+  if (kept && kept->coarse != coarse) kept.reset();
+  if (kept) packing = kept->begun;
+  const auto take_step = [&](bool presses, double restitution, const auto& go) {
+    const bool taken_up = kept && kept->presses == presses;
+    PreparationState begins{coarse, packing, presses};
+    PreparationStep step(spec, taken_up ? *std::exchange(kept, {}) : std::move(begins), taken_up,
+                         spec.protocol.friction, restitution, watch.keeper);
+    go(step);
+    step.hard.take_over(packing);
+  };
+  if (moves && !(kept && kept->presses))
+    take_step(false, spec.protocol.restitution, [&](PreparationStep& step) { shrink(step, spec, watch); });
+  take_step(true, 1.0, [&](PreparationStep& step) {
+    press(step, spec, spec.protocol.first_pressure, moves ? watch.part(0.8, 0.2) : watch);
   });
-  hard.take_over(packing);
 }
 
 MacroPacking pack_densely(const MacroSpec& spec, std::vector<MacroBody> bodies, std::uint64_t seed,
                           std::uint64_t sample, const PreparationWatch& watch) {
+  const PreparationWatch last = watch.part(0.5, 0.5);
+  if (const auto kept = kept_state(watch); kept && !kept->coarse) {
+    MacroPacking packing = kept->begun;
+    bring_into_touch(spec, packing, last);
+    return packing;
+  }
   double all = 0.0;
   for (const MacroBody& b : bodies) all += cube(b.r);
   std::size_t coarse = 0;
@@ -220,23 +357,18 @@ MacroPacking pack_densely(const MacroSpec& spec, std::vector<MacroBody> bodies, 
   std::vector<MacroBody> fines(bodies.begin() + static_cast<std::ptrdiff_t>(coarse), bodies.end());
   bodies.resize(coarse);
   MacroPacking packing = place_loosely(std::move(bodies), seed, sample, spec.protocol.start_fraction, spec.boundary);
-  const auto from = [&](double begin, double length) {
-    return [&watch, begin, length](double share) {
-      if (watch) watch(begin + length * share);
-    };
-  };
-  bring_into_touch(spec, packing, from(0.0, 0.2));
+  bring_into_touch(spec, packing, watch.part(0.0, 0.2), true);
   if (fines.empty()) return packing;
   RandomStream random(seed, kMacroFines, sample);
   const double share =
       place_fines(packing.bodies, fines, packing.low, packing.size()[0], spec.boundary == Boundary::periodic, random);
   packing.bodies.insert(packing.bodies.end(), fines.begin(), fines.end());
-  const double grown = grow_fines(packing, spec, coarse, share, from(0.2, 0.3));
+  const double grown = grow_fines(packing, spec, coarse, share, watch.part(0.2, 0.3));
   // What did not find room has it in a box that is as much wider.
   packing.low = packing.low * (1.0 / grown);
   packing.high = packing.high * (1.0 / grown);
   for (MacroBody& b : packing.bodies) b.x = b.x * (1.0 / grown);
-  bring_into_touch(spec, packing, from(0.5, 0.5));
+  bring_into_touch(spec, packing, last);
   return packing;
 }
 

@@ -64,8 +64,33 @@ std::vector<BodySpring> springs_of_test(const MacroSpec& spec, const MacroPackin
 /// Whether any contact has rolled against a resistance.
 bool any_rolls(const std::vector<BodySpring>& springs);
 
-/// Told the share of a preparation that is done.
-using PreparationWatch = std::function<void(double share)>;
+/// Where a preparation keeps what it has come to, so that a run that is stopped goes on from there in the same bits.
+class PreparationKeeper {
+ public:
+  virtual ~PreparationKeeper() = default;
+  /// Whether it is time to keep it.
+  virtual bool due() = 0;
+  virtual void save(const std::function<void(const h5::Group&)>& write) = 0;
+  /// Calls `read` with what was kept last; never where nothing was.
+  virtual void load(const std::function<void(const h5::Group&)>& read) = 0;
+};
+
+/// Who looks at a preparation: is told the share that is done, and keeps its states. Either may be missing.
+struct PreparationWatch {
+  std::function<void(double share)> progress{};
+  PreparationKeeper* keeper = nullptr;
+
+  void operator()(double share) const {
+    if (progress) progress(share);
+  }
+  /// The same for a part of it, which begins at one share and takes another.
+  [[nodiscard]] PreparationWatch part(double begin, double length) const {
+    return {[tell = progress, begin, length](double share) {
+              if (tell) tell(begin + length * share);
+            },
+            keeper};
+  }
+};
 
 /// Draws bodies, places them at random without overlap, and compacts them isotropically as hard grains by spec.protocol
 /// until the wall pressure is start_pressure * E; with preparation "lammps" there is no compaction. Throws InputError

@@ -210,7 +210,7 @@ void HardBodies::take_over(MacroPacking& packing) const {
   packing.high = box_high(system, box);
   for (std::size_t k = 0; k < packing.bodies.size(); ++k) packing.bodies[k].x = system.particles.sphere[k].x;
   packing.springs = springs();
-  packing.cost += {system.cost.loop_passes, system.cost.contact_evaluations, watch_.seconds()};
+  packing.cost += {system.cost.loop_passes, system.cost.contact_evaluations, seconds()};
 }
 
 }  // namespace softgrain

@@ -72,8 +72,10 @@ std::string not_jammed_text(const MacroSpec& spec);
 AnyLaw hard_law(const MacroSpec& spec);
 
 /// Isotropic compaction of all bodies as hard grains by spec.protocol until the wall pressure is start_pressure * E.
-/// What it took is added to packing.cost. Throws UnusableResult, saying what was reached, when it does not jam.
-void bring_into_touch(const MacroSpec& spec, MacroPacking& packing, const PreparationWatch& watch = {});
+/// What it took is added to packing.cost. Goes on from what watch.keeper kept, in the same bits; `coarse`: these are
+/// the coarse bodies of "dense". Throws UnusableResult, saying what was reached, when it does not jam.
+void bring_into_touch(const MacroSpec& spec, MacroPacking& packing, const PreparationWatch& watch = {},
+                      bool coarse = false);
 
 /// The whole of "dense": bodies are given largest first, without places. Throws UnusableResult.
 MacroPacking pack_densely(const MacroSpec& spec, std::vector<MacroBody> bodies, std::uint64_t seed,
@@ -106,6 +108,7 @@ DampedOptions pressing_options(const MacroSpec& spec, bool last, double load, do
 struct HardBodies {
   System3 system;
   Box box;
+  double seconds_before = 0.0;  ///< what it took before it was taken up from a file
 
   explicit HardBodies(const MacroSpec& spec, const MacroPacking& packing, double friction = 0.0,
                       double restitution = 1.0);
@@ -115,6 +118,7 @@ struct HardBodies {
   [[nodiscard]] Vec3 size() const { return box_high(system, box) - box_low(system, box); }
   [[nodiscard]] double pressure();        ///< mean stress of all axes in the last pass [Pa]
   [[nodiscard]] double fraction() const;  ///< share of the box that bodies fill
+  [[nodiscard]] double seconds() const { return seconds_before + watch_.seconds(); }
   /// Copies the places of bodies, the springs and the box to the packing, and adds the cost.
   void take_over(MacroPacking& packing) const;
 

@@ -37,6 +37,21 @@ class PressedBox : public RelaxingFrame<3> {
     if (watch_) watch_(so_far);
   }
 
+  /// What it needs to go on, beside the system.
+  struct Motion {
+    Vec3 velocity{};
+    Vec3 strained{};
+    Vec3 resisted{};
+    std::int64_t resisted_at = -1;
+  };
+  [[nodiscard]] Motion motion() const { return {velocity_, strained_, resisted_, resisted_at_}; }
+  void go_on_with(const Motion& motion) {
+    velocity_ = motion.velocity;
+    strained_ = motion.strained;
+    resisted_ = motion.resisted;
+    resisted_at_ = motion.resisted_at;
+  }
+
  private:
   void make_alike(Vec3& a) const;
   static double largest_of(const Vec3& a) { return std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])}); }

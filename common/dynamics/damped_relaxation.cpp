@@ -32,17 +32,17 @@ void DampedRelaxation<D>::scale_masses(System<D>& s, RelaxingFrame<D>* frame) {
   const auto& p = s.particles;
   inverse_mass_.assign(static_cast<std::size_t>(p.size()), 0.0);
   inverse_inertia_.assign(static_cast<std::size_t>(p.size()), 0.0);
-  const StiffnessSums sums(p, stiffness_);
+  const StiffnessSums sums(p, state_.stiffness);
   const PseudoMasses masses(sums.stiffness, sums.radii, options_.least_stiffness,
                             sums.stiffness > 0.0 ? 0.0 : worst_net_force(p));
   in_pieces(inverse_mass_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t u = begin; u < end; ++u) {
       const double r = p.sphere[u].r;
-      if (p.inverse_mass[u] > 0.0) inverse_mass_[u] = masses.inverse_mass(stiffness_.translation[u], r);
-      if (p.inverse_inertia[u] > 0.0) inverse_inertia_[u] = masses.inverse_inertia(stiffness_.rotation[u], r);
+      if (p.inverse_mass[u] > 0.0) inverse_mass_[u] = masses.inverse_mass(state_.stiffness.translation[u], r);
+      if (p.inverse_inertia[u] > 0.0) inverse_inertia_[u] = masses.inverse_inertia(state_.stiffness.rotation[u], r);
     }
   });
-  if (frame != nullptr) frame->scale_masses(s, stiffness_, masses);
+  if (frame != nullptr) frame->scale_masses(s, state_.stiffness, masses);
 }
 
 template <int D>
@@ -73,7 +73,7 @@ Fire::Steering DampedRelaxation<D>::steer(System<D>& s, RelaxingFrame<D>* frame)
       piece_threads(s));
   typical_speed_ = std::sqrt(sums.relative2 / static_cast<double>(inverse_mass_.size()));
   if (frame != nullptr) static_cast<typename RelaxingFrame<D>::Sums&>(sums) += frame->feel(s);
-  const Fire::Steering steering = fire_.steer(sums.power, sums.speed2, sums.pull2);
+  const Fire::Steering steering = state_.fire.steer(sums.power, sums.speed2, sums.pull2);
   if (frame != nullptr) frame->steer(steering.keep, steering.pull);
   return steering;
 }
@@ -81,7 +81,7 @@ Fire::Steering DampedRelaxation<D>::steer(System<D>& s, RelaxingFrame<D>* frame)
 template <int D>
 double DampedRelaxation<D>::longest_move(std::int64_t pass) const {
   if (!std::isfinite(options_.max_lead)) return options_.max_move;
-  return MoveLimit{options_.max_move, options_.max_lead}.at(fire_.step * typical_speed_, pass);
+  return MoveLimit{options_.max_move, options_.max_lead}.at(state_.fire.step * typical_speed_, pass);
 }
 
 template <int D>
@@ -89,7 +89,7 @@ double DampedRelaxation<D>::move(System<D>& s, const Fire::Steering& steering, d
                                  std::size_t end) {
   auto& p = s.particles;
   const SkinUse<D> use(s);
-  const double fastest = longest / fire_.step;
+  const double fastest = longest / state_.fire.step;
   double used2 = 0.0;
   for (std::size_t u = begin; u < end; ++u) {
     Quad velocity = quad_of(p.velocity[u]);
@@ -98,9 +98,9 @@ double DampedRelaxation<D>::move(System<D>& s, const Fire::Steering& steering, d
     if (!steering.stop) velocity = velocity * steering.keep + force * (steering.pull * inverse_mass_[u]);
     if (inverse_mass_[u] > 0.0) {
       if (steering.stop) velocity = Quad{};
-      velocity += force * (fire_.step * inverse_mass_[u]);
+      velocity += force * (state_.fire.step * inverse_mass_[u]);
       limit_length<D>(velocity, fastest * p.sphere[u].r);
-      p.sphere[u].x += vec_of<D>(velocity) * fire_.step;
+      p.sphere[u].x += vec_of<D>(velocity) * state_.fire.step;
       used2 = std::max(used2, use.rate2(s, u, vec_of<D>(velocity)));
     }
     store(p.velocity[u], velocity);
@@ -121,8 +121,8 @@ void DampedRelaxation<D>::turn(Particles<D>& p, const Fire::Steering& steering, 
     if (!steering.stop) spin = spin * steering.keep + torque * (steering.pull * inverse_inertia_[u]);
     if (inverse_inertia_[u] > 0.0) {
       if (steering.stop) spin = Quad{};
-      spin += torque * (fire_.step * inverse_inertia_[u]);
-      limit_length<kRot<D>>(spin, options_.max_move / fire_.step);
+      spin += torque * (state_.fire.step * inverse_inertia_[u]);
+      limit_length<kRot<D>>(spin, options_.max_move / state_.fire.step);
     }
     store(p.spin[u], spin);
   }
@@ -134,7 +134,7 @@ void DampedRelaxation<D>::move_all(System<D>& s, const Fire::Steering& steering,
   const double used2 = joined_in_pieces<double>(
       inverse_mass_.size(), [&](std::size_t begin, std::size_t end) { return move(s, steering, longest, begin, end); },
       [](double& most, double piece) { most = std::max(most, piece); }, piece_threads(s));
-  watch_.moved(fire_.step * std::sqrt(used2));
+  watch_.moved(state_.fire.step * std::sqrt(used2));
 }
 
 /// Whether convergence is checked after this many passes.
@@ -144,20 +144,28 @@ bool DampedRelaxation<D>::checks_convergence(std::int64_t passes) const {
 }
 
 template <int D>
-RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* frame) {
-  RelaxationResult result;
-  PassThreads threads(s.particles.sphere.size());
+void DampedRelaxation<D>::begin(System<D>& s) {
+  state_ = {};
   stop_motion(s.particles);
+  force_pass(s, 0.0, state_.stiffness, History::none);
+  add_gravity(s);
+}
+
+template <int D>
+RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* frame, const RelaxationKeeping& keeping) {
+  RelaxationResult& result = state_.so_far;
+  PassThreads threads(s.particles.sphere.size());
   const auto& turn = s.particles.inverse_inertia;
   turns_ = std::any_of(turn.begin(), turn.end(), [](double inverse) { return inverse > 0.0; });
-  fire_ = {};
   const bool flows = !(s.cell.velocity_gradient == Matrix<D>{});  // which time in here does not drive
-  force_pass(s, 0.0, stiffness_, History::none);
+  if (keeping.from == nullptr)
+    begin(s);
+  else
+    state_ = *keeping.from;
   watch_.forget();
-  add_gravity(s);
   for (;;) {
     if (checks_convergence(result.passes)) {
-      const double scale = std::max(stiffness_.mean_force(), options_.force_floor);
+      const double scale = std::max(state_.stiffness.mean_force(), options_.force_floor);
       const double worst = worst_net_force(s.particles, options_.unbalanced_fraction);
       result.residual = scale > 0.0 ? worst / scale : 0.0;
       if (!std::isfinite(worst))
@@ -168,19 +176,20 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* fram
         result.end = RelaxationEnd::capped;
       if (frame != nullptr) frame->see(result);
       if (result.end != RelaxationEnd::not_run) break;
+      if (keeping.state_is) keeping.state_is(state_);
       stop_if_interrupted("relaxing");
       if (result.passes > 0) threads.passed(kMassInterval, s.contacts.size());
       scale_masses(s, frame);
     }
     const Fire::Steering steering = steer(s, frame);
     move_all(s, steering, result.passes);
-    if (frame != nullptr) frame->carry(s, fire_.step);
+    if (frame != nullptr) frame->carry(s, state_.fire.step);
     if (frame != nullptr || flows) watch_.forget();
     watch_.require_list(s);
     if (checks_convergence(result.passes + 1))
-      add_contact_forces(s, fire_.step, stiffness_, History::advance);
+      add_contact_forces(s, state_.fire.step, state_.stiffness, History::advance);
     else
-      add_contact_forces(s, fire_.step, History::advance);
+      add_contact_forces(s, state_.fire.step, History::advance);
     if (frame != nullptr) frame->release(s);
     add_gravity(s);
     ++result.passes;

@@ -2,6 +2,7 @@
 // contact laws, friction included, without physical inertia.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -61,6 +62,19 @@ class RelaxingFrame {
   virtual void see(const RelaxationResult& /*so_far*/) {}
 };
 
+/// What a relaxation under way needs to go on in the same bits, beside the system and the frame.
+struct RelaxationState {
+  RelaxationResult so_far;
+  Fire fire;
+  BodyStiffness stiffness;  ///< of the last pass
+};
+
+/// How a relaxation is kept from being lost.
+struct RelaxationKeeping {
+  const RelaxationState* from = nullptr;                   ///< goes on from there; null: begins
+  std::function<void(const RelaxationState&)> state_is{};  ///< told at every test for convergence that does not end it
+};
+
 /// Every body gets the pseudo-mass of its own stiffness (sum over its contacts), so that all grains relax at one rate
 /// whatever their size. Damping adapts to the motion (FIRE, Bitzek et al. 2006): velocities are steered towards the
 /// forces, the step grows while the motion goes downhill, and everything stops when it goes uphill. It acts on the
@@ -72,12 +86,15 @@ class DampedRelaxation {
   explicit DampedRelaxation(const DampedOptions& options) : options_(options) {}
 
   /// Relaxes until the tolerance is met. Leaves all velocities zero and the forces of the final state in place.
-  RelaxationResult relax(System<D>& system) { return relax(system, nullptr); }
+  RelaxationResult relax(System<D>& system) { return relax(system, nullptr, {}); }
   /// Relaxes the system together with a frame, until both are at rest.
-  RelaxationResult relax(System<D>& system, RelaxingFrame<D>& frame) { return relax(system, &frame); }
+  RelaxationResult relax(System<D>& system, RelaxingFrame<D>& frame, const RelaxationKeeping& keeping = {}) {
+    return relax(system, &frame, keeping);
+  }
 
  private:
-  RelaxationResult relax(System<D>& system, RelaxingFrame<D>* frame);
+  RelaxationResult relax(System<D>& system, RelaxingFrame<D>* frame, const RelaxationKeeping& keeping);
+  void begin(System<D>& system);
   void scale_masses(System<D>& system, RelaxingFrame<D>* frame);
   /// What Fire asks for, and the sum of squares of speeds in radii.
   struct BodySums : RelaxingFrame<D>::Sums {
@@ -102,12 +119,11 @@ class DampedRelaxation {
   void move_all(System<D>& system, const Fire::Steering& steering, std::int64_t pass);
 
   DampedOptions options_;
-  BodyStiffness stiffness_;
   std::vector<double> inverse_mass_;  ///< pseudo, per body
   std::vector<double> inverse_inertia_;
   bool turns_ = true;           ///< some body can
   double typical_speed_ = 0.0;  ///< root mean square speed in radii, where moves are limited by it [1/s]
-  Fire fire_;
+  RelaxationState state_;
   ListWatch<D> watch_;
 };
 

@@ -327,7 +327,7 @@ TEST(MacroPreparation, TwinsBeginWithTheSpringsThatItLeft) {
 TEST(MacroPreparation, TellsHowFarItIs) {
   for (const Preparation p : {Preparation::frictionless, Preparation::fast, Preparation::dense}) {
     std::vector<double> shares;
-    (void)make_macro_packing(prepared_by(p, 60), 1, 0, [&](double share) { shares.push_back(share); });
+    (void)make_macro_packing(prepared_by(p, 60), 1, 0, {[&](double share) { shares.push_back(share); }});
     ASSERT_GT(shares.size(), 10U);
     EXPECT_LT(shares[0], 0.3);
     EXPECT_GT(shares.back(), 0.9);

@@ -1,9 +1,11 @@
 // A run that is taken up at any moment at which it can be saved, between recorded points too, ends in the same bits.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "common/contact/make_laws.h"
 #include "common/state/system_io.h"
 #include "macrosim/compression.h"
+#include "macrosim/preparation.h"
 #include "microsim/measure.h"
 #include "microsim/shell_packing.h"
 #include "tests/support/multi_contact.h"
@@ -74,6 +76,71 @@ TEST(RestartBetweenPoints, AMeasurementGoesOnFromEveryRotation) {
     for (MeasurementState& state : saved) {
       measure(state, plan, *protocol);
       expect_same(whole.run, state.run);
+    }
+  }
+}
+
+/// Keeps every fourth state of a preparation in a file of its own, or takes up one of them.
+class FourthStates : public PreparationKeeper {
+ public:
+  explicit FourthStates(std::string folder, std::int64_t from = -1) : folder_(std::move(folder)), from_(from) {}
+
+  bool due() override { return from_ < 0 && asked_++ % 4 == 0; }
+  void save(const std::function<void(const h5::Group&)>& write) override {
+    h5::AtomicFile file(path(count_++));
+    write(file.root());
+    file.commit();
+  }
+  void load(const std::function<void(const h5::Group&)>& read) override {
+    if (from_ >= 0) read(h5::open_file(path(from_)));
+  }
+  [[nodiscard]] std::int64_t count() const { return count_; }
+
+ private:
+  [[nodiscard]] std::string path(std::int64_t k) const { return folder_ + "/" + std::to_string(k) + ".h5"; }
+
+  std::string folder_;
+  std::int64_t from_;
+  std::int64_t asked_ = 0;
+  std::int64_t count_ = 0;
+};
+
+void expect_same(const MacroPacking& a, const MacroPacking& b) {
+  EXPECT_EQ(a.low, b.low);
+  EXPECT_EQ(a.high, b.high);
+  ASSERT_EQ(a.bodies.size(), b.bodies.size());
+  for (std::size_t k = 0; k < a.bodies.size(); ++k) {
+    EXPECT_EQ(a.bodies[k].x, b.bodies[k].x);
+    EXPECT_EQ(a.bodies[k].r, b.bodies[k].r);
+  }
+  ASSERT_EQ(a.springs.size(), b.springs.size());
+  for (std::size_t k = 0; k < a.springs.size(); ++k) EXPECT_EQ(a.springs[k].spring, b.springs[k].spring);
+  expect_same(a.cost, b.cost);
+}
+
+/// By shrinking and pressing, by falling pressures, with fines that grow between coarse bodies; in boxes of both kinds.
+TEST(RestartBetweenPoints, APreparationGoesOnFromStatesUnderWay) {
+  for (const Preparation preparation : {Preparation::fast, Preparation::frictionless, Preparation::dense}) {
+    for (const Boundary boundary : {Boundary::walls, Boundary::periodic}) {
+      MacroSpec spec;
+      spec.boundary = boundary;
+      spec.bodies = 60;
+      spec.preparation = preparation;
+      spec.protocol = protocol_of(preparation, 0.3);
+      spec.friction = spec.wall_friction = 0.3;
+      const TemporaryDirectory folder;
+      FourthStates states(folder.file(""));
+      const MacroPacking whole = make_macro_packing(spec, 1, 0, {{}, &states});
+      EXPECT_EQ(whole.springs.empty(), preparation != Preparation::fast);
+      expect_same(whole, make_macro_packing(spec, 1, 0));
+      ASSERT_GT(states.count(), 20);
+      constexpr std::int64_t kTried = 12;
+      for (std::int64_t k = 0; k < kTried; ++k) {
+        SCOPED_TRACE(fmt::format("{}, {}, state {} of {}", to_string(preparation), to_string(boundary),
+                                 k * (states.count() - 1) / (kTried - 1), states.count()));
+        FourthStates one(folder.file(""), k * (states.count() - 1) / (kTried - 1));
+        expect_same(whole, make_macro_packing(spec, 1, 0, {{}, &one}));
+      }
     }
   }
 }

@@ -98,10 +98,11 @@ PreparationTrial try_preparation(const MacroSpec& spec, std::uint64_t seed) {
   const double start = thread_seconds();
   const double seconds = core_seconds_of([&] {
     try {
-      out.packing = make_packing(spec, seed, 0, [&](double done) {
+      const auto watch = [&](double done) {
         share = done;
         if (thread_seconds() - start > kBudget && done > 0.0) throw TrialOver{};
-      });
+      };
+      out.packing = make_packing(spec, seed, 0, {watch});
     } catch (const TrialOver&) {
     }
   });

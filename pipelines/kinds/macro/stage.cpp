@@ -267,6 +267,39 @@ RunOutcome run_one(const Stage& stage, std::int64_t sample, const Engine& engine
   return out;
 }
 
+/// Keeps preparations under way among the tasks of a run. Writing takes at most a twentieth of the time.
+class KeptPreparation : public PreparationKeeper {
+ public:
+  KeptPreparation(const TaskStore& store, const std::string& task)
+      : store_(store), task_(task + "-under-way"), due_(store.seconds()) {}
+
+  bool due() override { return due_.due(); }
+  void save(const std::function<void(const h5::Group&)>& write) override {
+    const Stopwatch watch;
+    store_.save(task_, write);
+    constexpr double kShare = 0.05;
+    due_ = CheckpointClock(std::max(store_.seconds(), watch.seconds() / kShare));
+  }
+  void load(const std::function<void(const h5::Group&)>& read) override { store_.load(task_, read); }
+  void remove() { store_.remove(task_); }
+
+ private:
+  const TaskStore& store_;
+  std::string task_;
+  CheckpointClock due_;
+};
+
+/// A packing, made now if it is not kept under its key; `task` is what the run keeps it as.
+MacroPacking prepared_packing(const MacroSpec& spec, const Run& run, std::uint64_t sample, const std::string& task,
+                              const std::function<void(double share)>& watch) {
+  return kept_packing(packing_key(spec, run.seed, sample), task, run, [&] {
+    KeptPreparation keeper(run.store, task);
+    MacroPacking packing = make_packing(spec, run.seed, sample, {watch, &keeper});
+    keeper.remove();
+    return packing;
+  });
+}
+
 /// Raised whenever a search would come to another packing.
 constexpr int kDensitySchema = 1;
 
@@ -278,7 +311,7 @@ double density_progress(std::int64_t tries, double share) {
 /// Prepared to the density that the setup asks for. Every try is a packing of that friction, and kept as such: a run
 /// that goes on, and a later one with another target, take the tries that they share from there.
 MacroPacking packing_of_density(const MacroSetup& setup, const Run& run, std::int64_t sample, const std::string& task,
-                                const PreparationWatch& watch) {
+                                const std::function<void(double share)>& watch) {
   const MacroSpec& spec = setup.spec;
   const DensityTarget& target = *setup.density;
   const auto number = static_cast<std::uint64_t>(sample);
@@ -289,23 +322,19 @@ MacroPacking packing_of_density(const MacroSetup& setup, const Run& run, std::in
       MacroSpec tried = spec;
       tried.protocol.friction = friction;
       ++tries;
-      return kept_packing(packing_key(tried, run.seed, number), fmt::format("{}-try-{}", task, tries), run, [&] {
-        return make_packing(tried, run.seed, number, [&](double share) {
-          if (watch) watch(density_progress(tries, share));
-        });
-      });
+      return prepared_packing(tried, run, number, fmt::format("{}-try-{}", task, tries),
+                              [&](double share) { watch(density_progress(tries, share)); });
     });
   });
 }
 
 MacroPacking sample_packing(const MacroSetup& setup, const Run& run, std::int64_t sample, const std::string& file_name,
-                            const PreparationWatch& watch) {
+                            const std::function<void(double share)>& watch) {
   if (setup.given) return *setup.given;
   const auto number = static_cast<std::uint64_t>(sample);
   const std::string task = file_name.substr(0, file_name.rfind('.')) + "-" + std::to_string(sample);
   if (setup.density) return packing_of_density(setup, run, sample, task, watch);
-  return kept_packing(packing_key(setup.spec, run.seed, number), task, run,
-                      [&] { return make_packing(setup.spec, run.seed, number, watch); });
+  return prepared_packing(setup.spec, run, number, task, watch);
 }
 
 /// All samples of all engines, in that order: engines of a kind cost about the same, and share the threads.
