@@ -102,13 +102,30 @@ double mean_square_deviation(const GaussianProcess& process, const std::vector<s
   return sum / static_cast<double>(points.size());
 }
 
-/// The point, one of `points`, whose measurement leaves the least mean square, and what it leaves.
+/// Points where a law can be determined: with an onset, its deviation added, no deeper than the deepest that was. One
+/// that was measured where none could (mu = 0.147, exponent 3.54, ratio 9.2, solid fraction 0.612) had its onset beyond
+/// the largest overlap.
+std::vector<std::vector<double>> measurable_points(const LawLibrary& library, const UnitBox& box,
+                                                   const std::vector<std::vector<double>>& points) {
+  const std::vector<std::string> names = library.names();
+  const auto k = static_cast<std::size_t>(std::ranges::find(names, kOnsetNumber) - names.begin());
+  const KnownNumber onset = known_number(library, box, k);
+  const double deepest = std::ranges::max(onset.values);
+  const std::vector<ProcessValue> predicted = predicted_number(library.checks[k], onset, points);
+  std::vector<std::vector<double>> out;
+  for (std::size_t c = 0; c < points.size(); ++c)
+    if (predicted[c].mean + predicted[c].deviation <= deepest) out.push_back(points[c]);
+  return out;
+}
+
+/// The candidate whose measurement leaves the least mean square over `points`, and what it leaves.
 std::pair<std::size_t, double> most_telling(const GaussianProcess& process, double error,
+                                            const std::vector<std::vector<double>>& candidates,
                                             const std::vector<std::vector<double>>& points) {
   std::pair<std::size_t, double> best{0, std::numeric_limits<double>::infinity()};
-  for (std::size_t c = 0; c < points.size(); ++c) {
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
     GaussianProcess then = process;
-    then.expect(points[c], error);
+    then.expect(candidates[c], error);
     if (const double left = mean_square_deviation(then, points); left < best.second) best = {c, left};
   }
   return best;
@@ -143,11 +160,12 @@ NextMaterials next_materials(const LawLibrary& library, int count) {
   const double error = quantile(force.errors, 0.5);
   const double widened = library.checks.front().factor;
   const std::vector<std::vector<double>> points = served_points(box);
-  if (points.empty()) throw InputError("law library: its materials lie in too small a part of their ranges");
+  const std::vector<std::vector<double>> candidates = measurable_points(library, box, points);
+  if (candidates.empty()) throw InputError("law library: its materials lie in too small a part of their ranges");
   NextMaterials out{widened * std::sqrt(mean_square_deviation(process, points)), {}};
   for (int k = 0; k < count; ++k) {
-    const auto [best, left] = most_telling(process, error, points);
-    const std::vector<double>& u = points[best];
+    const auto [best, left] = most_telling(process, error, candidates, points);
+    const std::vector<double>& u = candidates[best];
     out.materials.push_back({material_at(box, u), trials_at(library, box, u), widened * process.at(u).deviation,
                              widened * std::sqrt(left)});
     process.expect(u, error);

@@ -176,7 +176,8 @@ struct NextMaterials {
 /// Which materials would narrow the answers most, one after the other: each makes the mean square of the deviation of
 /// the force least, over materials spread evenly over all that the library serves (active learning of Cohn, Ghahramani
 /// and Jordan 1996, doi:10.1613/jair.295). Deviations of a Gaussian process do not depend on what will be measured,
-/// only on where, and on the errors, for which the median of those of the library is taken. Throws InputError for a
+/// only on where, and on the errors, for which the median of those of the library is taken. None is named whose onset
+/// would lie deeper than any that was measured: its law could not be determined. Throws InputError for a
 /// library that answers the force by the mean of its materials.
 NextMaterials next_materials(const LawLibrary& library, int count);
 

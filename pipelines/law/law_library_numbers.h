@@ -11,6 +11,7 @@
 namespace softgrain {
 
 inline constexpr const char* kTrialsNumber = "ln trials";
+inline constexpr const char* kOnsetNumber = "delta";
 inline constexpr double kSameRatio = 1e-6;  ///< difference up to which two rows of neighbours have one size
 
 /// Names of the numbers that stand behind those of the law.

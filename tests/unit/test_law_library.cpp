@@ -428,6 +428,25 @@ TEST(LawLibrary, NextMaterialsNarrowTheAnswersMost) {
   expect_in(message_of([&] { (void)next_materials(by_mean, 1); }), "by the mean of all materials");
 }
 
+/// Where the onset may lie deeper than any that was measured no law could be determined.
+TEST(LawLibrary, NextMaterialsHaveLawsThatCanBeDetermined) {
+  LawLibrary deep = library();
+  const std::vector<std::string> names = deep.names();
+  const auto k = static_cast<std::size_t>(std::ranges::find(names, std::string(kOnsetNumber)) - names.begin());
+  std::vector<double> onsets;
+  for (LibraryMaterial& m : deep.materials) {  // deepest in the middle of the exponents
+    m.numbers[k] = 0.3 - 0.2 * std::abs(m.at.exponent - 3.25);
+    m.errors[k] = 1e-3;
+    onsets.push_back(m.numbers[k]);
+  }
+  deep.checks = check_library(deep);
+  const double deepest = std::ranges::max(onsets);
+  for (const NextMaterial& m : next_materials(deep, 6).materials) {
+    const LibraryNumber onset = ask_library(deep, m.at).numbers[k];
+    EXPECT_LE(onset.value + onset.deviation, deepest + 1e-9) << m.at.exponent;
+  }
+}
+
 /// What leaving materials out shows is true of the answers that are to come, too.
 TEST(LawLibrary, NextMaterialsCountDeviationsAsWidened) {
   LawLibrary widened = library();
