@@ -138,10 +138,11 @@ std::vector<std::string> write_library(const LawLibrary& library, std::vector<st
   return files;
 }
 
-/// Of directories, or of the file of a library, which is checked anew.
+/// Of directories, after the file of a library where that comes first; checked anew.
 LibraryCollection library_of(const std::vector<std::string>& files) {
-  if (files.size() > 1 || !fs::is_regular_file(files.front())) return collect_library(files);
+  if (!fs::is_regular_file(files.front())) return collect_library(files);
   LibraryCollection out{load_library(files.front()), {}};
+  if (files.size() > 1) return collect_library({files.begin() + 1, files.end()}, out.library);
   out.library.checks = check_library(out.library);
   out.library.press_checks = check_press_tests(out.library);
   return out;

@@ -138,12 +138,14 @@ LibraryPoint material_at(const UnitBox& box, const std::vector<double>& u) {
   return out;
 }
 
-/// Positions to try per grain for the solid fraction of this point.
+/// Positions to try per grain for the solid fraction of this point, a deviation more than expected: a packing that
+/// comes out denser has a law too, a looser one often none.
 double trials_at(const LawLibrary& library, const UnitBox& box, const std::vector<double>& u) {
   const std::vector<std::string> names = library.names();
   const auto k = static_cast<std::size_t>(std::ranges::find(names, kTrialsNumber) - names.begin());
   if (k == names.size() || library.checks[k].materials == 0) return std::nan("");
-  return std::exp(predicted_number(library.checks[k], known_number(library, box, k), {u}).front().mean);
+  const ProcessValue trials = predicted_number(library.checks[k], known_number(library, box, k), {u}).front();
+  return std::exp(trials.mean + trials.deviation);
 }
 
 }  // namespace

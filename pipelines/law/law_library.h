@@ -163,7 +163,7 @@ std::vector<LibraryCheck> check_library(const LawLibrary& library);
 /// A material that is worth measuring.
 struct NextMaterial {
   LibraryPoint at;
-  double trials = 0.0;  ///< positions tried per grain that give its solid fraction, as the library knows; NaN: unknown
+  double trials = 0.0;     ///< positions tried per grain that give its solid fraction or a little more; NaN: unknown
   double deviation = 0.0;  ///< of ln force of one plane there, of an answer, before it is measured
   double left = 0.0;       ///< root mean square of these deviations over all materials that are served, afterwards
 };
@@ -262,9 +262,10 @@ struct LibraryCollection {
 };
 
 /// The entries of all law_table.toml below directories at any depth, in the order of their names, as rows of a library
-/// with its checks. Shell and neighbours are those that most entries have. Tables that do not go with these, or cannot
-/// be read, are left out. Throws InputError where a directory has no table, or too few entries are left.
-LibraryCollection collect_library(const std::vector<std::string>& directories);
+/// with its checks, after those of a `known` library. Shell and neighbours are its own, or those that most entries
+/// have. Tables that do not go with these, are known already or cannot be read, are left out. Throws InputError where a
+/// directory has no table, or too few entries are left.
+LibraryCollection collect_library(const std::vector<std::string>& directories, const LawLibrary& known = {});
 
 /// "left out: PATH: why", a line each.
 std::string left_out_text(const std::vector<LeftOutTable>& left_out);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -85,16 +86,34 @@ LawLibrary most_common(const std::vector<FoundEntry>& found) {
   return most == kinds.end() ? LawLibrary{} : most->first;
 }
 
+/// To the digits that a file of a library has.
+bool is_same_material(const LibraryPoint& a, const LibraryPoint& b) {
+  constexpr double kDigits = 1e-6;
+  return std::ranges::all_of(kLibraryVariables, [&](const LibraryVariable& v) {
+    return std::abs(a.*v.value - b.*v.value) <= kDigits * std::abs(b.*v.value);
+  });
+}
+
 }  // namespace
 
-LibraryCollection collect_library(const std::vector<std::string>& directories) {
+LibraryCollection collect_library(const std::vector<std::string>& directories, const LawLibrary& known) {
   LibraryCollection out;
   const std::vector<FoundEntry> found = found_entries(directories, out.left_out);
-  out.library = most_common(found);
+  if (known.materials.empty()) {
+    out.library = most_common(found);
+  } else {
+    out.library = known;
+    out.library.path.clear();  // it is another one
+    out.library.text.clear();
+  }
   for (const FoundEntry& f : found) {
     std::string why;
     try {
-      if (auto row = library_row(out.library, f.entry, f.source, why))
+      auto row = library_row(out.library, f.entry, f.source, why);
+      const auto same = [&](const LibraryMaterial& m) { return row && is_same_material(m.at, row->at); };
+      if (std::ranges::any_of(known.materials, same))
+        out.left_out.push_back({f.path, "the library has it already"});
+      else if (row)
         out.library.materials.push_back(std::move(*row));
       else
         out.left_out.push_back({f.path, why});

@@ -21,6 +21,7 @@
 #include "pipelines/law/law_library.h"
 #include "pipelines/law/law_library_numbers.h"
 #include "pipelines/law/law_library_predict.h"
+#include "pipelines/law/law_library_press.h"
 #include "pipelines/law/law_library_scene.h"
 #include "tests/support/synthetic_library.h"
 #include "tests/support/temporary_directory.h"
@@ -261,6 +262,36 @@ TEST(LawLibrary, OddTablesOfAFolderAreNamedAndLeftOut) {
   const std::string few = message_of([&] { (void)collect_library({directory.path() + "/few"}); });
   expect_in(few, "law library: 4 materials; it needs at least 8\nleft out: ");
   expect_in(few, "poor");
+}
+
+/// Rows of a file hold the digits of the file, which are fewer: the new library is that of all tables to these.
+TEST(LawLibrary, ALibraryTakesFurtherTables) {
+  const test::TemporaryDirectory directory;
+  write_tables(directory.path() + "/all", 12);
+  const LibraryCollection all = collect_library({directory.path() + "/all"});
+  ASSERT_EQ(all.library.materials.size(), 12U);
+  LibraryCollection first = all;
+  first.library.materials.resize(9);
+  first.library.checks = check_library(first.library);
+  first.library.press_checks = check_press_tests(first.library);
+  std::filesystem::create_directories(directory.path() + "/more");
+  for (const char* name : {"/m08", "/m09", "/m10", "/m11"})
+    std::filesystem::rename(directory.path() + "/all" + name, directory.path() + "/more" + name);
+  const LibraryCollection grown = collect_library({directory.path() + "/more"}, first.library);
+  ASSERT_EQ(grown.left_out.size(), 1U) << left_out_text(grown.left_out);
+  expect_in(grown.left_out.front().path, "m08");
+  expect_in(grown.left_out.front().why, "the library has it already");
+  EXPECT_FALSE(grown.left_out.front().damaged);
+  ASSERT_EQ(grown.library.materials.size(), 12U);
+  EXPECT_EQ(grown.library.materials.back().source, "more/m11");
+  for (std::size_t k = 0; k < all.library.checks.size(); ++k)
+    EXPECT_EQ(grown.library.checks[k].error, all.library.checks[k].error) << all.library.checks[k].name;
+  LawOptions o;
+  o.out = directory.path() + "/grown.toml";
+  write_text_atomic(directory.path() + "/first.toml", library_text(first.library, build_provenance()));
+  o.files = {directory.path() + "/first.toml", directory.path() + "/more"};
+  EXPECT_EQ(make_library(o), ExitStatus::good);
+  EXPECT_EQ(load_library(o.out).materials.size(), 12U);
 }
 
 TEST(LawLibrary, TheCommandOverwritesNothingAndNamesWhatItWrites) {
