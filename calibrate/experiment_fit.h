@@ -73,8 +73,8 @@ struct ForceOffset {
 /// Then it is determined where all thresholds that fit give the same offset to 1 % of the largest force.
 std::vector<ForceOffset> force_offsets(const ForceCurves& curves);
 
-/// Subtracts the determined ones from all forces of their samples, with a remark for each, and says of the others that
-/// they are not determined. Returns all.
+/// Subtracts the determined ones from all forces of their samples, with one remark for all of them, and one for the
+/// others, which are not determined. Returns all.
 std::vector<ForceOffset> subtract_offsets(ForceCurves& curves);
 
 /// Whether overlaps may not count from first touch: readings begin far from zero, in steps of the curve, and at least

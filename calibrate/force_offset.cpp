@@ -227,6 +227,49 @@ std::optional<double> onset_without_touch(const ForceCurve& sample) {
   return law.delta;
 }
 
+/// "sample "A"", or of several how many they are, and which one has the largest offset.
+std::string samples_text(const ForceCurves& curves, const std::vector<ForceOffset>& of) {
+  if (of.size() == 1) return fmt::format("sample \"{}\"", curves.samples[of.front().sample].name);
+  const auto largest = std::ranges::max_element(of, {}, [](const ForceOffset& o) { return std::abs(o.force); });
+  return fmt::format("{} of {} samples (most in \"{}\")", of.size(), curves.samples.size(),
+                     curves.samples[largest->sample].name);
+}
+
+/// "0.5 +- 0.01 N", or of several "-0.2 to 0.5 N, +- 0.01 N at most".
+std::string forces_text(const std::vector<ForceOffset>& of) {
+  if (of.size() == 1) return fmt::format("{:.4g} +- {:.2g} N", of.front().force, of.front().error);
+  const auto [low, high] = std::ranges::minmax(of, {}, &ForceOffset::force);
+  return fmt::format("{:.3g} to {:.3g} N, +- {:.2g} N at most", low.force, high.force,
+                     std::ranges::max(of, {}, &ForceOffset::error).error);
+}
+
+/// "10 readings", or of several "10 to 12 readings each".
+std::string readings_text(const std::vector<ForceOffset>& of) {
+  const auto [fewest, most] = std::ranges::minmax(of, {}, &ForceOffset::readings);
+  const std::string counts = fewest.readings == 0   ? "no"
+                             : fewest.readings == 1 ? "one"
+                                                    : std::to_string(fewest.readings);
+  if (fewest.readings != most.readings) return fmt::format("{} to {} readings each", counts, most.readings);
+  return counts + (fewest.readings > 1 ? " readings" : " reading") + (of.size() > 1 ? " each" : "");
+}
+
+/// What was subtracted, once for all samples: repeats on one machine tend to have an offset all.
+std::string subtracted_text(const ForceCurves& curves, const std::vector<ForceOffset>& of) {
+  const bool by_shape = std::ranges::any_of(of, [](const ForceOffset& o) { return o.readings < kLeastReadings; });
+  return fmt::format(
+      "{}: a constant force offset of {}, by {} without contact (before touch, or below Delta = {:.3g}){}, was "
+      "subtracted from all forces of {} (--set offset=keep leaves it)",
+      samples_text(curves, of), forces_text(of), readings_text(of), std::ranges::max(of, {}, &ForceOffset::below).below,
+      by_shape ? " and the shape of the curve" : "", of.size() == 1 ? "the sample" : "each sample");
+}
+
+std::string open_text(const ForceCurves& curves, const std::vector<ForceOffset>& of) {
+  return fmt::format(
+      "{}: forces do not vanish with the overlap; a constant offset of about {} would explain it, but {} without "
+      "contact do not tell how large it is: record some before touch, or subtract the zero",
+      samples_text(curves, of), forces_text(of), readings_text(of));
+}
+
 }  // namespace
 
 std::string touch_doubt(const ForceCurves& curves) {
@@ -261,31 +304,22 @@ std::vector<ForceOffset> force_offsets(const ForceCurves& curves) {
 
 std::vector<ForceOffset> subtract_offsets(ForceCurves& curves) {
   std::vector<ForceOffset> found = force_offsets(curves);
+  std::vector<ForceOffset> subtracted;
+  std::vector<ForceOffset> open;
   for (const ForceOffset& o : found) {
+    (o.determined ? subtracted : open).push_back(o);
+    if (!o.determined) continue;
     ForceCurve& sample = curves.samples[o.sample];
-    const std::string name = fmt::format("{}: sample \"{}\"", to_string(curves.kind), sample.name);
-    const std::string readings = o.readings == 0   ? "no reading"
-                                 : o.readings == 1 ? "one reading"
-                                                   : fmt::format("{} readings", o.readings);
-    if (!o.determined) {
-      curves.remarks.push_back(
-          fmt::format("{}: forces do not vanish with the overlap; a constant offset of about {:.3g} +- {:.2g} N would "
-                      "explain it, but {} without contact do not tell how large it is: record some before touch, or "
-                      "subtract the zero",
-                      name, o.force, o.error, readings));
-      continue;
-    }
     for (ForcePoint& p : sample.normal) p.force -= o.force;
     for (double& force : sample.before_touch) force -= o.force;
     for (UnloadedCurve& u : sample.unloaded) {
       u.force -= o.force;
       for (ForcePoint& p : u.points) p.force -= o.force;
     }
-    curves.remarks.push_back(fmt::format(
-        "{}: a constant force offset of {:.4g} +- {:.2g} N, by {} without contact (before touch, or below "
-        "Delta = {:.3g}){}, was subtracted from all forces of the sample (--set offset=keep leaves it)",
-        name, o.force, o.error, readings, o.below, o.readings < kLeastReadings ? " and the shape of the curve" : ""));
   }
+  const std::string kind = to_string(curves.kind) + ": ";
+  if (!subtracted.empty()) curves.remarks.push_back(kind + subtracted_text(curves, subtracted));
+  if (!open.empty()) curves.remarks.push_back(kind + open_text(curves, open));
   return found;
 }
 

@@ -381,6 +381,13 @@ std::vector<double> deviators(const MacroCurve& c) {
   return out;
 }
 
+std::vector<double> deviators(const MacroCurve& c, StrainPart part) {
+  if (part != StrainPart::shear || c.stress_xz.size() != c.strain.size()) return deviators(c);
+  std::vector<double> out;
+  for (const double stress : c.stress_xz) out.push_back(2.0 * stress);
+  return out;
+}
+
 std::vector<StageResult> stage_results(const MacroCurve& curve) {
   const Reader reader(curve);
   std::vector<StageResult> out;

@@ -202,6 +202,10 @@ std::vector<double> values_at(const std::vector<double>& values, const std::vect
 /// where sigma_x = sigma_z.
 std::vector<double> deviators(const MacroCurve& curve);
 
+/// The same as it is drawn over the strain of a part: of stages that slide 2 sigma_xz also at the points that they
+/// begin at, which belong to the stages before.
+std::vector<double> deviators(const MacroCurve& curve, StrainPart part);
+
 /// q/p of all recorded points; NaN where p is not above this share of its largest value: what bears next to nothing has
 /// no strength to speak of. With 0 wherever p is above 0.
 std::vector<double> stress_ratios(const MacroCurve& curve, double bearing = kBearingShare);

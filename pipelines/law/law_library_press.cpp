@@ -50,19 +50,39 @@ std::vector<double> of_materials(const LawLibrary& library, double LibraryPoint:
   return out;
 }
 
+/// What serves where the library does not: a press test is a law by itself, if only of one neighbour.
+constexpr const char* kWithoutLibrary =
+    "without the library: law = \"TABLE.csv\", the table itself, is the law of one neighbour "
+    "(pipelines/press_test_macro.toml)";
+
+/// What in a press test that no material gave is to be looked at: forces go with E Rs^2, their ratio with the overlap.
+std::string look_at(const UnitBox& box, const PressNumbers& n) {
+  const double share = n.ln_shallow - n.ln_deep;
+  if (n.ln_deep < box.low(0) || n.ln_deep > box.high(0))
+    return "look at E and Rs in the comments and at the unit of the forces";
+  if (share < box.low(1)) return "the force rises too late: look at where the overlap begins (# touch = ...)";
+  if (share > box.high(1))
+    return "the force rises too evenly: look at where the overlap begins (# touch = ...) and at an offset of the force";
+  return "look at mu, E and Rs in the comments";
+}
+
 /// The friction is given and has no error, so it must lie in its range as that of a material; forces are measured.
 void require_inside(const LawLibrary& library, const UnitBox& box, const std::vector<double>& u,
                     const PressQuestion& q) {
   const auto [low, high] = std::ranges::minmax(of_materials(library, &LibraryPoint::friction));
   const std::string wrong =
       outside_text(kLibraryVariables.front(), low, high, q.friction, (q.friction - low) / (high - low));
-  if (!wrong.empty()) throw InputError("law library: " + wrong);
+  if (!wrong.empty())
+    throw InputError(fmt::format(
+        "law library: {}; give mu of the grains from that range, measure materials with yours (softgrain law library "
+        "-h), or do {}",
+        wrong, kWithoutLibrary));
   if (distance_from_hull(box.points(), u) <= kReachOfPressHull) return;
   throw InputError(
       fmt::format("law library: no measured material gave such a press test: {}; measured: {:.3g} to {:.3g} at Delta = "
-                  "{}, {:.2g} to {:.2g} of that at {}, and not in every combination with mu",
+                  "{}, {:.2g} to {:.2g} of that at {}, and not in every combination with mu; {}, or do {}",
                   press_text(q), std::exp(box.low(0)), std::exp(box.high(0)), kDeep, std::exp(box.low(1)),
-                  std::exp(box.high(1)), kShallow));
+                  std::exp(box.high(1)), kShallow, look_at(box, q.numbers), kWithoutLibrary));
 }
 
 /// Draws of a, b and delta; those that have no force at D = 0.2 are no curve of a soft particle.
@@ -80,7 +100,10 @@ const PairLaw& pressed_law(const LawCard& card, const std::string& source) {
   const auto law = std::ranges::find_if(
       card.pairs, [](const PairLaw& p) { return p.kind == PairKind::soft_solid && has_numbers(p.status); });
   if (law == card.pairs.end() || law->points == 0)
-    throw InputError(source + ": the library takes a press test on a plane, # kind = soft-solid");
+    throw InputError(source +
+                     ": the library takes a press test on a plane, # kind = soft-solid; press one particle against "
+                     "a plate, or do " +
+                     kWithoutLibrary);
   return *law;
 }
 
@@ -132,8 +155,11 @@ PressQuestion press_question(const LawCard& card, double friction, const std::st
   const ThresholdPowerLaw& n = law.normal;
   const std::optional<PressNumbers> numbers = press_numbers(n.a.value, n.b.value, n.delta.value, nu);
   if (!numbers)
-    throw InputError(fmt::format("{}: the library compares forces at Delta = {}, and this law begins at {:.3g}", source,
-                                 kShallow, n.delta.value));
+    throw InputError(
+        fmt::format("{}: the library compares forces at Delta = {}, and this law begins at {:.3g}; where the "
+                    "overlap counts from another zero, give its value at touch (# touch = ...), else do "
+                    "{}",
+                    source, kShallow, n.delta.value, kWithoutLibrary));
   return {*numbers, drawn_numbers(law, nu), friction};
 }
 
@@ -168,11 +194,15 @@ std::vector<LibraryCheck> check_press_tests(const LawLibrary& library) {
 PressTestLaw law_of_press_test(const LawLibrary& library, const std::string& path, std::optional<double> friction,
                                int draws) {
   const FittedLaw law = load_or_fit_law(path);
-  if (law.card() == nullptr) throw InputError(path + ": is no press test, and no law card of one");
+  if (law.card() == nullptr)
+    throw InputError(path +
+                     ": is no press test, and no law card of one; give the table of the test, or the law.toml that "
+                     "softgrain calibrate made of it");
   const LawCard& card = *law.card();
   PressTestLaw out;
   if (friction && is_known(card.spec.friction) && *friction != card.spec.friction)
-    throw InputError(fmt::format("{}: says mu = {:g}, but {:g} was given", path, card.spec.friction, *friction));
+    throw InputError(fmt::format("{}: says mu = {:g}, but {:g} was given: leave one of them out", path,
+                                 card.spec.friction, *friction));
   if (!friction && !is_known(card.spec.friction))
     throw InputError(path +
                      ": the library needs the friction of the grains: write a comment \"# mu = 0.3\" into the table, "
@@ -221,7 +251,9 @@ LawCard card_of_press_test(const std::string& path) {
   const auto unusable =
       std::ranges::find_if(fit.card.pairs, [](const PairLaw& law) { return !has_numbers(law.status); });
   if (unusable != fit.card.pairs.end())
-    throw InputError(path + ": no law can be fitted: " + to_string(unusable->status) + " (" + unusable->reason + ")");
+    throw InputError(path + ": no law can be fitted: " + to_string(unusable->status) + " (" + unusable->reason +
+                     "); forces of compression are above 0: look at sign and unit of the force, at E and Rs, and at "
+                     "where the overlap begins (# touch = ...)");
   fit.card.notes = std::move(fit.remarks);
   for (const ForceCurves& kind : fit.curves)
     if (const std::string doubt = touch_doubt(kind); !doubt.empty()) fit.card.notes.push_back(doubt);

@@ -41,6 +41,7 @@ struct RunCurve {
   std::string name;     ///< name of the curve in the run: an engine, a kind of contact; empty: there is one
   std::vector<double> x;
   std::vector<double> y;
+  bool in_terminal = false;  ///< drawn in the terminal too, beside the first curve of a run
 };
 
 class Findings;

@@ -1,8 +1,10 @@
 #include "pipelines/run/findings.h"
 
 #include <fmt/format.h>
+#include <omp.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 
@@ -76,7 +78,10 @@ void Findings::close_times() {
     facts["core_seconds_parts"][part] = seconds;
     if (seconds >= kTrifle * total) append_part(parts, part + " " + time_text(seconds), ", ");
   }
-  add("core_seconds", total, "time: about " + time_text(total) + " of one core (" + parts + ")");
+  const std::string busy = busy_text();
+  add("core_seconds", total,
+      "time: about " + time_text(total) + " of one idle core (" + parts + ")" +
+          (busy.empty() ? "" : "; " + busy + ": by the clock it takes longer"));
   if (total > kDay) warn("the run takes about " + time_text(total) + " of one core: see what can be smaller");
 }
 
@@ -95,6 +100,16 @@ std::string time_text(double seconds) {
   if (seconds < 7200.0) return fmt::format("{:.0f} min", seconds / 60.0);
   if (seconds < 2.0 * kDay) return fmt::format("{:.1f} h", seconds / 3600.0);
   return fmt::format("{:.0f} days", seconds / kDay);
+}
+
+std::string busy_text(double load, int cores) {
+  if (!(load >= 0.5 * cores)) return "";
+  return fmt::format("the machine is busy now, load {:.1f} on {} core{}", load, cores, cores == 1 ? "" : "s");
+}
+
+std::string busy_text() {
+  double load = 0.0;
+  return ::getloadavg(&load, 1) == 1 ? busy_text(load, omp_get_num_procs()) : "";
 }
 
 std::string bytes_text(double bytes) {

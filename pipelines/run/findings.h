@@ -41,6 +41,11 @@ class Findings {
 
 /// "0.4 s", "12 s", "3 min", "2.5 h", "4 days".
 std::string time_text(double seconds);
+/// "the machine is busy now, load 7.5 on 8 cores"; empty where at least half of the cores are idle. `load`: mean number
+/// of processes at work.
+std::string busy_text(double load, int cores);
+/// The same of this machine in the last minute; empty where it is not known.
+std::string busy_text();
 /// "12 kB", "3.4 MB", "1.2 GB".
 std::string bytes_text(double bytes);
 

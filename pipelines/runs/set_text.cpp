@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "common/core/text.h"
 #include "pipelines/law/terminal_plot.h"
@@ -134,26 +135,49 @@ std::string norms_text(const SetSummary& summary) {
   return text;
 }
 
-std::string curves_text(const SetSummary& summary, const std::string& base) {
+namespace {
+
+std::string title_of(const RunCurve& c) { return c.plot + c.name; }
+
+/// The curves of this title, a letter at the end of each.
+std::string drawn_curves(const std::vector<std::pair<std::string, std::vector<RunCurve>>>& runs,
+                         const std::string& title) {
   law::TerminalPlot plot;
   plot.utf8 = law::terminal_is_utf8();
-  std::string title;
-  for (std::size_t k = 0; k < std::min(summary.runs.size(), kColumns); ++k) {
-    const std::filesystem::path directory = std::filesystem::path(base) / summary.runs[k].directory;
-    std::error_code ignored;
-    if (!std::filesystem::is_directory(directory, ignored)) continue;
-    const std::vector<RunCurve> curves = report::curves_of(directory.string());
-    const auto at = std::ranges::find_if(
-        curves, [&](const RunCurve& c) { return !c.x.empty() && (title.empty() || c.plot + c.name == title); });
+  for (const auto& [mark, curves] : runs) {
+    const auto at =
+        std::ranges::find_if(curves, [&](const RunCurve& c) { return !c.x.empty() && title_of(c) == title; });
     if (at == curves.end()) continue;
-    title = at->plot + at->name;
     plot.x_label = at->x_label;
     plot.y_label =
         at->y_label + (at->y_unit.empty() ? "" : " [" + at->y_unit + "]") + (at->name.empty() ? "" : ", " + at->name);
     plot.curves.push_back({at->x, at->y, law::TerminalCurve::Look::line, 'o'});
-    plot.curves.push_back({{at->x.back()}, {at->y.back()}, law::TerminalCurve::Look::marks, letter(k).front()});
+    plot.curves.push_back({{at->x.back()}, {at->y.back()}, law::TerminalCurve::Look::marks, mark.front()});
   }
   return law::draw(plot);
+}
+
+}  // namespace
+
+std::string curves_text(const SetSummary& summary, const std::string& base) {
+  std::vector<std::pair<std::string, std::vector<RunCurve>>> runs;
+  std::vector<std::string> titles;
+  std::string name;
+  for (std::size_t k = 0; k < std::min(summary.runs.size(), kColumns); ++k) {
+    const std::filesystem::path directory = std::filesystem::path(base) / summary.runs[k].directory;
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(directory, ignored)) continue;
+    runs.emplace_back(letter(k), report::curves_of(directory.string()));
+    for (const RunCurve& c : runs.back().second) {
+      if (c.x.empty()) continue;
+      if (titles.empty()) name = c.name;
+      const bool wanted = titles.empty() || (c.in_terminal && c.name == name);
+      if (wanted && std::ranges::find(titles, title_of(c)) == titles.end()) titles.push_back(title_of(c));
+    }
+  }
+  std::string text;
+  for (const std::string& title : titles) text += drawn_curves(runs, title);
+  return text;
 }
 
 std::string numbers_text(const SetSummary& summary) {

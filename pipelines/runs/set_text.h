@@ -25,8 +25,8 @@ std::string norms_text(const SetSummary& summary);
 /// What differs, the numbers, remarks.
 std::string set_text(const SetSummary& summary);
 
-/// The first curve of every run whose directory is there, in the terminal, with the letters of the table; empty
-/// without. `base`: what directories of runs are relative to.
+/// The first curve of every run whose directory is there, and those that ask for it (RunCurve::in_terminal), in the
+/// terminal, with the letters of the table; empty without. `base`: what directories of runs are relative to.
 std::string curves_text(const SetSummary& summary, const std::string& base);
 
 /// One row per run: keys, seed, status, and every number with its standard error.

@@ -148,8 +148,25 @@ TEST(ForceOffset, EverySampleHasItsOwn) {
   const auto found = subtract_offsets(curves);
   ASSERT_EQ(found.size(), 2U);
   EXPECT_NEAR(found[1].force, -0.2, 0.005);
-  EXPECT_EQ(curves.remarks.size(), 2U);
+  ASSERT_EQ(curves.remarks.size(), 1U) << "said once for all";
+  const std::string& said = curves.remarks.front();
+  EXPECT_NE(said.find("2 of 3 samples (most in \"A\")"), std::string::npos) << said;
+  EXPECT_NE(said.find("offset of -0."), std::string::npos) << said;
+  EXPECT_NE(said.find("was subtracted from all forces of each sample"), std::string::npos) << said;
   EXPECT_TRUE(subtract_offsets(curves).empty());
+}
+
+TEST(ForceOffset, OpenOnesAreSaidOnceBesideThoseThatWereSubtracted) {
+  const Pressed late{.offset = 1.5, .first = 0.12};
+  ForceCurves curves = pressed(late);
+  curves.samples.push_back(pressed(late).samples[0]);
+  curves.samples.push_back(pressed({.offset = 0.5}).samples[0]);
+  ASSERT_EQ(subtract_offsets(curves).size(), 3U);
+  ASSERT_EQ(curves.remarks.size(), 2U);
+  EXPECT_NE(curves.remarks[0].find("sample \"A\": a constant force offset of "), std::string::npos)
+      << curves.remarks[0];
+  EXPECT_NE(curves.remarks[1].find("2 of 3 samples"), std::string::npos) << curves.remarks[1];
+  EXPECT_NE(curves.remarks[1].find("record some before touch"), std::string::npos) << curves.remarks[1];
 }
 
 }  // namespace

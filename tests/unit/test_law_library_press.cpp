@@ -107,6 +107,19 @@ TEST(PressLibrary, RefusesWhatNoMaterialGave) {
                 (void)ask_by_press_test(pressed_library(), {press_of(kInside), {}, 5.0});
               }),
               "mu = 5: measured from 0 to 0.8");
+  // Each refusal says what to look at or to do.
+  const auto refused = [&](const PressNumbers& n, double mu) {
+    return complaint([&] { (void)ask_by_press_test(pressed_library(), {n, {}, mu}); });
+  };
+  expect_says(refused(hard, 0.35), "look at E and Rs");
+  expect_says(refused(hard, 0.35), "without the library: law = ");
+  PressNumbers even = press_of(kInside);
+  even.ln_shallow = even.ln_deep - 0.1;
+  expect_says(refused(even, 0.35), "rises too evenly");
+  PressNumbers late = press_of(kInside);
+  late.ln_shallow = late.ln_deep - 6.0;
+  expect_says(refused(late, 0.35), "rises too late");
+  expect_says(refused(press_of(kInside), 5.0), "give mu of the grains from that range");
   LawLibrary alike = pressed_library();
   for (LibraryMaterial& m : alike.materials) m.at.friction = 0.35;
   EXPECT_NO_THROW((void)ask_by_press_test(alike, {press_of(kInside), {}, 0.35}));
@@ -186,6 +199,14 @@ TEST(PressLibrary, ATableOfAPressTestBecomesALaw) {
   EXPECT_EQ(law_of_press_test(pressed_library(), said, std::nullopt).answer.numbers[0].value,
             law_of_press_test(pressed_library(), said, 0.35).answer.numbers[0].value);
   expect_says(complaint([&] { (void)law_of_press_test(pressed_library(), said, 0.5); }), "says mu = 0.35, but 0.5");
+  expect_says(complaint([&] { (void)law_of_press_test(pressed_library(), said, 0.5); }), "leave one of them out");
+  std::string pulled = read_text(said);
+  for (std::size_t at = pulled.find("A,"); at != std::string::npos; at = pulled.find("A,", at + 1))
+    pulled.insert(pulled.find(',', at + 2) + 1, "-");
+  for (std::size_t at = pulled.find("B,"); at != std::string::npos; at = pulled.find("B,", at + 1))
+    pulled.insert(pulled.find(',', at + 2) + 1, "-");
+  write_text_atomic(directory.path() + "/pulled.csv", pulled);
+  expect_says(complaint([&] { (void)card_of_press_test(directory.path() + "/pulled.csv"); }), "look at sign and unit");
 }
 
 TEST(PressLibrary, SaysWhatTheTestItselfLeavesOpen) {

@@ -65,6 +65,23 @@ TEST(MacroBand, AnUnknownDiscrepancyIsNoBandOfNoWidth) {
   EXPECT_NE(banded_text(ends[0]).find("discrepancy unknown"), std::string::npos) << banded_text(ends[0]);
 }
 
+/// Where a test ends with a stage that slides, z stands still and its strain says nothing.
+TEST(MacroBand, AnEndThatSlidesHasItsShearStrain) {
+  MacroCurve c = curve("law", 0, {0.0, 80.0, 100.0});
+  c.test = MacroTest::stages;
+  c.stages = {{"a", StageKind::oedometric, StageKind::oedometric},
+              {"b", StageKind::simple_shear, StageKind::simple_shear}};
+  c.stage = {0.0, 0.0, 1.0};
+  c.stress_xz = {0.0, 0.0, 20.0};
+  c.shear_strain = {0.0, 0.0, 0.05};
+  give_bands(c, 0.03, 0.04);
+  EXPECT_EQ(banded_ends({c})[0].strain, 0.05);
+  EXPECT_NE(banded_text(banded_ends({c})[0]).find("axial stress at shear strain 0.05: 100 Pa"), std::string::npos)
+      << banded_text(banded_ends({c})[0]);
+  c.stages[1] = {"b", StageKind::oedometric, StageKind::oedometric};
+  EXPECT_NE(banded_text(banded_ends({c})[0]).find("axial stress at strain 0.2: 100 Pa"), std::string::npos);
+}
+
 TEST(MacroBand, TheMeanOverSamplesHasTheIntervalOfStudent) {
   std::vector<MacroCurve> curves{curve("law", 0, {0.0, 90.0}), curve("law", 1, {0.0, 110.0}),
                                  curve("shelled", 0, {0.0, 100.0})};

@@ -6,6 +6,7 @@
 #include "common/core/error.h"
 #include "pipelines/kinds/soft_particle/check.h"
 #include "pipelines/kinds/soft_particle/scene.h"
+#include "pipelines/run/findings.h"
 
 namespace softgrain {
 namespace {
@@ -74,6 +75,20 @@ TEST(MeasureSetup, CheckNamesWhatWillBeDone) {
   Findings found;
   check_measurements(read("relaxation = \"least-work\"\n" + kNone), found);
   EXPECT_TRUE(found.facts.contains("slow-dynamics soft-solid")) << found.facts.dump();
+}
+
+/// Time is that of a core that does nothing else; where there is none, it says so.
+TEST(Findings, TimeSaysWhatItAssumes) {
+  EXPECT_EQ(busy_text(0.4, 1), "");
+  EXPECT_EQ(busy_text(3.9, 8), "");
+  EXPECT_EQ(busy_text(1.0, 1), "the machine is busy now, load 1.0 on 1 core");
+  EXPECT_EQ(busy_text(7.5, 8), "the machine is busy now, load 7.5 on 8 cores");
+  Findings out;
+  out.spend("measuring", 8.0);
+  out.close_times();
+  EXPECT_NE(out.lines.find("time: about 8 s of one idle core (measuring 8 s)"), std::string::npos) << out.lines;
+  EXPECT_EQ(out.lines.find("by the clock it takes longer") == std::string::npos,
+            out.lines.find("the machine is busy now") == std::string::npos);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "calibrate/rod_packing.h"
 #include "calibrate/state_curves.h"
 #include "common/core/error.h"
+#include "pipelines/kinds/material/run.h"
 #include "pipelines/kinds/recipe/law.h"
 #include "pipelines/kinds/recipe/onset.h"
 #include "pipelines/kinds/recipe/scene.h"
@@ -89,6 +90,29 @@ TEST(RecipeScene, PacksNothingTwice) {
   EXPECT_EQ(scene.material.variants.size(), 2U + scene.mixtures.size());
   EXPECT_TRUE(scene.material.variants[kSheared].same_packings);
   EXPECT_FALSE(scene.checked);
+}
+
+/// Progress counts packings: a second test of one has the number of its packing.
+TEST(RecipeScene, PackingsAreCountedInProgress) {
+  const RecipeScene scene =
+      read_recipe("[levels]\nratio = 2\n[check]\ngrains = 0\n", "count = 900\nratio = 8\nexponent = 3.7");
+  const std::vector<MaterialVariant>& all = scene.material.variants;
+  const std::string of = " of " + std::to_string(all.size() - 1) + ", ";
+  EXPECT_EQ(packing_title(all, all.front()), "packing 1" + of + all.front().name);
+  EXPECT_EQ(packing_title(all, all[kSheared]), "packing 1" + of + all[kSheared].name);
+  EXPECT_EQ(packing_title(all, all.back()), "packing " + std::to_string(all.size() - 1) + of + all.back().name);
+  const std::vector<MaterialVariant> alone{all.front()};
+  EXPECT_EQ(packing_title(alone, alone.front()), "");
+}
+
+TEST(RecipeLaw, WhatIsMissingWithoutACellLawIsSaidWithWhatToDo) {
+  const std::string staged = no_cell_law_text({"shear memory: flat", "excess pores: few"}, true, false);
+  for (const char* part : {"no cell law", "shear memory: flat; excess pores: few", "cell_law.toml",
+                           "curve \"cell law\"", "the stages do not need them", "more grains"})
+    EXPECT_NE(staged.find(part), std::string::npos) << part << " not in " << staged;
+  const std::string shells = no_cell_law_text({"few"}, false, true);
+  EXPECT_NE(shells.find("curves \"cell law\" and \"shell law\""), std::string::npos) << shells;
+  EXPECT_NE(shells.find("equation of state alone"), std::string::npos) << shells;
 }
 
 TEST(RecipeScene, TakesConstituentsByVolume) {
@@ -416,9 +440,9 @@ TEST(RecipeScene, RaisesDefaultCountsThatHaveNoRoomAndRefusesGivenOnes) {
   EXPECT_TRUE(given.raised.empty());
   EXPECT_EQ(given.doubts.size(), scene.raised.size());
   const std::string none = refusal(levels, sizes + "\ncount = 1100");
-  for (const char* part :
-       {"count", "packing levels-1-2", "1100 grains are too few for a periodic cell",
-        "or more have room ([grains] count)", " are enough to place every packing; levels closer", " radii of the largest"})
+  for (const char* part : {"count", "packing levels-1-2", "1100 grains are too few for a periodic cell",
+                           "or more have room ([grains] count)", " are enough to place every packing; levels closer",
+                           " radii of the largest"})
     EXPECT_NE(none.find(part), std::string::npos) << part << "\n" << none;
   // Grains that the first refusal asks for, in all packings, are not refused again.
   const std::size_t end = none.find(" are enough to place every packing");

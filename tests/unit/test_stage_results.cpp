@@ -14,7 +14,9 @@
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/macro/summary.h"
 #include "pipelines/report/report.h"
+#include "pipelines/results/set_summary.h"
 #include "pipelines/results/summary.h"
+#include "pipelines/runs/set_text.h"
 #include "tests/support/temporary_directory.h"
 
 namespace softgrain {
@@ -95,6 +97,9 @@ TEST(StageResults, UndrainedAndSlidingStages) {
   EXPECT_FALSE(json_of(means[0]).contains("shear_strain_end"));
   EXPECT_EQ(deviators(c)[4], c.stress_deviator[4]);
   EXPECT_EQ(deviators(c).back(), 2.0 * c.stress_xz.back());
+  EXPECT_EQ(deviators(c, StrainPart::axial), deviators(c));
+  EXPECT_EQ(deviators(c, StrainPart::shear)[4], 2.0 * c.stress_xz[4]) << "where the stage that slides begins";
+  EXPECT_EQ(deviators(c, StrainPart::shear).back(), deviators(c).back());
 }
 
 /// Each part begins where the one before it ends.
@@ -113,7 +118,7 @@ TEST(StageResults, PointsAreThoseOfStagesThatSlideOrOfTheOthers) {
 TEST(StageResults, CurvesOfStagesThatSlideAreApartInComparisons) {
   MacroCurve c = pressed_and_slid().curve;
   const std::vector<RunCurve> drawn = stress_curves({{"", {c}}});
-  ASSERT_EQ(drawn.size(), 2U);
+  ASSERT_EQ(drawn.size(), 3U);
   EXPECT_EQ(drawn[0].plot, "Axial stress");
   EXPECT_EQ(drawn[0].x_label, "axial strain [%]");
   EXPECT_EQ(drawn[0].x.size(), 5U);
@@ -122,6 +127,12 @@ TEST(StageResults, CurvesOfStagesThatSlideAreApartInComparisons) {
   ASSERT_EQ(drawn[1].x.size(), 6U);
   EXPECT_NEAR(drawn[1].x.back(), 1.0, 1e-12);
   EXPECT_EQ(drawn[1].y.back(), c.stress_axial.back());
+  EXPECT_EQ(drawn[2].plot, "Shear stress, stages that slide");
+  EXPECT_EQ(drawn[2].x_label, "shear strain [%]");
+  EXPECT_EQ(drawn[2].y_label, "shear stress");
+  EXPECT_EQ(drawn[2].x, drawn[1].x);
+  EXPECT_EQ(drawn[2].y.back(), c.stress_xz.back());
+  EXPECT_TRUE(drawn[2].in_terminal && !drawn[1].in_terminal);
   EXPECT_EQ(strain_at_end(c).value, c.shear_strain.back());
   EXPECT_STREQ(strain_at_end(c).name, "shear strain");
   // The range that is compared has its shear strains apart.
@@ -159,6 +170,24 @@ TEST(StageResults, ReportsOfMacroRunsDrawStagesThatSlideOverTheirShearStrain) {
   const std::string one = page({pressed});
   EXPECT_TRUE(has(one, "axial"));
   EXPECT_FALSE(has(one, "axial-sliding"));
+}
+
+/// In the terminal too: the stress of stages that slide over their shear strain, below the others.
+TEST(StageResults, TheTerminalDrawsStagesThatSlide) {
+  const auto drawn = [](const MacroCurve& c) {
+    const test::TemporaryDirectory directory;
+    save_macro({c}, directory.file("macro.h5"));
+    write_text_atomic(directory.file("summary.json"), R"({"status": "good", "kind": "macro"})");
+    SetSummary set;
+    set.runs = {{.name = "a", .directory = directory.path()}, {.name = "b", .directory = directory.path()}};
+    return curves_text(set, "");
+  };
+  MacroCurve c = pressed_and_slid().curve;
+  const std::string both = drawn(c);
+  EXPECT_LT(both.find("axial strain [%]"), both.find("shear strain [%]")) << both;
+  EXPECT_NE(both.find("shear stress [Pa]"), std::string::npos) << both;
+  c.stages[1] = {"b", StageKind::undrained, StageKind::undrained};
+  EXPECT_EQ(drawn(c).find("shear stress"), std::string::npos);
 }
 
 /// In the report of a material with several stages, those that slide have figures of their own.

@@ -12,6 +12,7 @@
 #include "common/core/statistics.h"
 #include "common/core/text.h"
 #include "pipelines/compare/compare.h"
+#include "pipelines/compare/stage_results.h"
 
 namespace softgrain {
 
@@ -234,7 +235,9 @@ std::vector<BandedEnd> banded_ends(const std::vector<MacroCurve>& curves) {
         if (const auto part = band_of(c, of, BandPart::noise)) noise_of = 0.5 * (part->high.back() - part->low.back());
         const double own = banded_stress(c, of).back();
         stress.push_back(own);
-        end.strain = c.strain.back();
+        const EndStrain last = strain_at_end(c);
+        end.strain = last.value;
+        end.strain_name = last.name;
         ++end.count;
         if (!c.law_beyond.empty() && !c.law_evaluations.empty() && c.law_evaluations.back() > 0.0)
           end.beyond = std::max(end.beyond, c.law_beyond.back() / c.law_evaluations.back());
@@ -273,8 +276,8 @@ std::string banded_text(const BandedEnd& e) {
                                        "where no error is known",
                                        100.0 * e.beyond)
                                  : "";
-  return fmt::format("{}: {} stress at strain {:.4g}: {:.4g} Pa, {} (law {:.2g} %, discrepancy {}, {}{})", e.engine,
-                     to_string(e.of), e.strain, e.stress, interval, share(e.law),
+  return fmt::format("{}: {} stress at {} {:.4g}: {:.4g} Pa, {} (law {:.2g} %, discrepancy {}, {}{})", e.engine,
+                     to_string(e.of), e.strain_name, e.strain, e.stress, interval, share(e.law),
                      std::isnan(e.discrepancy) ? "unknown" : fmt::format("{:.2g} %", share(e.discrepancy)),
                      std::isfinite(e.samples) ? fmt::format("{} samples {:.2g} %", e.count, share(e.samples))
                                               : "samples unknown: one alone",

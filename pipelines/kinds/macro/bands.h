@@ -37,7 +37,8 @@ std::vector<LawDraws> draws_for(const MacroSetup& setup, const LawSources& sourc
 struct BandedEnd {
   BandOf of = BandOf::axial;
   std::string engine;
-  double strain = 0.0;
+  double strain = 0.0;                 ///< strain_at_end()
+  const char* strain_name = "strain";  ///< what it is called
   double stress = 0.0;
   double low = 0.0;
   double high = 0.0;

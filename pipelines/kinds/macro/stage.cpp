@@ -346,7 +346,7 @@ void run_kind(const Stage& stage, const std::vector<Engine>& engines, const std:
   if (tasks == 0) return;
   const std::size_t first = runs.size();
   runs.resize(first + static_cast<std::size_t>(tasks));
-  Progress progress(stage.runs.name + title,
+  Progress progress((stage.runs.progress.empty() ? stage.runs.name : stage.runs.progress) + title,
                     static_cast<double>(tasks + static_cast<std::int64_t>(engines.size()) * again), context.quiet());
   over_samples(tasks, [&](std::int64_t k) {
     const Engine& engine = engines[static_cast<std::size_t>(k / samples)];
@@ -419,9 +419,10 @@ MacroPacking kept_packing(const std::string& key, const std::string& task, const
   return run.get_or_make(form, task, run.context.packing_cache(), key, make);
 }
 
-std::vector<MacroPacking> prepare_packings(const MacroSetup& setup, const Run& run, const std::string& file_name) {
+std::vector<MacroPacking> prepare_packings(const MacroSetup& setup, const Run& run, const std::string& file_name,
+                                           const std::string& title) {
   std::vector<MacroPacking> packings(static_cast<std::size_t>(setup.samples));
-  Progress progress("preparing macro samples", static_cast<double>(setup.samples), run.context.quiet());
+  Progress progress(title, static_cast<double>(setup.samples), run.context.quiet());
   over_samples(setup.samples, [&](std::int64_t k) {
     TaskProgress mine(progress);
     packings[static_cast<std::size_t>(k)] =
@@ -450,7 +451,7 @@ std::vector<MacroCurve> run_laws(const MacroRuns& runs, const std::vector<NamedL
   MacroSetup setup = runs.setup;
   setup.kept_states = 0;
   setup.noise_samples = 0;
-  const MacroRuns once{setup, runs.packings, runs.contents, runs.seed, runs.name};
+  const MacroRuns once{setup, runs.packings, runs.contents, runs.seed, runs.name, runs.progress};
   const Stage stage{once, run, mean_solid_fraction(runs.contents)};
   std::vector<Engine> engines;
   for (const NamedLaws& l : laws) engines.push_back({l.name, &l, {}, l.cells.has_value()});
@@ -470,7 +471,7 @@ std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<Nam
   for (const NamedLaws& l : laws) with_laws.push_back({l.name, &l});
   for (const Twin twin : runs.setup.twins) twins.push_back({to_string(twin), nullptr, twin});
   std::vector<RunOutcome> outcomes = std::move(before);
-  run_kind(stage, with_laws, " with laws", run.context, outcomes);
+  run_kind(stage, with_laws, runs.progress.empty() ? " with laws" : "", run.context, outcomes);
   run_kind(stage, twins, ": resolved twins", run.context, outcomes);
   ask_laws(stage, laws, outcomes);
   std::vector<MacroCurve> curves;

@@ -26,7 +26,9 @@ MacroPacking kept_packing(const std::string& key, const std::string& task, const
 
 /// The starting states of all samples, the same for all engines (with preparation "lammps": where bodies are placed
 /// before it); they are kept in the store until the run has ended, under the name of `file` without its extension.
-std::vector<MacroPacking> prepare_packings(const MacroSetup& setup, const Run& run, const std::string& file);
+/// `title`: what progress says.
+std::vector<MacroPacking> prepare_packings(const MacroSetup& setup, const Run& run, const std::string& file,
+                                           const std::string& title = "preparing macro samples");
 
 /// Writes them to DIR/`file`.
 void save_packings(const std::vector<MacroPacking>& packings, const Run& run, const std::string& file);
@@ -49,7 +51,8 @@ struct MacroRuns {
   const std::vector<MacroPacking>& packings;  ///< one per sample
   const std::vector<ShellPacking>& contents;  ///< contents of soft particles
   std::uint64_t seed = 1;
-  std::string name;  ///< name of checkpoints and of progress: "macro", or that of the scene
+  std::string name;        ///< name of checkpoints and of progress: "macro", or that of the scene
+  std::string progress{};  ///< what progress says of laws instead: which of several packings
 };
 
 /// A run and the states of it that are kept.

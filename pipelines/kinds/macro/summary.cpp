@@ -84,26 +84,30 @@ struct Below {
   std::string stresses;
 };
 
-/// Axial stress of a part of a test, mean over the samples that have all its points; without points where none has any.
-RunCurve mean_stress_curve(const NamedCurves& one, StrainPart part) {
+/// Axial or shear stress of a part of a test, mean over the samples that have all its points; without points where none
+/// has any.
+RunCurve mean_stress_curve(const NamedCurves& one, StrainPart part,
+                           std::vector<double> MacroCurve::*column = &MacroCurve::stress_axial) {
   std::vector<std::array<std::vector<double>, 2>> samples;
   std::size_t points = 0;
   for (const MacroCurve& c : one.curves) {
     const std::vector<double>& strain = strain_of_part(c, part);
-    if (!c.usable || !recorded(c, c.stress_axial) || strain.size() != c.strain.size()) continue;
+    if (!c.usable || !recorded(c, c.*column) || strain.size() != c.strain.size()) continue;
     const std::vector<std::size_t> taken = points_of_stages(c, part);
-    samples.push_back({values_at(strain, taken), values_at(c.stress_axial, taken)});
+    samples.push_back({values_at(strain, taken), values_at(c.*column, taken)});
     points = std::max(points, taken.size());
   }
   std::erase_if(samples, [&](const auto& s) { return s[0].size() != points; });
   const MacroTest test = one.curves.empty() ? MacroTest::oedometric : one.curves.front().test;
-  RunCurve out{part == StrainPart::shear ? "Axial stress, stages that slide" : "Axial stress",
-               strain_label(part, test),
-               "axial stress",
-               "Pa",
-               one.name,
-               {},
-               {}};
+  const bool axial = column == &MacroCurve::stress_axial;
+  RunCurve out{
+      std::string(axial ? "Axial" : "Shear") + " stress" + (part == StrainPart::shear ? ", stages that slide" : ""),
+      strain_label(part, test),
+      axial ? "axial stress" : "shear stress",
+      "Pa",
+      one.name,
+      {},
+      {}};
   for (std::size_t k = 0; k < points; ++k) {
     double strain = 0.0;
     double stress = 0.0;
@@ -151,6 +155,10 @@ std::vector<RunCurve> stress_curves(const std::vector<NamedCurves>& all) {
   for (const NamedCurves& one : all)
     for (const StrainPart part : strain_parts(one.curves.empty() ? MacroTest::oedometric : one.curves.front().test)) {
       RunCurve curve = mean_stress_curve(one, part);
+      if (!curve.x.empty()) out.push_back(std::move(curve));
+      if (part != StrainPart::shear) continue;
+      curve = mean_stress_curve(one, part, &MacroCurve::stress_xz);
+      curve.in_terminal = true;  // the axial stress may be imposed there
       if (!curve.x.empty()) out.push_back(std::move(curve));
     }
   return out;

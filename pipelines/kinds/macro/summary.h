@@ -40,7 +40,7 @@ void fields(auto&& visit, Of<BandRecord> auto& b) {
 void fields(auto&& visit, Of<BandedEnd> auto& e) {
   visit("of", e.of, Means{"quantity"});
   visit("engine", e.engine, Means{"law whose band it is"});
-  visit("strain", e.strain, Means{"strain at the last point", "1"});
+  visit("strain", e.strain, Means{"strain at the last point, of a stage that slides its shear strain", "1"});
   visit("stress", e.stress, Means{"mean over the samples", "Pa"});
   visit("low", e.low, Means{"lower end of the 95 % interval", "Pa"});
   visit("high", e.high, Means{"upper end of the 95 % interval", "Pa"});

@@ -41,9 +41,18 @@ std::string stress_figure(const ComparedCurves& scene, Stress member, const std:
              .y = {.label = fmt::format("{} stress [{}Pa]", what, prefix.symbol)}});
   add_curves(plot, scene.curves, member, prefix.factor, part);
   const bool periodic = !scene.curves.empty() && scene.curves.front().boundary == Boundary::periodic;
-  return plot.empty() ? ""
-                      : figure(plot.svg(), periodic ? "From the contacts of a periodic cell; one line per sample."
-                                                    : "From the wall forces; one line per sample.");
+  std::string caption = periodic ? "From the contacts of a periodic cell; one line per sample."
+                                 : "From the wall forces; one line per sample.";
+  if (member == &MacroCurve::stress_deviator)
+    caption +=
+        sliding ? " Twice the shear stress: 2σxz." : " Axial less lateral stress: σz − σx, 2σxz where all slides.";
+  return plot.empty() ? "" : figure(plot.svg(), caption);
+}
+
+/// The same deviator as comparisons take: of stages that slide, where z and x bear alike, twice the shear stress.
+std::string deviator_figure(ComparedCurves scene, StrainPart part) {
+  for (MacroCurve& c : scene.curves) c.stress_deviator = deviators(c, part);
+  return stress_figure(scene, &MacroCurve::stress_deviator, "deviator", part);
 }
 
 std::string force_figure(const ComparedCurves& scene) {
@@ -112,7 +121,7 @@ std::string scene_part(const std::vector<ComparedScene>& compared, const Compare
   std::vector<std::string> figures;
   for (const StrainPart part : strain_parts(scene.curves.empty() ? MacroTest{} : scene.curves.front().test)) {
     figures.push_back(stress_figure(scene, &MacroCurve::stress_axial, "axial", part));
-    figures.push_back(shear ? stress_figure(scene, &MacroCurve::stress_deviator, "deviator", part)
+    figures.push_back(shear ? deviator_figure(scene, part)
                             : stress_figure(scene, &MacroCurve::stress_lateral, "lateral", part));
   }
   figures.push_back(force_figure(scene));

@@ -45,10 +45,12 @@ using Packings = std::shared_ptr<const std::vector<MacroPacking>>;
 
 /// Packings as they are handed to a test: in contact, or with preparation "lammps" only placed. A failure says what to
 /// do.
-Packings packings_of(const MaterialVariant& v, const Run& run) {
+Packings packings_of(const MaterialVariant& v, const std::string& title, const Run& run) {
   const std::string file = file_of(packings_name(v), "material_initial");
   try {
-    auto packings = std::make_shared<const std::vector<MacroPacking>>(prepare_packings(v.setup, run, file));
+    auto packings = std::make_shared<const std::vector<MacroPacking>>(
+        title.empty() ? prepare_packings(v.setup, run, file)
+                      : prepare_packings(v.setup, run, file, title + ": preparing"));
     if (v.setup.spec.preparation != Preparation::lammps) save_packings(*packings, run, file);
     return packings;
   } catch (const DensityNotReached&) {  // says what to do
@@ -106,7 +108,8 @@ VariantResult run_variant(const MaterialScene& scene, const MaterialVariant& v,
                           const std::optional<LammpsEngine>& lammps, const Run& run,
                           const std::vector<MacroPacking>& packings) {
   VariantResult r{&v, file_of(v.name, "material"), {}, nullptr};
-  const MacroRuns runs{v.setup, packings, {}, run.seed, v.name};
+  const std::string title = packing_title(scene.variants, v);
+  const MacroRuns runs{v.setup, packings, {}, run.seed, v.name, title.empty() ? "" : title + ": testing"};
   const std::string states = file_of(v.name, "states_material");
   r.curves = lammps ? run_engines(runs, {}, run, states, outcomes_of_lammps(scene, v, *lammps, run, packings))
                     : kept_tests(runs, run, [&] { return run_engines(runs, {no_soft_laws()}, run, states); });
@@ -178,6 +181,14 @@ std::string tests_of(const std::vector<MaterialVariant>& variants, const Materia
 
 }  // namespace
 
+std::string packing_title(const std::vector<MaterialVariant>& variants, const MaterialVariant& of) {
+  const auto own = [](const MaterialVariant& v) { return !v.same_packings; };
+  const std::int64_t all = std::ranges::count_if(variants, own);
+  if (variants.size() < 2) return "";
+  const std::int64_t number = std::count_if(variants.data(), &of + 1, own);
+  return fmt::format("packing {} of {}, {}", number, all, of.name);
+}
+
 VariantRuns run_variants(const MaterialScene& scene, const Run& run, const VariantOptions& options) {
   require_engine(scene, options.lammps);
   VariantRuns out;
@@ -187,7 +198,7 @@ VariantRuns run_variants(const MaterialScene& scene, const Run& run, const Varia
   };
   const auto prepared = [&](const MaterialVariant& v) -> Packings {
     try {
-      return packings_of(v, run);
+      return packings_of(v, packing_title(scene.variants, v), run);
     } catch (const UnusableResult& e) {
       const std::string tests = tests_of(scene.variants, v);
       failed(v, packings_name(v) == kMaterialEngine ? kMaterialEngine : "packing " + packings_name(v),
@@ -420,7 +431,7 @@ ExitStatus write_only(const MaterialScene& scene, const Run& run) {
   Packings packings;
   run.guard([&] {
     for (const MaterialVariant& v : scene.variants) {
-      if (!v.same_packings) packings = packings_of(v, run);
+      if (!v.same_packings) packings = packings_of(v, packing_title(scene.variants, v), run);
       write_lammps_files(lammps_runs(scene, v, laws, run), *packings, run.context);
     }
   });

@@ -44,6 +44,9 @@ struct VariantRuns {
   std::vector<VariantFailure> failures;
 };
 
+/// Which packing a variant has, as progress says it: "packing 7 of 26, NAME"; empty where there is one alone.
+std::string packing_title(const std::vector<MaterialVariant>& variants, const MaterialVariant& of);
+
 /// Prepares and tests all samples of all variants; writes material_NAME.h5, material_initial_NAME.h5 and kept states.
 /// One that fails costs no other. Throws UnusableResult where none is left.
 VariantRuns run_variants(const MaterialScene& scene, const Run& run, const VariantOptions& options = {});

@@ -162,8 +162,10 @@ void check_particles(const ParticlesSceneOf<D>& scene, Findings& out) {
   warn_of_fast(scene.system, scene.time.step, out);
   constexpr double kDay = 86400.0;
   if (seconds > kDay) out.warn("it takes about " + time_text(seconds));
+  const std::string busy = busy_text();  // threads of the trial may have waited for cores
   out.add("seconds", seconds,
-          fmt::format("expected time: about {:.3g} s with {} threads", seconds, omp_get_max_threads()));
+          fmt::format("expected time: about {:.3g} s with {} threads{}", seconds, omp_get_max_threads(),
+                      busy.empty() ? "" : "; " + busy + ": less once it is idle"));
 }
 
 template void check_particles<2>(const ParticlesSceneOf<2>&, Findings&);

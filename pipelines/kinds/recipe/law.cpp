@@ -8,6 +8,7 @@
 
 #include "calibrate/state_curves.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 #include "common/data/card_text.h"
 #include "common/data/law_words.h"
 #include "common/io/text_file.h"
@@ -38,6 +39,14 @@ MaterialLaw fit_coarsest(const RecipeScene& scene, const std::vector<VariantResu
 double grain_density(const RecipeScene& scene) {
   return scene.constituents.empty() ? scene.material.variants.front().setup.spec.density
                                     : mean_density(scene.constituents);
+}
+
+std::string no_cell_law_text(const std::vector<std::string>& problems, bool staged, bool shells) {
+  return fmt::format(
+      "no cell law of the coarsest level among its fines: {}; missing: cell_law.toml, the curve{} ({}); more grains "
+      "([grains] count) or more samples may do",
+      join_text(problems, "; "), shells ? "s \"cell law\" and \"shell law\"" : " \"cell law\"",
+      staged ? "the stages do not need them" : "the result is the equation of state alone");
 }
 
 CellCard among_all_fines(const RecipeScene& scene, const CellCard& coarsest, const OnsetByForms& fines) {

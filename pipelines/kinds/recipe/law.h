@@ -15,6 +15,9 @@ namespace softgrain {
 MaterialLaw fit_coarsest(const RecipeScene& scene, const std::vector<VariantResult>& results,
                          const std::optional<StateFit>& states, std::uint64_t seed);
 
+/// Why there is no cell law, what is missing without it, and what to do; `shells`: a shell law was asked for too.
+std::string no_cell_law_text(const std::vector<std::string>& problems, bool staged, bool shells);
+
 /// Density of the grains of the whole, mean over their solid volume [kg/m^3].
 double grain_density(const RecipeScene& scene);
 

@@ -338,8 +338,12 @@ std::vector<RunCurve> curves_of(const report::RunData& run) {
 }
 
 NextSteps next_of(const report::RunData& run) {
-  return {"The coarsest level among all finer ones in a scene of your own: `softgrain macrosim SCENE.toml --law " +
-              run.directory + "/cell_law.toml`.",
+  const bool cells = run.summary_as<RecipeSummary>().material.head.files.contains("cell_law");
+  return {cells ? "The coarsest level among all finer ones in a scene of your own: `softgrain macrosim SCENE.toml "
+                  "--law " +
+                      run.directory + "/cell_law.toml`."
+                : "There is no cell law: the warning says why. More grains: `softgrain run SCENE.toml --set "
+                  "grains.count=4000`.",
           "How far from converged: `softgrain run SCENE.toml --set samples=4 --set grains.count=4000`; how far the law "
           "holds: a larger check, `--set check.grains=80000`."};
 }

@@ -241,7 +241,8 @@ class RecipeRun {
       out().curves.push_back(mean_curve("all grains", results_[*scene_.checked].curves));
     const MaterialLaw fitted = fit_coarsest(scene_, results_, states, run_.seed);
     summary_.law = fitted.summary;
-    for (const std::string& problem : fitted.problems) head().remarks.push_back("no cell law: " + problem);
+    if (!fitted.problems.empty())
+      head().warnings.push_back(no_cell_law_text(fitted.problems, staged(), scene_.shells.levels > 0));
     ShellLevels shells;
     if (scene_.shells.levels > 0) shells = measure_shells();
     if (fitted.problems.empty()) {
@@ -318,7 +319,7 @@ class RecipeRun {
   void judge(double end) {
     for (const RecipeCurve& c : out().curves)
       if (!c.problem.empty()) head().mark_unusable(c.name + ": " + c.problem);
-    // With stages the cell law is beside the result, and a remark says why there is none.
+    // With stages the cell law is beside the result, and a warning says why there is none.
     if (!staged() && (summary_.law.numbers.empty() || !summary_.law.usable)) head().status = RunStatus::not_usable;
     const RecipeCurve& whole = out().curves.front();
     const double p = (whole.axial.back() + 2.0 * whole.lateral.back()) / 3.0;
