@@ -12,12 +12,13 @@ namespace softgrain {
 
 namespace {
 
-/// Share of the chords of all spheres that are shorter than `length`.
-double shorter(const std::vector<SizePiece>& pieces, const std::vector<double>& hits, double length) {
+/// Share of the chords of all spheres that are shorter than `length`; `squares`: mean r^2 of each piece.
+double shorter(const std::vector<SizePiece>& pieces, const std::vector<double>& hits,
+               const std::vector<double>& squares, double length) {
   const double r = 0.5 * length;
   double share = 0.0;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
-    const double longer = r * r * (1.0 - pieces[k].passing(r, 0)) / pieces[k].mean_power(2);
+    const double longer = r * r * (1.0 - pieces[k].passing(r, 0)) / squares[k];
     share += hits[k] * (pieces[k].passing(r, 2) + longer);
   }
   return share;
@@ -29,9 +30,11 @@ std::vector<double> chords_of(const Grading& sizes, std::size_t count) {
   if (count < 2) throw InputError("rods: two or more are needed");
   const std::vector<SizePiece>& pieces = sizes.pieces();
   std::vector<double> hits;  // by lines, of the spheres of each piece
+  std::vector<double> squares;
   double all = 0.0;
   for (const SizePiece& piece : pieces) {
-    hits.push_back(piece.volume * piece.mean_power(2) / piece.mean_power(3));
+    squares.push_back(piece.mean_power(2));
+    hits.push_back(piece.volume * squares.back() / piece.mean_power(3));
     all += hits.back();
   }
   for (double& h : hits) h /= all;
@@ -43,7 +46,7 @@ std::vector<double> chords_of(const Grading& sizes, std::size_t count) {
   std::vector<double> share(kSteps + 1);
   for (std::size_t i = 0; i <= kSteps; ++i) {
     length[i] = std::exp(fall * (1.0 - static_cast<double>(i) / kSteps));
-    share[i] = i == kSteps ? 1.0 : shorter(pieces, hits, length[i] * longest);
+    share[i] = i == kSteps ? 1.0 : shorter(pieces, hits, squares, length[i] * longest);
   }
   std::vector<double> chords(count);
   for (std::size_t k = 0; k < count; ++k) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "calibrate/rod_packing.h"
 #include "common/core/particles.h"
@@ -24,17 +25,27 @@ constexpr double kMargin = 1.1;
 /// may replace. What is refused is judged by the samples of the run themselves.
 constexpr std::int64_t kDraws = 32;
 
+/// Share that rods of these sizes fill without friction. The same sizes are judged again and again, for numbers of
+/// bodies that are tried: the last one is remembered.
+double rod_fraction(const Grading& sizes) {
+  constexpr double kFrictionless = 0.7654;  // gap of rods
+  constexpr std::size_t kRods = 1000;
+  thread_local std::string last;
+  thread_local double fraction = 0.0;
+  if (last != sizes.text()) {
+    fraction = RodCurve(sizes, kRods).at(kFrictionless);
+    last = sizes.text();
+  }
+  return fraction;
+}
+
 /// Share of the cell that bodies fill when they jam: that of rods without friction, less with it.
 double jammed_fraction(const MacroSpec& spec) {
-  constexpr double kFrictionless = 0.7654;  // gap of rods
-  constexpr double kLoosest = 0.07;         // less at mu = 0.3 and above
-  constexpr std::size_t kRods = 1000;
-  double fraction = 0.72;  // of grains and soft particles together
+  constexpr double kLoosest = 0.07;  // less at mu = 0.3 and above
+  double fraction = 0.72;            // of grains and soft particles together
   if (!(spec.soft_share > 0.0))
-    fraction =
-        RodCurve(sizes_or_power_law(spec.solid_sizes, spec.exponent, spec.solid_radius_max, spec.solid_polydispersity),
-                 kRods)
-            .at(kFrictionless);
+    fraction = rod_fraction(
+        sizes_or_power_law(spec.solid_sizes, spec.exponent, spec.solid_radius_max, spec.solid_polydispersity));
   return fraction * (1.0 - kLoosest * std::min(1.0, spec.protocol.friction / 0.3));
 }
 
