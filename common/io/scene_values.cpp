@@ -20,6 +20,8 @@ std::string plain(double value) { return rounded_text(value, {15}); }
 /// A number with a unit outside this is no quantity of this world, and its powers are no numbers.
 constexpr double kLeast = 1e-30;
 constexpr double kMost = 1e30;
+/// Squares and cubes of a number without a unit stay finite below this.
+constexpr double kMostPlain = 1e100;
 
 /// "must be above 1", "must be from 0 to 0.5", "must be at least 0 and below 1".
 std::string describe(const Range& range) { return "must be " + range_text(range); }
@@ -53,6 +55,7 @@ double number_of(const Table& table, const std::string& key, const toml::node& n
   if (!holds(range, value)) table.throw_error(key, node, describe(range));
   if (unit != Unit::none && value != 0.0 && (std::abs(value) < kLeast || std::abs(value) > kMost))
     table.throw_error(key, node, "must be 0 or from 1e-30 to 1e30 in SI units, either sign" + also(range));
+  if (std::abs(value) > kMostPlain) table.throw_error(key, node, "must be at most 1e100, either sign" + also(range));
   return value;
 }
 

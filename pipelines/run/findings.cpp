@@ -95,11 +95,12 @@ void Findings::add_disk(double bytes) {
 }
 
 std::string time_text(double seconds) {
+  constexpr double kNever = 1e9;  // days
   if (seconds < 10.0) return fmt::format("{:.2g} s", seconds);
   if (seconds < 120.0) return fmt::format("{:.0f} s", seconds);
   if (seconds < 7200.0) return fmt::format("{:.0f} min", seconds / 60.0);
   if (seconds < 2.0 * kDay) return fmt::format("{:.1f} h", seconds / 3600.0);
-  return fmt::format("{:.0f} days", seconds / kDay);
+  return seconds < kNever * kDay ? fmt::format("{:.0f} days", seconds / kDay) : "millions of years";
 }
 
 std::string busy_text(double load, int cores) {

@@ -504,6 +504,13 @@ TEST_F(Check, AFailedPackingNamesTheTestsThatFallWithIt) {
   EXPECT_EQ(test::summary_of(directory_.file("run"))["variants"].size(), 2U);
 }
 
+/// It was 38 digits of days.
+TEST_F(Check, ATimeBeyondReasonIsNotCountedInDays) {
+  const json found = scene_facts(
+      test::with_part(test::kTinyPowder, "aggregation_kappa = 1e2", "aggregation_kappa = 1e90"), "--threads 1");
+  EXPECT_TRUE(warned(found, "takes about millions of years of one core")) << found["warnings"];
+}
+
 TEST_F(Check, TakesAMoment) {
   const double before = time_of_children();
   for (const char* name : {"powder_method1", "glass_beads_small"}) (void)facts(kRoot + "/pipelines/" + name + ".toml");

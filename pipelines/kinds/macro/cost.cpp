@@ -93,6 +93,7 @@ struct PreparationTrial {
 
 PreparationTrial try_preparation(const MacroSpec& spec, std::uint64_t seed) {
   constexpr double kBudget = 3.0;
+  constexpr double kPatience = 10.0;  // budgets without any progress
   PreparationTrial out;
   double share = 0.0;
   const double start = thread_seconds();
@@ -100,7 +101,9 @@ PreparationTrial try_preparation(const MacroSpec& spec, std::uint64_t seed) {
     try {
       const auto watch = [&](double done) {
         share = done;
-        if (thread_seconds() - start > kBudget && done > 0.0) throw TrialOver{};
+        const double spent = thread_seconds() - start;
+        if (spent > kBudget && done > 0.0) throw TrialOver{};
+        if (spent > kPatience * kBudget) throw UnusableResult(fmt::format("no progress in {:.0f} s", spent));
       };
       out.packing = make_packing(spec, seed, 0, {watch});
     } catch (const TrialOver&) {

@@ -26,10 +26,11 @@ namespace {
 
 /// Over E as a number, as a pressure with its unit: that stays what it is where a later table changes E.
 void read_start_pressure(const SceneTable& t, MacroSetup& setup) {
-  constexpr Range kOverModulus{0.0, 1e-2, true, false};
+  // Below, overlaps are lost in the rounding of the places, and a box that shrinks so slowly comes to no end.
+  constexpr Range kOverModulus{1e-15, 1e-2, false, false};
   const Key key{"start_pressure",
                 "pressure at the end of the preparation: a number is over E, a text with a unit is a pressure "
-                "(`\"50 kPa\"`), at most 0.01 E"};
+                "(`\"50 kPa\"`), from 1e-15 to 0.01 E"};
   MacroSpec& spec = setup.spec;
   if (t.is_text(key.name)) {
     setup.start_stress = t.number(key, Unit::pressure, Range::positive());
@@ -39,10 +40,10 @@ void read_start_pressure(const SceneTable& t, MacroSetup& setup) {
   }
   if (!(setup.start_stress > 0.0)) return;
   spec.start_pressure = setup.start_stress / spec.youngs_modulus;
-  if (spec.start_pressure <= kOverModulus.high) return;
-  t.add_error(key.name, fmt::format("is {:.3g} E with E = {}; allowed: up to {:g} E", spec.start_pressure,
-                                    pressure_text(spec.youngs_modulus), kOverModulus.high));
-  spec.start_pressure = kOverModulus.high;
+  if (spec.start_pressure >= kOverModulus.low && spec.start_pressure <= kOverModulus.high) return;
+  t.add_error(key.name, fmt::format("is {:.3g} E with E = {}; allowed: from {:g} to {:g} E", spec.start_pressure,
+                                    pressure_text(spec.youngs_modulus), kOverModulus.low, kOverModulus.high));
+  spec.start_pressure = std::clamp(spec.start_pressure, kOverModulus.low, kOverModulus.high);
 }
 
 }  // namespace
@@ -154,6 +155,8 @@ void require_density(const SceneTable& t, const MacroSetup& setup) {
 
 namespace {
 
+constexpr Range kSizeRatios{1.0, 1e9, true, false};
+
 /// Keys of a power law take the place of a distribution that a common [macro] gave.
 void read_power_laws(const SceneTable& t, MacroSpec& spec) {
   if (t.has("solid_radius_max") || t.has("solid_polydispersity")) spec.solid_sizes.reset();
@@ -161,13 +164,13 @@ void read_power_laws(const SceneTable& t, MacroSpec& spec) {
   spec.solid_radius_max = t.number({"solid_radius_max", "largest radius of the solid grains", "shell radius Rs"},
                                    Unit::length, Range::positive(), spec.solid_radius_max);
   spec.solid_polydispersity = t.number({"solid_polydispersity", "largest over smallest radius of the solid grains"},
-                                       Unit::none, Range::above(1.0), spec.solid_polydispersity);
+                                       Unit::none, kSizeRatios, spec.solid_polydispersity);
   spec.soft_radius_max = t.number({"soft_radius_max", "largest radius of the soft particles", "shell radius Rs"},
                                   Unit::length, Range::positive(), spec.soft_radius_max);
   spec.soft_polydispersity = t.number(
       {"soft_polydispersity",
        "largest over smallest radius of the soft particles; `construction = \"voids\"`: smaller voids stay empty"},
-      Unit::none, Range::above(1.0), spec.soft_polydispersity);
+      Unit::none, kSizeRatios, spec.soft_polydispersity);
 }
 
 /// What else depends on the largest and the smallest body.
@@ -199,7 +202,7 @@ void read_bodies(const SceneTable& t, MacroSetup& setup) {
   spec.exponent =
       t.number({"exponent", "b of the power laws P(r) ~ r^-b of the radii of solid grains and soft particles",
                 "that of the grains in the soft particles; 3.5 if these have `sizes` or are not known"},
-               Unit::none, Range::above(1.0), spec.exponent);
+               Unit::none, Range{1.0, 20.0, true, false}, spec.exponent);
   read_power_laws(t, spec);
   if (t.has("solid_sizes"))
     spec.solid_sizes =

@@ -68,11 +68,11 @@ void read_grains(const SceneTable& t, MacroSpec& spec) {
                         8, 100000000, spec.bodies);
   if (t.has("exponent") || t.has("radius_max") || t.has("ratio")) spec.solid_sizes.reset();
   spec.exponent = t.number({"exponent", "power law of sizes: b of the number density P(r) ~ r^-b"}, Unit::none,
-                           Range::above(1.0), spec.exponent);
+                           Range{1.0, 20.0, true, false}, spec.exponent);
   spec.solid_radius_max =
       t.number({"radius_max", "largest radius"}, Unit::length, Range::positive(), spec.solid_radius_max);
-  spec.solid_polydispersity = t.number({"ratio", "span: largest over smallest radius"}, Unit::none, Range::above(1.0),
-                                       spec.solid_polydispersity);
+  spec.solid_polydispersity = t.number({"ratio", "span: largest over smallest radius"}, Unit::none,
+                                       Range{1.0, 1e9, true, false}, spec.solid_polydispersity);
   if (!t.has("sizes")) return;
   spec.solid_sizes.reset();
   if (const auto sizes =
@@ -123,8 +123,8 @@ void read_material_tables(const SceneTable& root, MacroSetup& setup, std::vector
   }
   spec.protocol = protocol_of(spec.preparation, spec.friction);
   const SceneTable packing = root.table_or_empty({"packing", "preparation of the packings"});
-  constexpr double kAboveAll = 1e15;  // [Pa]: where E was refused no pressure is too high for it
-  if (root.has_errors() && packing.is_text("start_pressure")) spec.youngs_modulus = kAboveAll;
+  constexpr double kAnyPressure = 1e13;  // [Pa]: where E was refused no pressure of this world is out of range
+  if (root.has_errors() && packing.is_text("start_pressure")) spec.youngs_modulus = kAnyPressure;
   read_finer_preparation(packing, setup);
   require_own_preparation(packing, spec);
   read_test(root.table_or_empty({"test", "test of the prepared packings"}), spec);
