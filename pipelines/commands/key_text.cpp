@@ -17,11 +17,11 @@ namespace {
 
 constexpr double kUnlimited = 1e11;  // counts up to this have no upper end that means anything
 
-/// An end of a range with six digits; what only allows for rounding is left out.
+/// An end of a range with six digits; what only allows for rounding is left out. A small end above zero is meant.
 double shown_end(double end) {
   constexpr double kRounding = 1e-8;
   if (!std::isfinite(end)) return end;
-  return std::abs(end) < kRounding ? 0.0 : std::stod(rounded_text(end, {6}));
+  return end > -kRounding && end < 0.0 ? 0.0 : std::stod(rounded_text(end, {6}));
 }
 
 /// "m, above 0", "\"fast\", \"slow\"", "list, above 0". `quote` stands on both sides of a word.

@@ -176,7 +176,7 @@ std::string text_of(const MacroPart& part) {
 std::string text_of(const std::string& quantity, const std::vector<RatioRow>& rows) {
   std::string out;
   for (const RatioRow& r : rows) {
-    out += fmt::format("  {:<14} {:>6.3f} {:>5} {:>24} {:>24} {:>20}\n", quantity, r.delta, r.reference.n,
+    out += fmt::format("  {:<14} {:>6.3f} {:>5} {:>22} {:>22} {:>20}\n", quantity, r.delta, r.reference.n,
                        error_text(r.candidate.mean, r.candidate.error), error_text(r.reference.mean, r.reference.error),
                        error_text(r.ratio.ratio, r.ratio.error));
   }
@@ -197,7 +197,7 @@ std::string jumps_text(const std::vector<RatioRow>& rows) {
 }
 
 std::string ratio_header() {
-  return fmt::format("  {:<14} {:>6} {:>5} {:>24} {:>24} {:>20}\n", "", "Delta", "n", "candidate", "reference",
+  return fmt::format("  {:<14} {:>6} {:>5} {:>22} {:>22} {:>20}\n", "", "Delta", "n", "candidate", "reference",
                      "ratio");
 }
 

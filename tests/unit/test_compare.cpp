@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <sstream>
+#include <string>
 
 #include "common/core/error.h"
 #include "pipelines/compare/compare.h"
@@ -192,6 +194,16 @@ TEST(CompareRelaxations, FindsTheFactorThatWasPutIn) {
   EXPECT_NEAR(c.stiffness_secant.back().ratio.ratio, 1.0 / 0.96, 1e-9);
   EXPECT_NEAR(c.reference_normal_cost.loop_passes, 40000.0, 1e-9);
   EXPECT_NEAR(c.candidate_normal_cost.seconds, 0.4 / 6.0, 1e-12);
+  CompareResult result;
+  result.relaxations = {c};
+  std::istringstream lines(to_text(result));
+  int rows = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("  Fn ")) continue;
+    ++rows;
+    EXPECT_LT(line.size(), 99U) << "lines of 100 are broken at their spaces, and columns are lost: " << line;
+  }
+  EXPECT_EQ(rows, 6);
 }
 
 TEST(CompareRelaxations, StiffnessIsInNewtonPerMetre) {
