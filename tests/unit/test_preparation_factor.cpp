@@ -137,5 +137,33 @@ TEST_P(PreparationFactors, CellsFromDensityAloneStartWithThePressureOfTheirPrepa
 }
 INSTANTIATE_TEST_SUITE_P(Forms, PreparationFactors, testing::Values(StateForm::porosity, StateForm::pores));
 
+/// Shear notices a small error of the excess pores; without memory, or where another preparation explains it, a large
+/// one alone is said.
+TEST(CellStartRemark, SaysThatACardWithMemoryIsOfAnotherGrading) {
+  MacroSpec spec;
+  spec.preparation = Preparation::fast;
+  spec.start_pressure = 1e-4;
+  spec.cells = CellMatter{factor_card(StateForm::porosity), 0.3};
+  spec.cells->card.mixture_high = 4.0;
+  CellStart start;
+  start.excess_share = 1.03;
+  EXPECT_EQ(start_remark(spec, start), "");
+  for (const double share : {1.15, 0.83}) {
+    start.excess_share = share;
+    EXPECT_NE(start_remark(spec, start).find("a card of this grading"), std::string::npos) << share;
+  }
+  spec.cells->at_density = true;
+  EXPECT_EQ(start_remark(spec, start), "");
+  spec.cells->at_density = false;
+  spec.preparation = Preparation::dense;
+  EXPECT_EQ(start_remark(spec, start).find("excess pores"), std::string::npos) << "the preparation differs";
+  spec.cells->preparation = "dense";
+  EXPECT_NE(start_remark(spec, start).find("a card of this grading"), std::string::npos) << "its factor is known";
+  spec.cells->card.memory.reset();
+  EXPECT_EQ(start_remark(spec, start), "");
+  start.excess_share = 0.4;
+  EXPECT_EQ(start_remark(spec, start), "excess pores are 0.4 times those of the card at this start pressure");
+}
+
 }  // namespace
 }  // namespace softgrain
