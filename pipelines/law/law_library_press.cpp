@@ -57,7 +57,7 @@ constexpr const char* kWithoutLibrary =
 
 /// What in a press test that no material gave is to be looked at: forces go with E Rs^2, their ratio with the overlap.
 std::string look_at(const UnitBox& box, const PressNumbers& n) {
-  const double share = n.ln_shallow - n.ln_deep;
+  const double share = coordinates(n, 0.0)[1];  // whatever the friction
   if (n.ln_deep < box.low(0) || n.ln_deep > box.high(0))
     return "look at E and Rs in the comments and at the unit of the forces";
   if (share < box.low(1)) return "the force rises too late: look at where the overlap begins (# touch = ...)";
