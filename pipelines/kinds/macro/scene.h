@@ -29,6 +29,10 @@ template <>
 inline constexpr auto enum_names<BandEstimator> =
     enum_name_list<BandEstimator>({{BandEstimator::components, "components"}, {BandEstimator::draws, "draws"}});
 
+/// Of the largest over the smallest radius, and of b in P(r) ~ r^-b: powers of radii stay numbers.
+inline constexpr Range kSizeRatios{1.0, 1e9, true, false};
+inline constexpr Range kSizeExponents{1.0, 20.0, true, false};
+
 struct MacroSetup {
   MacroSpec spec;
   std::int64_t samples = 1;

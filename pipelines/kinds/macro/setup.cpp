@@ -155,8 +155,6 @@ void require_density(const SceneTable& t, const MacroSetup& setup) {
 
 namespace {
 
-constexpr Range kSizeRatios{1.0, 1e9, true, false};
-
 /// Keys of a power law take the place of a distribution that a common [macro] gave.
 void read_power_laws(const SceneTable& t, MacroSpec& spec) {
   if (t.has("solid_radius_max") || t.has("solid_polydispersity")) spec.solid_sizes.reset();
@@ -202,7 +200,7 @@ void read_bodies(const SceneTable& t, MacroSetup& setup) {
   spec.exponent =
       t.number({"exponent", "b of the power laws P(r) ~ r^-b of the radii of solid grains and soft particles",
                 "that of the grains in the soft particles; 3.5 if these have `sizes` or are not known"},
-               Unit::none, Range{1.0, 20.0, true, false}, spec.exponent);
+               Unit::none, kSizeExponents, spec.exponent);
   read_power_laws(t, spec);
   if (t.has("solid_sizes"))
     spec.solid_sizes =

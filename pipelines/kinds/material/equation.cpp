@@ -83,7 +83,7 @@ EquationSettings read_equation(const SceneTable& t) {
   s.largest_span = t.number({"largest_span", "largest span of the variants that extrapolations use", "all"}, Unit::none,
                             Range::above(1.0), s.largest_span);
   s.spans = t.numbers({"spans", "spans for which the onset of pressure is extrapolated from the variants", "none"},
-                      Unit::none, Range{1.0, 1e9, true, false}, s.spans);
+                      Unit::none, kSizeRatios, s.spans);
   s.replicates = t.count({"replicates", "bootstrap replicates of the fit"}, 40, 100000, s.replicates);
   return s;
 }

@@ -68,11 +68,11 @@ void read_grains(const SceneTable& t, MacroSpec& spec) {
                         8, 100000000, spec.bodies);
   if (t.has("exponent") || t.has("radius_max") || t.has("ratio")) spec.solid_sizes.reset();
   spec.exponent = t.number({"exponent", "power law of sizes: b of the number density P(r) ~ r^-b"}, Unit::none,
-                           Range{1.0, 20.0, true, false}, spec.exponent);
+                           kSizeExponents, spec.exponent);
   spec.solid_radius_max =
       t.number({"radius_max", "largest radius"}, Unit::length, Range::positive(), spec.solid_radius_max);
-  spec.solid_polydispersity = t.number({"ratio", "span: largest over smallest radius"}, Unit::none,
-                                       Range{1.0, 1e9, true, false}, spec.solid_polydispersity);
+  spec.solid_polydispersity =
+      t.number({"ratio", "span: largest over smallest radius"}, Unit::none, kSizeRatios, spec.solid_polydispersity);
   if (!t.has("sizes")) return;
   spec.solid_sizes.reset();
   if (const auto sizes =
