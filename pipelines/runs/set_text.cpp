@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 #include <utility>
 
 #include "common/core/text.h"
@@ -45,6 +46,29 @@ constexpr std::size_t kColumns = 5;       ///< runs beside each other; more stan
 constexpr std::size_t kShown = 15;        ///< differences
 constexpr std::size_t kSampledRuns = 20;  ///< runs of a design in the terminal
 
+/// Rows with a name in the first column; where they would be broken at the end of the line, each name stands above its
+/// values.
+std::string named_rows(Rows rows, std::size_t indent) {
+  constexpr std::size_t kWidest = 98;
+  const auto lines_of = [](const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+  };
+  const std::string beside = law::aligned(rows, indent);
+  if (std::ranges::max(lines_of(beside), {}, &std::string::size).size() <= kWidest) return beside;
+  std::vector<std::string> names;
+  for (std::vector<std::string>& row : rows) names.push_back(std::exchange(row.front(), ""));
+  std::string text;
+  const std::vector<std::string> values = lines_of(law::aligned(rows, 2 * indent));
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (!names[k].empty()) text += std::string(indent, ' ') + names[k] + "\n";
+    text += values[k] + "\n";
+  }
+  return text;
+}
+
 /// A row per number, a column per run.
 std::string runs_across(const SetSummary& summary, const std::vector<RunValue>& numbers) {
   Rows rows(1, {""});
@@ -53,7 +77,7 @@ std::string runs_across(const SetSummary& summary, const std::vector<RunValue>& 
     rows.push_back({with_unit(n.name, n.unit)});
     for (const RunEntry& run : summary.runs) rows.back().push_back(cell_of(run, n.name));
   }
-  return legend(summary) + law::aligned(rows, 2);
+  return legend(summary) + named_rows(std::move(rows), 2);
 }
 
 /// A row per run, a column per number; as many as fit.

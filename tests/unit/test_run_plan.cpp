@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "common/core/error.h"
 #include "common/io/scene.h"
@@ -212,6 +213,26 @@ TEST(FlatScene, NamesKeysAsSetDoesAndWritesEqualNumbersAlike) {
                    {"seed", "1"}, {"macro.mu", "0.3"}, {"macro.list", "[1, 2]"}, {"contact.0.mu", "0.5"}}));
   EXPECT_EQ(flat_scene("mu = 3e-1\n", "s"), flat_scene("mu = 0.3\n", "s"));
   EXPECT_THROW((void)flat_scene("mu = = 3\n", "s"), InputError);
+}
+
+/// Long names stand above their values: broken lines lose their columns.
+TEST(SetText, NamesThatAreTooLongStandAboveTheirValues) {
+  SetSummary set;
+  const std::string name = "constrained modulus, upper half of the stress, unloading (levels-1-2-20)";
+  for (const char* run : {"first", "second"}) {
+    RunEntry entry;
+    entry.name = run;
+    entry.status = RunStatus::good;
+    entry.numbers = {{"K0", "", 0.5, 0.01}, {name, "Pa", 1.918e8, 1.9e7}};
+    set.runs.push_back(entry);
+  }
+  const std::string text = numbers_text(set);
+  EXPECT_NE(text.find("\n  " + name + " [Pa]\n    "), std::string::npos) << text;
+  EXPECT_NE(text.find("\n  K0\n    "), std::string::npos) << text;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) EXPECT_LT(line.size(), 99U) << line;
+  for (RunEntry& run : set.runs) run.numbers.pop_back();
+  EXPECT_EQ(numbers_text(set).find("  K0\n"), std::string::npos) << "beside its values where there is room";
 }
 
 }  // namespace
