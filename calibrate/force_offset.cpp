@@ -258,7 +258,7 @@ std::string subtracted_text(const ForceCurves& curves, const std::vector<ForceOf
   const bool by_shape = std::ranges::any_of(of, [](const ForceOffset& o) { return o.readings < kLeastReadings; });
   return fmt::format(
       "{}: a constant force offset of {}, by {} without contact (before touch, or below Delta = {:.3g}){}, was "
-      "subtracted from all forces of {} (--set offset=keep leaves it)",
+      "subtracted from all forces of {} (softgrain calibrate --set offset=keep leaves it)",
       samples_text(curves, of), forces_text(of), readings_text(of), std::ranges::max(of, {}, &ForceOffset::below).below,
       by_shape ? " and the shape of the curve" : "", of.size() == 1 ? "the sample" : "each sample");
 }
