@@ -92,7 +92,8 @@ FinesLaw fines_law_of(const CellCard& card, double youngs_modulus, const std::st
   return {equation_of(card, youngs_modulus),
           *f * card.void_ratio.value,
           {*f * card.excess_alone.value, *f * card.excess_many.value, card.excess_decay.value},
-          card.memory ? card.memory->critical_pores.value / *f : 0.0};
+          card.memory ? card.memory->critical_pores.value / *f : 0.0,
+          !preparation.empty()};
 }
 
 double fines_volume(const CellMatter& matter, double coarse) { return coarse * matter.share / (1.0 - matter.share); }
@@ -179,14 +180,17 @@ std::string start_remark(const MacroSpec& spec, const CellStart& start) {
     add(fmt::format("fines are {:.3g} times the volume of coarse grains, and excess pores were measured up to {:.3g}",
                     mixture, card.mixture_high));
   if (const std::string other = other_preparation_text(spec); !other.empty()) add(other);
-  // Onsets follow the start pressure, pores at the critical state follow the card: where both are of one preparation,
-  // the grading differs. A share of 1.15 took 63 % of the pressure in shear, one of 0.83 added 26 %.
-  const bool of_other_grading = card.memory && other_preparation_text(spec).empty();
+  // Onsets follow the start pressure, pores at the critical state follow the card where the preparation was not said:
+  // a share of 1.15 then took 63 % of the pressure in shear, one of 0.83 added 26 %.
+  const bool of_other_grading = card.memory && spec.cells->preparation.empty() && other_preparation_text(spec).empty();
   const double far = of_other_grading ? 0.05 : 0.5;
   if (!spec.cells->at_density && std::abs(start.excess_share - 1.0) > far)
     add(fmt::format(
         "excess pores are {:.3g} times those of the card at this start pressure{}", start.excess_share,
-        of_other_grading ? ", which the critical state does not follow: shear needs a card of this grading" : ""));
+        of_other_grading
+            ? fmt::format(", which the critical state does not follow; with [fines] preparation = \"{}\" it does",
+                          card.preparation)
+            : ""));
   if (!spec.cells->at_density && spec.start_pressure < card.pressure_low)
     add(fmt::format("the specimen starts at p/E = {:.3g}, below {:.3g}, from which on the law was fitted",
                     spec.start_pressure, card.pressure_low));

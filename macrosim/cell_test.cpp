@@ -116,6 +116,7 @@ std::string hash_of(const CellMatter& matter) {
     if (n.key != "K0") text += fmt::format(" {:a}", n.estimate.value);
   if (const auto factor = void_ratio_factor(matter.card, matter.preparation); factor && *factor != 1.0)
     text += fmt::format(" void ratios times {:a}", *factor);
+  if (matter.card.memory && !matter.preparation.empty()) text += " critical state follows the start";
   return short_hash(text);
 }
 

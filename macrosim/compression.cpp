@@ -24,6 +24,10 @@ DampedOptions relaxation_options(const MacroSpec& spec, const MacroStage& stage,
   options.tolerance = stage.tolerance;
   options.max_passes = spec.max_passes;
   options.force_floor = test_force_floor(spec, macro.largest_radius);
+  if (spec.balance == Balance::own_load) {
+    const Vec3 stress = box_stress(macro.system, macro.box);
+    options.own_stress = (stress[0] + stress[1] + stress[2]) / 3.0;
+  }
   return options;
 }
 

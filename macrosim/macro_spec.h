@@ -66,6 +66,16 @@ struct PreparationProtocol {
   std::int64_t max_passes = 200000;  ///< largest number of passes of a relaxation
 };
 
+/// What net forces are compared with, in preparations and tests.
+enum class Balance {
+  mean_force,  ///< the mean contact force
+  own_load     ///< or what a grain bears under the mean stress, where that is more; see ForceScale
+};
+
+template <>
+inline constexpr auto enum_names<Balance> = enum_name_list<Balance>({{Balance::mean_force, "mean-force"},
+                                                                     {Balance::own_load, "own-load"}});
+
 /// What an axis does in a stage.
 struct AxisDrive {
   bool by_stress = false;
@@ -134,7 +144,8 @@ struct MacroSpec {
   Construction construction = Construction::mixed;
   std::int64_t bodies = 200;  ///< mixed: solid grains + soft particles; voids: solid grains
   Preparation preparation = Preparation::frictionless;
-  PreparationProtocol protocol;        ///< details of the preparation, see protocol_of()
+  PreparationProtocol protocol;  ///< details of the preparation, see protocol_of()
+  Balance balance = Balance::mean_force;
   double soft_share = 0.45;            ///< share of soft particles, by their shell, in the volume of all bodies
   double exponent = 3.5;               ///< power-law exponent b of the radii of both kinds
   double solid_radius_max = 0.016;     ///< largest radius of the solid grains [m]

@@ -166,7 +166,7 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* fram
   for (;;) {
     if (checks_convergence(result.passes)) {
       const double scale = std::max(state_.stiffness.mean_force(), options_.force_floor);
-      const double worst = worst_net_force(s.particles, options_.unbalanced_fraction);
+      const double worst = worst_net_force(s.particles, {scale, options_.own_stress}, options_.unbalanced_fraction);
       result.residual = scale > 0.0 ? worst / scale : 0.0;
       if (!std::isfinite(worst))
         result.end = RelaxationEnd::diverged;

@@ -18,6 +18,7 @@ struct DampedOptions {
   double tolerance = 1e-2;           ///< largest net force over mean contact force at the end
   double unbalanced_fraction = 0.0;  ///< share of the bodies, rounded down, whose net force may be larger
   double force_floor = 0.0;          ///< the mean contact force never counts for less than this [N]
+  double own_stress = 0.0;           ///< ForceScale::own_stress [Pa]
   std::int64_t max_passes = 20000;
   double max_move = 0.05;  ///< largest move of a body per pass, in its radius
   /// No body moves farther per pass than this times the root mean square move of all, both in radii (MoveLimit).

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
 
 #include "common/core/limits.h"
 #include "common/dynamics/force_pass.h"
@@ -19,6 +22,17 @@ double net_force2(const Particles<D>& p, std::size_t u) {
   if (!(p.inverse_inertia[u] > 0.0)) return f2;
   const double m2 = norm2(p.torque[u]) / (p.sphere[u].r * p.sphere[u].r);
   return exceeds(m2, f2) ? m2 : f2;
+}
+
+/// The largest of all but a share of them, rounded down; what is not a number is never left out.
+double largest_but_for(std::vector<double> all, double but_for) {
+  const auto left_out = static_cast<std::ptrdiff_t>(but_for * static_cast<double>(all.size()));
+  const auto wrong = std::find_if(all.begin(), all.end(), [](double x) { return !std::isfinite(x); });
+  if (wrong != all.end()) return *wrong;
+  if (all.empty()) return 0.0;
+  const auto worst = all.end() - 1 - std::max<std::ptrdiff_t>(left_out, 0);
+  std::nth_element(all.begin(), worst, all.end());
+  return *worst;
 }
 
 template <int D>
@@ -41,14 +55,25 @@ double worst_net_force(const Particles<D>& p) {
 
 template <int D>
 double worst_net_force(const Particles<D>& p, double but_for) {
-  const auto left_out = static_cast<std::ptrdiff_t>(but_for * static_cast<double>(p.force.size()));
-  if (left_out <= 0) return worst_net_force(p);
+  if (static_cast<std::ptrdiff_t>(but_for * static_cast<double>(p.force.size())) <= 0) return worst_net_force(p);
   std::vector<double> all(p.force.size());
   for (std::size_t u = 0; u < all.size(); ++u) all[u] = net_force2(p, u);
-  if (std::any_of(all.begin(), all.end(), [](double f2) { return !std::isfinite(f2); })) return worst_net_force(p);
-  const auto worst = all.end() - 1 - left_out;
-  std::nth_element(all.begin(), worst, all.end());
-  return std::sqrt(*worst);
+  return std::sqrt(largest_but_for(std::move(all), but_for));
+}
+
+template <int D>
+double ForceScale::of(double r) const {
+  constexpr double kShare = (D == 3 ? 4.0 : 2.0) * std::numbers::pi / 6.0;
+  return std::max(mean, kShare * own_stress * (D == 3 ? r * r : r));
+}
+
+template <int D>
+double worst_net_force(const Particles<D>& p, const ForceScale& scale, double but_for) {
+  if (!(scale.own_stress > 0.0 && scale.mean > 0.0)) return worst_net_force(p, but_for);
+  std::vector<double> all(p.force.size());
+  for (std::size_t u = 0; u < all.size(); ++u)
+    all[u] = std::sqrt(net_force2(p, u)) * (scale.mean / scale.of<D>(p.sphere[u].r));
+  return largest_but_for(std::move(all), but_for);
 }
 
 template <int D>
@@ -78,5 +103,9 @@ template double worst_net_force<2>(const Particles<2>&);
 template double worst_net_force<3>(const Particles<3>&);
 template double worst_net_force<2>(const Particles<2>&, double);
 template double worst_net_force<3>(const Particles<3>&, double);
+template double ForceScale::of<2>(double) const;
+template double ForceScale::of<3>(double) const;
+template double worst_net_force<2>(const Particles<2>&, const ForceScale&, double);
+template double worst_net_force<3>(const Particles<3>&, const ForceScale&, double);
 
 }  // namespace softgrain

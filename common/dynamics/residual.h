@@ -35,6 +35,21 @@ double worst_net_force(const Particles<D>& particles);
 template <int D>
 double worst_net_force(const Particles<D>& particles, double but_for);
 
+/// What net forces are compared with.
+struct ForceScale {
+  double mean = 0.0;        ///< of the contact forces [N]
+  double own_stress = 0.0;  ///< mean stress around the bodies; 0: the mean contact force is the scale of all [Pa]
+
+  /// A sixth of the contact forces on a sphere of radius r under that stress, 4 pi r^2 own_stress in all, where that is
+  /// above the mean: grains of one size have six neighbours. In the plane likewise, with 2 pi r own_stress.
+  template <int D>
+  [[nodiscard]] double of(double r) const;
+};
+
+/// The same where bodies have a scale of their own: net forces times scale.mean over the scale of their body.
+template <int D>
+double worst_net_force(const Particles<D>& particles, const ForceScale& scale, double but_for);
+
 /// Why a relaxation ended.
 enum class RelaxationEnd { not_run, converged, capped, diverged };
 

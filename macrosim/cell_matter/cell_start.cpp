@@ -99,7 +99,7 @@ struct Mixture {
       if (v >= 0.0) {
         out.fines.push_back(v);
         out.content.push_back({bodies.grain(i) + v, law.void_ratio * v + excess_of(i, s),
-                               law.critical_pores * (law.void_ratio * v + excess_of(i, 1.0))});
+                               law.critical_pores * (law.void_ratio * v + excess_of(i, law.of_preparation ? s : 1.0))});
         continue;
       }
       ++out.without_fines;

@@ -25,6 +25,10 @@ struct FinesLaw {
   double void_ratio = 0.0;  ///< e_J of the fines alone where they jam
   ExcessPores excess;
   double critical_pores = 0.0;  ///< r_c of ShearMemory; 0: without
+  /// Whether the material is known to be prepared as these void ratios are. What excess pores the start pressure then
+  /// asks for beyond those above are of the grading, which the critical state follows too; else it may be of a looser
+  /// or denser preparation, which has the same critical state.
+  bool of_preparation = false;
 };
 
 /// The solid that each site represents. A grain has its own volume and surface. A soft body is fines alone (no solid,

@@ -131,6 +131,42 @@ TEST(MacroPreparation, EndsInBalanceAtThePressureAskedFor) {
     }
 }
 
+/// With balance "own-load": a wide span is at rest when every grain is, by the forces that it bears itself; coarse
+/// grains then are farther from rest than the mean contact force allows.
+TEST(MacroPreparation, OfAWideSpanEndsInTheBalanceOfEveryGrain) {
+  MacroSpec spec = solids(1500);
+  spec.solid_polydispersity = 12.0;
+  spec.protocol.tolerance = 3e-3;
+  spec.start_pressure = 1e-4;
+  spec.boundary = Boundary::periodic;
+  const MacroPacking by_mean = make_macro_packing(spec, 2, 0);
+  spec.balance = Balance::own_load;
+  const MacroPacking by_own = make_macro_packing(spec, 2, 0);
+  EXPECT_NE(by_own.high[0], by_mean.high[0]);
+  EXPECT_NEAR(by_own.solid_fraction(), by_mean.solid_fraction(), 1e-3);
+  const MacroSystem macro = as_grains(spec, by_own);
+  const auto& p = macro.system.particles;
+  std::vector<double> borne(static_cast<std::size_t>(p.size()), 0.0);
+  double mean = 0.0;
+  const auto contacts = contact_records(macro.system);
+  for (const ContactRecord<3>& c : contacts) {
+    borne[at(c.i)] += c.normal_force;
+    borne[at(c.j)] += c.normal_force;
+    mean += c.normal_force / static_cast<double>(contacts.size());
+  }
+  const double pressure = spec.start_pressure * spec.youngs_modulus;
+  const ForceScale scale{mean, pressure};
+  EXPECT_LT(worst_net_force(p, scale, 0.0), 1.1 * spec.protocol.tolerance * mean);
+  EXPECT_GT(residual(macro.system).relative(0.0), spec.protocol.tolerance);
+  double own = 0.0, expected = 0.0;
+  for (std::size_t u = 0; u < at(p.grains); ++u) {
+    if (p.sphere[u].r < 0.5 * spec.solid_radius_max) continue;
+    own += borne[u] / 6.0;
+    expected += scale.of<3>(p.sphere[u].r);
+  }
+  EXPECT_NEAR(own / expected, 1.3, 0.3) << "a grain bears the mean stress over the solid fraction";
+}
+
 /// Forty passes towards half the pressure.
 System3 pressed(MacroSystem macro, double pressure, int threads) {
   const int before = omp_get_max_threads();

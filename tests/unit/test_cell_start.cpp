@@ -113,6 +113,24 @@ TEST_P(CellStarts, AllCellsBeginAtTheGivenPressureWithAllTheFines) {
   }
 }
 
+/// Excess pores that the start pressure asks for are of the grading where the preparation is known: pores at the
+/// critical state are then r_c times those at the onset. Where it is not they stay those of the card.
+TEST_P(CellStarts, TheCriticalStateFollowsTheStartPressureWhereThePreparationIsKnown) {
+  CellSample s = cell_sample(40, 0.42, GetParam(), 2);
+  s.law.critical_pores = 0.9;
+  const CellStart unknown = start_at_pressure(s.law, s.bodies, s.volume, s.fines, 1e-4);
+  s.law.of_preparation = true;
+  const CellStart known = start_at_pressure(s.law, s.bodies, s.volume, s.fines, 1e-4);
+  ASSERT_GT(std::abs(known.excess_share - 1.0), 0.01);
+  for (std::size_t i = 0; i < s.volume.size(); ++i) {
+    const double fines = s.law.void_ratio * known.fines[i];
+    const double excess = known.content[i].pores - fines;
+    EXPECT_EQ(known.content[i].pores, unknown.content[i].pores);
+    EXPECT_NEAR(known.content[i].critical / (0.9 * (fines + excess)), 1.0, 1e-12);
+    EXPECT_NEAR(unknown.content[i].critical / (0.9 * (fines + excess / known.excess_share)), 1.0, 1e-12);
+  }
+}
+
 TEST_P(CellStarts, TheDensityGivesThePressureAndThatPressureTheSameExcess) {
   const CellSample s = cell_sample(40, 0.42, GetParam(), 2);
   const CellStart by_density = start_at_density(s.law, s.bodies, s.volume, s.fines);

@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -73,6 +74,25 @@ TEST(WorstNetForce, LeavesOutTheShareThatIsFarthestFromRest) {
   EXPECT_EQ(worst_net_force(s.particles, 0.35), 7.0);
   s.particles.force[3] = Vec3{{std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}};
   EXPECT_FALSE(std::isfinite(worst_net_force(s.particles, 0.35))) << "what is no number is not left out";
+}
+
+/// Grains under a stress of 2 bear 8 pi r^2 in all, a sixth of which is their scale where it is above the mean force.
+TEST(WorstNetForce, OfLargeBodiesIsComparedWithTheirOwnLoad) {
+  System<3> s = test::hertz_system<3>(0.0, 1.0, false);
+  for (const double r : {0.5, 1.0, 2.0, 4.0}) {
+    add_grain(s.particles, test::test_sphere<3>(Vec3{{30.0 * r, 0.0, 0.0}}, r, 2500.0));
+    s.particles.force.back() = Vec3{{0.0, 3.0 * r, 0.0}};
+  }
+  const ForceScale scale{5.0, 2.0};
+  EXPECT_EQ(scale.of<3>(1.0), 5.0) << "4.19 is below the mean";
+  EXPECT_NEAR(scale.of<3>(2.0), 8.0 * std::numbers::pi * 4.0 / 6.0, 1e-12);
+  EXPECT_NEAR(scale.of<2>(4.0), 4.0 * std::numbers::pi * 4.0 / 6.0, 1e-12) << "a circumference bears it in the plane";
+  // Over the scale: 1.5/5, 3/5, 6/16.8, 12/67.0.
+  EXPECT_NEAR(worst_net_force(s.particles, scale, 0.0), 3.0, 1e-12);
+  EXPECT_NEAR(worst_net_force(s.particles, scale, 0.25), 5.0 * 6.0 / scale.of<3>(2.0), 1e-12);
+  EXPECT_NEAR(worst_net_force(s.particles, scale, 0.75), 5.0 * 12.0 / scale.of<3>(4.0), 1e-12);
+  EXPECT_EQ(worst_net_force(s.particles, ForceScale{5.0, 0.0}, 0.0), 12.0);
+  EXPECT_EQ(worst_net_force(s.particles, ForceScale{0.0, 2.0}, 0.0), 12.0) << "nothing presses yet";
 }
 
 /// A set of one sample must not keep its work on one thread.

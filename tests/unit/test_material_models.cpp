@@ -105,7 +105,7 @@ TEST(MaterialModels, TheOnsetOfAnotherPreparationHasItsFactorOnAllPores) {
   MacroSpec spec;
   MaterialModel model{.name = "m", .kind = ModelKind::cells};
   for (const auto& [preparation, known, words] :
-       {std::tuple{Preparation::fast, "", ""},
+       {std::tuple{Preparation::fast, "fast", ""},
         {Preparation::slow, "slow", "these are 'slow' (void ratios times 0.975)"},
         {Preparation::dense, "", "these are 'dense'"}}) {
     spec.preparation = preparation;

@@ -211,6 +211,9 @@ ReadyMacro ready_macro(const Scene& scene, const CommonOptions& options) {
   const std::optional<LammpsEngine> lammps = ready.lammps = read_engine(options, macro.setup.spec.bodies);
   if (macro.setup.spec.preparation == Preparation::lammps && !lammps)
     throw InputError("key macro.preparation = \"lammps\" needs --engine lammps");
+  if (macro.setup.spec.balance != Balance::mean_force && lammps)
+    throw InputError(
+        "--engine lammps: LAMMPS compares net forces with the mean contact force alone; leave it out, or balance");
   if (macro.law.cells() != nullptr && lammps) throw InputError("--engine lammps: LAMMPS knows no cells; leave it out");
   if (lammps) refuse_sliding(macro.setup.spec);
   if (lammps && macro.law.unloading_ratio > 1.0)

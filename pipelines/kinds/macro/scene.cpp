@@ -77,8 +77,8 @@ CellMatter read_fines(const SceneTable& root) {
                                                    "(`start_pressure`) or `\"density\"` (`solid_fraction`)"},
                                                   CellStartFrom::pressure) == CellStartFrom::density;
   const Key preparation{"preparation",
-                        "preparation of the material, where it is not that of the card: void ratios are those of the "
-                        "card times its factor for it",
+                        "preparation of the material: void ratios are those of the card times its factor for it, 1 for "
+                        "its own. Where it is said, the critical state of a card with memory follows `start_pressure`",
                         "that of the card"};
   if (fines.has("preparation")) matter.preparation = to_string(fines.choice<Preparation>(preparation));
   return matter;

@@ -18,7 +18,7 @@ namespace softgrain {
 
 void refuse_protocol_keys(const SceneTable& t) {
   t.refuse({"inertial_number", "compaction_mu", "compaction_restitution", "coarse_share", "first_pressure",
-            "preparation_tolerance", "preparation_passes"},
+            "preparation_tolerance", "preparation_passes", "balance"},
            "LAMMPS has a protocol of its own: goes without preparation = \"lammps\"");
 }
 
@@ -97,6 +97,12 @@ void read_preparation(const SceneTable& t, MacroSetup& setup) {
   if (follows("preparation_passes")) p.max_passes = named.max_passes;
   p.max_passes =
       t.count({"preparation_passes", "largest number of loop passes of a relaxation"}, 10, 100000000, p.max_passes);
+  spec.balance = t.choice<Balance>(
+      {"balance",
+       "what net forces are compared with: `\"mean-force\"`: the mean contact force. `\"own-load\"`: where that is "
+       "more, a sixth of what a particle of its radius r bears under the mean stress p, 4 pi r^2 p. Takes fewer passes "
+       "where radii span a factor of 30 or more. In preparation and test"},
+      spec.balance);
   if (spec.preparation == Preparation::lammps) refuse_protocol_keys(t);
   if (!(p.inertial_number > 0.0))
     t.refuse({"compaction_restitution"}, "nothing moves at inertial_number = 0: give one, or preparation = \"fast\"");

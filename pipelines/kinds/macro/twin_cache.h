@@ -48,7 +48,7 @@ SOFTGRAIN_EVERY_MEMBER(AxisDrive, by_stress, value, as_at)
 SOFTGRAIN_EVERY_MEMBER(StageRecord, name, kind, way, modulus_stress, by_stress)
 SOFTGRAIN_EVERY_MEMBER(MacroStage, record, axis, shear, logarithmic, isotropic, steps, increments_per_step, tolerance)
 SOFTGRAIN_EVERY_MEMBER(TwinMotion, relaxation, speed, step_factor, settle_time, restitution)
-SOFTGRAIN_EVERY_MEMBER(MacroSpec, boundary, construction, bodies, preparation, protocol, soft_share, exponent,
+SOFTGRAIN_EVERY_MEMBER(MacroSpec, boundary, construction, bodies, preparation, protocol, balance, soft_share, exponent,
                        solid_radius_max, solid_polydispersity, soft_radius_max, soft_polydispersity, solid_sizes,
                        soft_sizes, cells, packing_text, solid_fill, youngs_modulus, poisson_ratio, friction,
                        wall_friction, rolling, density, start_pressure, test, splits, stages, modulus_stress,

@@ -484,6 +484,7 @@ std::vector<Property> properties_of_packings(const MaterialVariant& v) {
           {"first_pressure", number(p.first_pressure)},
           {"preparation_tolerance", number(p.tolerance)},
           {"preparation_passes", std::to_string(p.max_passes)},
+          {"balance", std::string(to_string(s.balance))},
           {"target solid fraction", v.setup.density ? number(v.setup.density->solid_fraction(s.density)) : "none"},
           {"solid_fraction_tolerance", v.setup.density ? number(v.setup.density->tolerance) : "none"},
           {"sizes of", whole_sizes(s)}};

@@ -362,7 +362,7 @@ double solid_fraction_at(const MacroCurve& c, std::size_t point) {
 
 std::string known_preparation(const CellCard& card, const MacroSpec& spec) {
   const std::string own = to_string(spec.preparation);
-  return own != card.preparation && void_ratio_factor(card, own) ? own : "";
+  return void_ratio_factor(card, own) ? own : "";
 }
 
 double onset_by_card(const CellCard& card, double share, const std::string& preparation) {

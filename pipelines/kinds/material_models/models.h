@@ -66,7 +66,8 @@ void map_by_state(const CellCard& card, const MacroCurve& truth, double pressure
 /// `preparation` e is times the factor of the card for it. Throws InputError where it has none.
 double onset_by_card(const CellCard& card, double share, const std::string& preparation = "");
 
-/// The preparation of the material, where the card has a factor for it; else empty: that of the card stands for it.
+/// The preparation of the material, where it is that of the card or one that the card has a factor for; else empty:
+/// that of the card stands for it.
 std::string known_preparation(const CellCard& card, const MacroSpec& spec);
 
 // Curves of models beside the truth.
