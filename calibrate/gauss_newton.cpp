@@ -128,16 +128,30 @@ void fill_free(const Decomposition& d, Linearisation& out) {
 
 }  // namespace
 
-Linearisation linearise(const LeastSquaresProblem& problem, const std::vector<double>& p, double rank_tolerance) {
+namespace {
+
+Linearisation undefined(std::size_t parameters) {
   Linearisation out;
-  out.step.assign(p.size(), 0.0);
-  out.inverse.assign(p.size() * p.size(), 0.0);
-  out.undetermined.assign(p.size(), false);
-  out.at_bound.assign(p.size(), false);
+  out.step.assign(parameters, 0.0);
+  out.inverse.assign(parameters * parameters, 0.0);
+  out.undetermined.assign(parameters, false);
+  out.at_bound.assign(parameters, false);
+  return out;
+}
+
+}  // namespace
+
+Linearisation linearise(const LeastSquaresProblem& problem, const std::vector<double>& p, double rank_tolerance) {
   Vector r(problem.residuals);
   Vector jacobian(problem.residuals * p.size());
-  out.defined = problem.evaluate(p, r) && all_finite(r) && evaluate_jacobian(problem, p, jacobian);
-  if (!out.defined) return out;
+  const bool defined = problem.evaluate(p, r) && all_finite(r) && evaluate_jacobian(problem, p, jacobian);
+  return defined ? linearised(problem, p, r, jacobian, rank_tolerance) : undefined(p.size());
+}
+
+Linearisation linearised(const LeastSquaresProblem& problem, const std::vector<double>& p, const std::vector<double>& r,
+                         const std::vector<double>& jacobian, double rank_tolerance) {
+  Linearisation out = undefined(p.size());
+  out.defined = true;
   for (const double x : r) out.residual_sum_of_squares += x * x;
   out.at_bound = active_bounds(problem, p, r, jacobian);
   const Decomposition d = decompose(jacobian, r, out.at_bound, rank_tolerance);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "calibrate/kink_minimum.h"
 #include "calibrate/trust_region.h"
 #include "common/core/error.h"
 
@@ -74,12 +75,17 @@ EndPoint run_strategy(const LeastSquaresProblem& problem, const std::vector<doub
   return best;
 }
 
+std::string on_kinks(std::size_t kinks) {
+  if (kinks == 0) return "";
+  return fmt::format(" on {} of the residuals, where the sum of squares rises to either side",
+                     kinks == 1 ? "a kink" : fmt::format("{} kinks", kinks));
+}
+
 /// Covariance, deviations and the reason of the end, from the linearisation at the best point.
 void describe(const LeastSquaresProblem& problem, const LeastSquaresOptions& options, const EndPoint& best,
-              LeastSquaresFit& fit) {
+              const Linearisation& at, LeastSquaresFit& fit) {
   const std::size_t n = best.parameters.size();
   fit.parameters = best.parameters;
-  const Linearisation at = linearise(problem, best.parameters, options.rank_tolerance);
   fit.residual_sum_of_squares = best.sum;
   fit.degrees_of_freedom = static_cast<std::ptrdiff_t>(problem.residuals) - static_cast<std::ptrdiff_t>(n);
   const double freedom = std::max<double>(1.0, static_cast<double>(fit.degrees_of_freedom));
@@ -101,7 +107,8 @@ void describe(const LeastSquaresProblem& problem, const LeastSquaresOptions& opt
     fit.message = "the Jacobian is not defined at the end point";
   } else if (fit.step_left <= kStepTolerance) {
     fit.end = FitEnd::converged;
-    fit.message = fmt::format("converged: the step left is {:.1e} standard deviations", fit.step_left);
+    fit.message =
+        fmt::format("converged{}: the step left is {:.1e} standard deviations", on_kinks(fit.kinks), fit.step_left);
   } else {
     fit.end = best.capped ? FitEnd::capped : FitEnd::stalled;
     fit.message = fmt::format("{}: a step of {:.1e} standard deviations is left ({})", to_string(fit.end),
@@ -111,6 +118,22 @@ void describe(const LeastSquaresProblem& problem, const LeastSquaresOptions& opt
     fit.message +=
         fmt::format("; the data determine {} of {} free parameters", fit.rank,
                     n - static_cast<std::size_t>(std::count(fit.at_bound.begin(), fit.at_bound.end(), true)));
+}
+
+void describe(const LeastSquaresProblem& problem, const LeastSquaresOptions& options, const EndPoint& best,
+              LeastSquaresFit& fit) {
+  describe(problem, options, best, linearise(problem, best.parameters, options.rank_tolerance), fit);
+}
+
+/// Ends a stalled fit in the minimum on kinks that it stalled before, where there is one.
+void settle_on_kinks(const LeastSquaresProblem& problem, const LeastSquaresOptions& options, const EndPoint& best,
+                     LeastSquaresFit& fit) {
+  const auto found = find_kink_minimum(problem, best.parameters, options.rank_tolerance);
+  if (!found || found->at.residual_sum_of_squares > best.sum * (1.0 + kSumTie)) return;
+  if (step_in_deviations(found->at, found->parameters, problem.residuals) > kStepTolerance) return;
+  fit.kinks = found->kinks;
+  describe(problem, options, {true, false, found->at.residual_sum_of_squares, found->parameters, best.message},
+           found->at, fit);
 }
 
 /// A clearly lower sum; or a slightly lower one at the same minimum (more digits).
@@ -182,6 +205,7 @@ LeastSquaresFit fit_least_squares(const LeastSquaresProblem& problem, const std:
     run_strategies(problem, spread_start(problem, starts[origin], k + 1), origin, options, best, fit);
     if (best.ran) describe(problem, options, best, fit);
   }
+  if (problem.kinks && fit.end == FitEnd::stalled) settle_on_kinks(problem, options, best, fit);
   if (!best.ran) {
     fit.end = FitEnd::failed;
     fit.message = "failed: the model could not be evaluated at any start";

@@ -53,14 +53,15 @@ std::vector<const MultiContactState*> loading_states(const MultiContactStates& s
 /// What would put a law right on one configuration, by least squares over its loading states.
 FormOffset form_offset(const MultiContactModel& model, const MultiContactStates& states, double discrepancy);
 
-/// Parameters of the planes: ln a, b, delta and the coupling that the form has.
-LeastSquaresFit fit_planes(MultiContactModel& model, const StateSelection& selection, double discrepancy,
-                           bool thorough);
+/// Parameters of the planes: ln a, b, delta and the coupling that the form has. `settle`: a fit that stalls may end in
+/// a minimum on a threshold (LeastSquaresProblem::kinks); false where it only gives the start of another one.
+LeastSquaresFit fit_planes(MultiContactModel& model, const StateSelection& selection, double discrepancy, bool thorough,
+                           bool settle = true);
 
 /// Weights per ratio and one exponent of solid or soft neighbours; `ratios` ascending (soft: of |ln ratio|).
 /// `thorough`: every strategy when the first one does not come to a minimum.
 LeastSquaresFit fit_partners(MultiContactModel& model, PartnerKind kind, const std::vector<double>& ratios,
-                             const StateSelection& selection, double discrepancy, bool thorough);
+                             const StateSelection& selection, double discrepancy, bool thorough, bool settle = true);
 
 /// Whether a law of this form is fitted to a configuration: the pair law knows one contact only.
 bool serves(const MultiContactStates& c, LawForm form);

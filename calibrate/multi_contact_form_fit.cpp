@@ -107,7 +107,7 @@ std::vector<double> number_slopes(const MultiContactSlopes& forces, const MultiC
 template <class Set>
 LeastSquaresFit fit_model(const MultiContactModel& model, const StateSelection& selection, double discrepancy,
                           const std::vector<std::vector<double>>& starts, const std::vector<ParameterBounds>& bounds,
-                          bool thorough, const Set& set) {
+                          bool thorough, bool settle, const Set& set) {
   const WeighedForces selects = weighed_forces(selection, discrepancy);
   const MultiContactSlopes forces(model.multi_contact, selects.states);
   const auto numbers_at = [&](std::span<const double> p) {
@@ -138,6 +138,7 @@ LeastSquaresFit fit_model(const MultiContactModel& model, const StateSelection& 
     }
     return std::all_of(jacobian.begin(), jacobian.end(), [](double x) { return std::isfinite(x); });
   };
+  if (settle) problem.kinks = [&](std::span<const double> p) { return forces.above_threshold(numbers_at(p)); };
   LeastSquaresOptions options;
   options.thorough = thorough;
   options.max_iterations = 300;
@@ -179,18 +180,18 @@ FormOffset form_offset(const MultiContactModel& model, const MultiContactStates&
   constexpr double kFar = 3.0;
   constexpr double kDeepest = 0.5;
   const LeastSquaresFit fit =
-      fit_model(model, {&states}, discrepancy, {{0.0, law.delta}}, {{-kFar, kFar}, {0.0, kDeepest}}, false, set);
+      fit_model(model, {&states}, discrepancy, {{0.0, law.delta}}, {{-kFar, kFar}, {0.0, kDeepest}}, false, true, set);
   return {fit.parameters[0], fit.parameters[1] - law.delta};
 }
 
-LeastSquaresFit fit_planes(MultiContactModel& model, const StateSelection& selection, double discrepancy,
-                           bool thorough) {
+LeastSquaresFit fit_planes(MultiContactModel& model, const StateSelection& selection, double discrepancy, bool thorough,
+                           bool settle) {
   const MultiContactPressure& p = model.form.pressure;
   const MultiContactCoupling& m = model.form.coupling;
   std::vector<double> start{std::log(p.a), p.b, p.delta};
   if (coupling_parameters(model.multi_contact) > 0) start.insert(start.end(), {m.m0, m.m1, m.m2});
-  LeastSquaresFit fit =
-      fit_model(model, selection, discrepancy, {start}, plane_bounds(model.multi_contact), thorough, set_planes);
+  LeastSquaresFit fit = fit_model(model, selection, discrepancy, {start}, plane_bounds(model.multi_contact), thorough,
+                                  settle, set_planes);
   set_planes(model, fit.parameters);
   return fit;
 }
@@ -205,7 +206,7 @@ bool any_undetermined(const LeastSquaresFit& fit) {
 }  // namespace
 
 LeastSquaresFit fit_partners(MultiContactModel& model, PartnerKind kind, const std::vector<double>& ratios,
-                             const StateSelection& selection, double discrepancy, bool thorough) {
+                             const StateSelection& selection, double discrepancy, bool thorough, bool settle) {
   const auto set = [&](MultiContactModel& tried, std::span<const double> p) {
     set_partners(tried, kind, ratios, {p.begin(), p.end() - 1}, p.back());
   };
@@ -213,7 +214,8 @@ LeastSquaresFit fit_partners(MultiContactModel& model, PartnerKind kind, const s
   start.back() = kind == PartnerKind::soft ? 1.2 : 1.0;
   const std::vector<ParameterBounds> bounds = partner_bounds(ratios.size());
   set(model, start);
-  LeastSquaresFit fit = fit_model(model, selection, discrepancy, {start}, bounds, false, set);
+  const bool settle_first = settle && !thorough;  // else further strategies come first
+  LeastSquaresFit fit = fit_model(model, selection, discrepancy, {start}, bounds, false, settle_first, set);
   if (any_undetermined(fit)) {
     // Where a weight leaves every state below the threshold, nothing changes with it: such a fit stays where it starts.
     std::vector<std::vector<double>> starts{start};
@@ -221,10 +223,10 @@ LeastSquaresFit fit_partners(MultiContactModel& model, PartnerKind kind, const s
       starts.push_back(start);
       for (std::size_t k = 0; k < ratios.size(); ++k) starts.back()[k] += more;
     }
-    fit = fit_model(model, selection, discrepancy, starts, bounds, false, set);
+    fit = fit_model(model, selection, discrepancy, starts, bounds, false, settle_first, set);
   }
   if (thorough && fit.end != FitEnd::converged)
-    fit = fit_model(model, selection, discrepancy, {start}, bounds, true, set);
+    fit = fit_model(model, selection, discrepancy, {start}, bounds, true, settle, set);
   set(model, fit.parameters);
   return fit;
 }
@@ -296,7 +298,8 @@ void fit_together(FormFit& form, const StateSelection& selection, double discrep
   const auto set = [&](MultiContactModel& tried, std::span<const double> p) {
     set_all(tried, form.partners, planes, p);
   };
-  const LeastSquaresFit all = fit_model(form.model, selection, discrepancy, {form.parameters()}, bounds, false, set);
+  const LeastSquaresFit all =
+      fit_model(form.model, selection, discrepancy, {form.parameters()}, bounds, false, true, set);
   if (all.end == FitEnd::failed || all.end == FitEnd::capped) return;
   set(form.model, all.parameters);
   form.planes = part_of(all, 0, planes);
@@ -352,12 +355,13 @@ FormFit fit_form(LawForm form, const std::vector<MultiContactStates>& states, do
   FormFit out;
   out.model = start;
   out.model.multi_contact = form;
+  const bool together = all_together(states, form);
   const auto select = [&](const auto& selects) {
     return selection_of(states, [&](const MultiContactStates& c) { return &c != without && selects(c); });
   };
   out.planes =
       fit_planes(out.model, select([&](const MultiContactStates& c) { return serves(c, form, PartnerKind::plane); }),
-                 discrepancy, thorough);
+                 discrepancy, thorough, !together);
   std::size_t first = out.planes.parameters.size();
   for (const PartnerKind kind : {PartnerKind::solid, PartnerKind::soft, PartnerKind::plane}) {
     const StateSelection own = select([&](const MultiContactStates& c) {
@@ -366,10 +370,10 @@ FormFit fit_form(LawForm form, const std::vector<MultiContactStates>& states, do
     });
     PartnerFit& k = out.partners.emplace_back(PartnerFit{kind, ratios_of(own), {}, first});
     if (own.empty()) continue;
-    k.fit = fit_partners(out.model, kind, k.ratios, own, discrepancy, thorough);
+    k.fit = fit_partners(out.model, kind, k.ratios, own, discrepancy, thorough, !together);
     first += k.fit.parameters.size();
   }
-  if (all_together(states, form)) out = refitted(out, states, discrepancy, without);
+  if (together) out = refitted(out, states, discrepancy, without);
   return out;
 }
 

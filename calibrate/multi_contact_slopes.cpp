@@ -132,6 +132,14 @@ void MultiContactSlopes::evaluate(std::span<const double> numbers, std::span<dou
   }
 }
 
+std::vector<double> MultiContactSlopes::above_threshold(std::span<const double> numbers) const {
+  const Evaluation at = evaluation(numbers);
+  std::vector<double> out;
+  for (const BodyState& b : at.bodies)
+    out.push_back(b.volume > 0.0 ? cap_depth(b.volume) - at.law.pressure.delta : -1.0);
+  return out;
+}
+
 namespace {
 
 /// B as MultiContactForm::felt() has it, below zero too: S dS/dnu.

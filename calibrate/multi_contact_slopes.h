@@ -34,6 +34,10 @@ class MultiContactSlopes {
   /// neighbour.
   void evaluate(std::span<const double> numbers, std::span<double> force) const;
 
+  /// Depth that counts, over Rs, less the threshold, of every soft particle of every state: where it changes its sign,
+  /// forces have a kink. -1 of one without overlap.
+  [[nodiscard]] std::vector<double> above_threshold(std::span<const double> numbers) const;
+
   /// d force/d number, row-major (forces x numbers). At the threshold of a body, where forces have a kink, the side
   /// without force.
   void slopes(std::span<const double> numbers, std::span<double> slope) const;

@@ -51,6 +51,11 @@ struct Linearisation {
 
 Linearisation linearise(const LeastSquaresProblem& problem, const std::vector<double>& p, double rank_tolerance);
 
+/// The same with residuals and slopes that are known: finite numbers.
+Linearisation linearised(const LeastSquaresProblem& problem, const std::vector<double>& p,
+                         const std::vector<double>& residuals, const std::vector<double>& jacobian,
+                         double rank_tolerance);
+
 /// Full Gauss-Newton steps while they shrink or S falls (and S does not grow beyond rounding): the last digits that a
 /// trust region leaves.
 void polish(const LeastSquaresProblem& problem, std::vector<double>& p, double rank_tolerance);
