@@ -47,7 +47,10 @@ class KinkSearch {
   std::optional<KinkMinimum> run() {
     if (!std::isfinite(sum_)) return {};
     for (int k = 0; k < kMaxSteps; ++k) {
-      const std::optional<Local> at = local(p_);
+      const std::optional<Matrix> slopes = all_slopes(p_);
+      if (!slopes) return {};
+      hold_what_has_no_effect(*slopes);
+      const std::optional<Local> at = local(*slopes);
       if (!at) return {};
       if (k == 0) take_reached(*at);
       const std::optional<Vector> step = step_along_kinks(*at);
@@ -108,31 +111,38 @@ class KinkSearch {
 
   [[nodiscard]] Vector kinks_at(const std::vector<double>& p) const { return as_vector(problem_.kinks(p)); }
 
-  [[nodiscard]] std::optional<Local> local(const std::vector<double>& p) const {
+  void hold_what_has_no_effect(const Matrix& slopes) {
+    std::erase_if(free_, [&](std::size_t j) { return !(slopes.col(static_cast<Index>(j)).norm() > 0.0); });
+  }
+
+  [[nodiscard]] std::optional<Local> local(const Matrix& slopes) const {
     Local at;
     std::vector<double> r(problem_.residuals);
-    const std::optional<Matrix> slopes = all_slopes(p);
-    if (!slopes || !problem_.evaluate(p, r) || free_.empty()) return {};
+    if (!problem_.evaluate(p_, r) || free_.empty()) return {};
     at.residuals = as_vector(r);
     const auto width = static_cast<Index>(free_.size());
-    at.slopes.resize(slopes->rows(), width);
+    at.slopes.resize(slopes.rows(), width);
     at.unit.resize(width);
-    at.kinks = kinks_at(p);
+    at.kinks = kinks_at(p_);
     at.gradients.resize(at.kinks.size(), width);
     for (Index k = 0; k < width; ++k) {
       const std::size_t j = free_[static_cast<std::size_t>(k)];
-      const double norm = slopes->col(static_cast<Index>(j)).norm();
-      if (!(norm > 0.0)) return {};  // nothing to tell it from
+      const double norm = slopes.col(static_cast<Index>(j)).norm();
       at.unit[k] = 1.0 / norm;
-      at.slopes.col(k) = slopes->col(static_cast<Index>(j)) / norm;
-      const double h = std::cbrt(std::numeric_limits<double>::epsilon()) * std::max(std::abs(p[j]), 1e-3);
-      std::vector<double> beside = p;
-      beside[j] = p[j] + h;
-      const Vector up = kinks_at(beside);
-      beside[j] = p[j] - h;
-      at.gradients.col(k) = (up - kinks_at(beside)) * (at.unit[k] / (2.0 * h));
+      at.slopes.col(k) = slopes.col(static_cast<Index>(j)) / norm;
+      at.gradients.col(k) = kink_slopes(j) * at.unit[k];
     }
     return at.gradients.allFinite() ? std::optional<Local>(at) : std::nullopt;
+  }
+
+  /// dg/dp_j by central differences.
+  [[nodiscard]] Vector kink_slopes(std::size_t j) const {
+    const double h = std::cbrt(std::numeric_limits<double>::epsilon()) * std::max(std::abs(p_[j]), 1e-3);
+    std::vector<double> beside = p_;
+    beside[j] = p_[j] + h;
+    const Vector up = kinks_at(beside);
+    beside[j] = p_[j] - h;
+    return (up - kinks_at(beside)) / (2.0 * h);
   }
 
   /// Whether a kink can be held beside the active ones.

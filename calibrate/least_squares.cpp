@@ -27,6 +27,7 @@ constexpr std::size_t kSpreadStarts = 16;
 void require_consistent(const LeastSquaresProblem& problem, const std::vector<std::vector<double>>& starts) {
   if (starts.empty() || starts.front().empty()) throw InputError("fit: no start values given");
   if (!problem.evaluate || problem.residuals == 0) throw InputError("fit: no residuals given");
+  if (problem.kinks && !problem.jacobian) throw InputError("fit: kinks need slopes of either side, so a Jacobian");
   for (const auto& start : starts) {
     if (start.size() != starts.front().size()) throw InputError("fit: starts have different numbers of parameters");
     if (!problem.bounds.empty() && problem.bounds.size() != start.size())

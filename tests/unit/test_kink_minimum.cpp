@@ -3,14 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <utility>
+#include <iterator>
+#include <vector>
 
 namespace softgrain {
 namespace {
 
-/// Forces a max(0, x - d) at depths x, d = p[1] + 0.3 p[2]^2, fitted to what is below zero at the threshold 0.4 itself,
-/// and three straight lines that draw the parameters to targets. `fall` is the force at 0.45.
+/// Forces p[0] max(0, x - d) at depths x = 0.45 and 1 with the threshold d = p[1] + 0.3 p[2]^2, and three straight
+/// lines that draw the parameters to targets. `fall` is the force at 0.45: below zero no threshold gives it, and S is
+/// least with that depth on the threshold.
 struct Corner {
   double fall = -1.0;
   std::vector<double> target{1.0, 0.35, 0.2};
@@ -26,6 +29,20 @@ struct Corner {
       r[0] = 10.0 * p[0] * std::max(0.0, 0.45 - d) - fall;
       r[1] = p[0] * std::max(0.0, 1.0 - d) - 0.7;
       for (std::size_t k = 0; k < 3; ++k) r[2 + k] = weight[k] * (p[k] - target[k]);
+      return true;
+    };
+    out.jacobian = [*this](std::span<const double> p, std::span<double> j) {
+      const double d = threshold(p);
+      std::fill(j.begin(), j.end(), 0.0);
+      const auto force = [&](std::size_t row, double factor, double x) {
+        if (!(x > d)) return;
+        j[3 * row] = factor * (x - d);
+        j[3 * row + 1] = -factor * p[0];
+        j[3 * row + 2] = -factor * p[0] * 0.6 * p[2];
+      };
+      force(0, 10.0, 0.45);
+      force(1, 1.0, 1.0);
+      for (std::size_t k = 0; k < 3; ++k) j[3 * (2 + k) + k] = weight[k];
       return true;
     };
     out.kinks = [](std::span<const double> p) { return std::vector{0.45 - threshold(p), 1.0 - threshold(p)}; };
@@ -108,7 +125,7 @@ TEST(KinkMinimum, FitThatConvergesIsLeftAsItIs) {
   EXPECT_EQ(fit.kinks, 0U);
 }
 
-/// Two thresholds at once: |p0| + |p1| and lines, S least at the origin.
+/// Two thresholds that cross at the origin, and lines that pull p[0] and p[1] above them.
 LeastSquaresProblem two_corners(double pull) {
   LeastSquaresProblem out;
   out.residuals = 5;
@@ -118,6 +135,14 @@ LeastSquaresProblem two_corners(double pull) {
     r[2] = 0.6 * (p[0] - pull);
     r[3] = 0.6 * (p[1] - pull);
     r[4] = p[2] - 3.0;
+    return true;
+  };
+  out.jacobian = [](std::span<const double> p, std::span<double> j) {
+    const double first = p[0] + 0.5 * p[1] > 0.0 ? 1.0 : 0.0;
+    const double second = p[1] - 0.5 * p[0] > 0.0 ? 1.0 : 0.0;
+    const double rows[15] = {first, 0.5 * first, 0.0, -0.5 * second, second, 0.0, 0.6, 0.0,
+                             0.0,   0.0,         0.6, 0.0,           0.0,    0.0, 1.0};
+    std::copy(std::begin(rows), std::end(rows), j.begin());
     return true;
   };
   out.kinks = [](std::span<const double> p) { return std::vector{p[0] + 0.5 * p[1], p[1] - 0.5 * p[0]}; };
@@ -151,9 +176,9 @@ TEST(KinkMinimum, KinkWithALowerSideIsLeft) {
 TEST(KinkMinimum, StallOffAMinimumStaysOne) {
   LeastSquaresProblem problem = Corner{}.problem();
   problem.jacobian = [plain = problem](std::span<const double> p, std::span<double> jacobian) {
-    const bool defined = jacobian_at(plain, p, jacobian);
+    plain.jacobian(p, jacobian);
     for (double& x : jacobian) x = -x;
-    return defined;
+    return true;
   };
   LeastSquaresOptions quick;
   quick.thorough = false;
@@ -176,6 +201,11 @@ TEST(KinkMinimum, OnlyNamedCornersWithARiseOnBothSidesCount) {
   ridge.evaluate = [](std::span<const double> p, std::span<double> r) {
     r[0] = std::max(0.0, p[0]) - 1.0;
     r[1] = 0.5 * (p[0] + 1.0);
+    return true;
+  };
+  ridge.jacobian = [](std::span<const double> p, std::span<double> j) {
+    j[0] = p[0] > 0.0 ? 1.0 : 0.0;
+    j[1] = 0.5;
     return true;
   };
   ridge.kinks = [](std::span<const double> p) { return std::vector{p[0]}; };

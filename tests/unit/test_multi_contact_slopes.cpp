@@ -71,6 +71,24 @@ TEST_P(MultiContactSlopesOf, ForcesAreThoseOfTheLaw) {
   EXPECT_EQ(force.back(), 0.0);  // far below the threshold
 }
 
+/// The particle in the middle of a state comes first, then its two soft neighbours.
+TEST_P(MultiContactSlopesOf, ParticlesAreAboveTheirThresholdWhereTheyBearForce) {
+  if (GetParam() == LawForm::pair) GTEST_SKIP() << "every contact by itself";
+  const MultiContactModel model = model_of(GetParam());
+  const MultiContactSlopes slopes(GetParam(), states_);
+  const std::vector<double> above = slopes.above_threshold(slopes.numbers_of(model));
+  ASSERT_EQ(above.size(), 9U);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_NEAR(above[3 * k],
+                cap_depth(multi_contact_volume(model, multi_contact_.partners, multi_contact_.overlaps[k])) -
+                    model.form.pressure.delta,
+                1e-13)
+        << k;
+  EXPECT_GT(above[0], 0.0);
+  for (std::size_t k = 6; k < 9; ++k) EXPECT_LT(above[k], 0.0) << "no force in the last state";
+  EXPECT_EQ(above[8], -1.0) << "no overlap";
+}
+
 TEST_P(MultiContactSlopesOf, SlopesAreTheDifferencesOfForces) {
   const MultiContactSlopes slopes(GetParam(), states_);
   const std::vector<double> numbers = slopes.numbers_of(model_of(GetParam()));
