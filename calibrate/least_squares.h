@@ -32,7 +32,7 @@ struct LeastSquaresProblem {
   ResidualFunction evaluate;
   JacobianFunction jacobian;            ///< empty: central differences
   std::vector<ParameterBounds> bounds;  ///< empty, or one per parameter
-  KinkFunction kinks;                   ///< empty: residuals are smooth; else `jacobian` must be given
+  KinkFunction kinks = nullptr;         ///< empty: residuals are smooth; else `jacobian` must be given
 };
 
 struct LeastSquaresOptions {

@@ -138,7 +138,6 @@ TEST(MacroPreparation, OfAWideSpanEndsInTheBalanceOfEveryGrain) {
   spec.solid_polydispersity = 12.0;
   spec.protocol.tolerance = 3e-3;
   spec.start_pressure = 1e-4;
-  spec.boundary = Boundary::periodic;
   const MacroPacking by_mean = make_macro_packing(spec, 2, 0);
   spec.balance = Balance::own_load;
   const MacroPacking by_own = make_macro_packing(spec, 2, 0);
