@@ -393,7 +393,7 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
   std::vector<std::pair<std::string, std::string>> files;  // by key; read when all choices are known
   for (const Key& key : {Key{"card", "law card (pair law, as published)"},
                          Key{"table", "law table; `table`, `card` or both must be given"}})
-    if (law.has(key.name)) files.emplace_back(key.name, law_path(scene, law.text(key)));
+    if (law.has(key.name)) files.emplace_back(key.name, law_path(scene, law.filled_text(key)));
   const bool with_table = law.has("table");
   if (files.empty()) law.throw_error("table", "give a law table, a law card, or both");
   if (law.has("forms")) out.forms = read_forms(law, with_table);
