@@ -36,7 +36,7 @@ VoidFilling fill(const MacroSpec& spec, const MacroPacking& packing) {
 }
 
 [[noreturn]] void refuse(const MacroSpec& spec, double fraction, double reached) {
-  throw InputError(
+  throw UnfitScene(
       "macro: soft_share = " + std::to_string(spec.soft_share) + " cannot be reached: between solid grains " +
       "that fill " + std::to_string(fraction) + " of the box, soft particles of radii from " +
       std::to_string(spec.soft_radius_max / spec.soft_polydispersity) + " to " + std::to_string(spec.soft_radius_max) +
@@ -69,7 +69,7 @@ void add_soft(const MacroSpec& spec, MacroPacking& packing) {
 MacroPacking make_constructed_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample,
                                       const PreparationWatch& watch) {
   if (!(spec.soft_share < 1.0))
-    throw InputError("macro: construction \"voids\" needs solid grains: soft_share below 1");
+    throw UnfitScene("macro: construction \"voids\" needs solid grains: soft_share below 1");
   const double fraction = spec.solid_fill > 0.0 ? spec.solid_fill : kFilledTogether * (1.0 - spec.soft_share);
   MacroPacking packing =
       place_loosely(drawn_bodies(spec, seed, sample), seed, sample, std::min(0.30, fraction), spec.boundary);

@@ -69,7 +69,7 @@ void require_room_for_images(const std::vector<MacroBody>& bodies) {
   const double edge = std::cbrt(volume / kPackedShare);
   if (edge >= kShortestPeriod * largest) return;
   const double enough = static_cast<double>(bodies.size()) * cube(kShortestPeriod * largest / edge);
-  throw InputError(fmt::format(
+  throw UnfitScene(fmt::format(
       "{} bodies are too few for a periodic cell: packed, its edge is about {:.3g} m, and images of the largest "
       "(radius {:.3g} m) must be two diameters apart: about {:.2g} have room",
       bodies.size(), edge, largest, 1.1 * enough));
@@ -122,7 +122,7 @@ void compact_to_fraction(const MacroSpec& spec, MacroPacking& packing, double fr
     options.force_floor = 1e-2 * pressure * size[0] * size[1] / static_cast<double>(packing.bodies.size());
     DampedRelaxation<3>(options).relax(hard.system);
     if (hard.pressure() > pressure)
-      throw InputError(fmt::format(
+      throw UnfitScene(fmt::format(
           "macro: the solid grains jam at a solid fraction of {:.6f}, before solid_fill = {:.6f}", now, fraction));
   }
   hard.take_over(packing);

@@ -82,7 +82,7 @@ MacroPacking pack_densely(const MacroSpec& spec, std::vector<MacroBody> bodies, 
                           std::uint64_t sample, const PreparationWatch& watch = {});
 
 /// Compaction in steps without friction, only up to a share of the box filled with bodies, below jamming. Throws
-/// InputError when they jam before.
+/// UnfitScene when they jam before.
 void compact_to_fraction(const MacroSpec& spec, MacroPacking& packing, double fraction);
 
 // How bodies are pressed into touch, by our own engine and in LAMMPS: bodies and box relax together under a pressure

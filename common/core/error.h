@@ -31,6 +31,13 @@ class InputError : public Error {
   explicit InputError(const std::string& message) : Error(ExitStatus::bad_input, message) {}
 };
 
+/// Values of a scene that do not go together, found only while it runs, where its file is not known. The program puts
+/// the file before the message.
+class UnfitScene : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 /// The run came to an end without a usable result (diverged, lost grain, not converged...).
 class UnusableResult : public Error {
  public:

@@ -26,6 +26,7 @@ const auto& numbers() {
   const Range not_negative = Range::not_negative();
   const Range above_one = Range::above(1.0);
   const Range share = Range::closed(0.0, 1.0);
+  constexpr double kLargestExponent = 20.0;  // powers of polydispersities of many decades stay numbers
   static const std::array<SoftParticleNumber, 10> all{
       {{"shell_radius", "shell_radius", &S::shell_radius, Unit::length, positive, positive, "Rs", "Rs [m]", "Rs [m]",
         "Rs, radius of the shell (the sphere with the grains)", true},
@@ -39,8 +40,8 @@ const auto& numbers() {
         "density of the grains"},
        {"restitution", "restitution", &S::restitution, Unit::none, share, share, "restitution", "", "",
         "coefficient of restitution of grains; sets the damping of the published relaxation"},
-       {"exponent", "exponent", &S::exponent, Unit::none, any, above_one, "exponent", "b of P(r) ~ r^-b",
-        "exponent of the radii", "b of P(r) ~ r^-b, the number of grains of radius r"},
+       {"exponent", "exponent", &S::exponent, Unit::none, any, Range{1.0, kLargestExponent, true, false}, "exponent",
+        "b of P(r) ~ r^-b", "exponent of the radii", "b of P(r) ~ r^-b, the number of grains of radius r"},
        {"polydispersity", "polydispersity", &S::polydispersity, Unit::none, Range{1.0, kInfinity, false, false},
         above_one, "polydispersity", "rmax/rmin", "polydispersity", "largest over smallest grain radius"},
        {"rmax_over_shell", "rmax_over_shell", &S::rmax_over_shell, Unit::none, Range{0.0, 1.0, true, false},

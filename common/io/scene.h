@@ -124,6 +124,9 @@ class SceneTable {
   [[nodiscard]] bool flag(const Key& key, bool fallback) const;
   [[nodiscard]] std::string text(const Key& key) const;
   [[nodiscard]] std::string text(const Key& key, const std::string& fallback) const;
+  /// A text that must hold more than spaces where it is given: the name of something, or of a file.
+  [[nodiscard]] std::string filled_text(const Key& key) const;
+  [[nodiscard]] std::string filled_text(const Key& key, const std::string& fallback) const;
   /// One of a list of words; the error names the nearest.
   [[nodiscard]] std::string choice(const Key& key, std::initializer_list<const char*> words) const;
   [[nodiscard]] std::string choice(const Key& key, const std::vector<const char*>& words) const;

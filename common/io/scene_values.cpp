@@ -99,6 +99,8 @@ std::string choice_of(const Table& table, const std::string& key, const toml::no
   table.throw_error(key, node, problem);
 }
 
+bool is_blank(const std::string& text) { return text.find_first_not_of(" \t\r\n") == std::string::npos; }
+
 bool flag_of(const Table& table, const std::string& key, const toml::node& node) {
   const auto value = node.as_boolean();
   if (value == nullptr) table.throw_error(key, node, "must be true or false");
@@ -258,6 +260,17 @@ bool SceneTable::flag(const Key& key, bool fallback) const {
 std::string SceneTable::text(const Key& key) const { return read_text(*impl_, key, {}, nullptr); }
 std::string SceneTable::text(const Key& key, const std::string& fallback) const {
   return read_text(*impl_, key, {}, &fallback);
+}
+
+std::string SceneTable::filled_text(const Key& key) const {
+  std::string value = text(key);
+  if (has(key.name) && is_blank(value)) throw_error(key.name, "must not be empty");
+  return value;
+}
+std::string SceneTable::filled_text(const Key& key, const std::string& fallback) const {
+  std::string value = text(key, fallback);
+  if (has(key.name) && is_blank(value)) throw_error(key.name, "must not be empty: leave the key out");
+  return value;
 }
 
 std::string SceneTable::choice(const Key& key, std::initializer_list<const char*> words) const {

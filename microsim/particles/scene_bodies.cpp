@@ -106,8 +106,8 @@ template <int D>
 void add_file(Builder<D>& b, const SceneTable& t) {
   if (!t.has("file")) return;
   if (t.has("sizes")) t.throw_error("file", "goes without sizes, which says all sizes");
-  b.out.many_file = b.scene.resolve(
-      t.text({"file", "many particles: `N Lx Ly Lz`, then N lines `x y z r`; plain text or gzip; disks have z = 0"}));
+  b.out.many_file = b.scene.resolve(t.filled_text(
+      {"file", "many particles: `N Lx Ly Lz`, then N lines `x y z r`; plain text or gzip; disks have z = 0"}));
   const std::int32_t material = material_index(b.materials, t, kMaterialOfManyKey);
   const double density = density_of(b, t, material);
   if (t.has_errors()) return;

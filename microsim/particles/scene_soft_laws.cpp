@@ -122,7 +122,7 @@ std::string choice_text(const std::string& path, const LawTableEntry& entry, con
 void SoftLawReader::read(const SceneTable& t, const PairOfMaterials& pair) {
   t.refuse({"unloading_ratio"},
            "goes with macro scenes, whose increments come to rest: particles that move have no largest volume at rest");
-  const std::string path = scene_.resolve(t.text({"file", "`law-card`: law card or law table"}));
+  const std::string path = scene_.resolve(t.filled_text({"file", "`law-card`: law card or law table"}));
   if (KeyRecord::current() != nullptr && !std::filesystem::exists(path)) ask_for_all(t, pair);
   out_.files += read_text(path);
   if (Scene::load(path).root().has("entry"))

@@ -90,8 +90,8 @@ std::vector<SceneWall<D>> read_walls(const SceneTable& root, const std::vector<M
     SceneWall<D> wall;
     read_shape(t, wall);
     read_motion(t, wall);
-    wall.name = t.text({"name", "name of the wall", "\"wall-1\", \"wall-2\" and so on"},
-                       "wall-" + std::to_string(walls.size() + 1));
+    wall.name = t.filled_text({"name", "name of the wall", "\"wall-1\", \"wall-2\" and so on"},
+                              "wall-" + std::to_string(walls.size() + 1));
     require_new_name(t, walls, wall.name);
     wall.where = t.where("shape");
     t.check([&] { wall.body.material = material_index(materials, t, {"material", "material of the wall"}); });
@@ -148,8 +148,9 @@ Cell<D> read_cell(const SceneTable& root, const SceneBodies<D>& bodies) {
   std::array<bool, D> along{};
   std::copy(periodic.begin(), periodic.end(), along.begin());
   Cell<D> cell = box_cell<D>(size, along);
+  constexpr double kFastest = 1e9;  // no step of such a cell is one of particles
   const double rate = t.number({"shear_rate", "shear rate of a cell that is periodic along x and y"}, Unit::frequency,
-                               Range::any(), 0.0);
+                               Range::closed(-kFastest, kFastest), 0.0);
   if (rate != 0.0 && !(periodic[0] && periodic[1]))
     t.add_error("shear_rate", "needs a cell that is periodic along x and y");
   cell.velocity_gradient[0][1] = rate;

@@ -9,6 +9,7 @@
 #include <charconv>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <new>
 #include <span>
@@ -386,6 +387,13 @@ void occupy_closed_streams() {
     if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
 }
 
+/// "run.h5: Is a directory": the system's reason after the files, as in all other messages.
+std::string text_of(const std::filesystem::filesystem_error& e) {
+  std::string files = e.path1().string();
+  if (!e.path2().empty()) files += " to " + e.path2().string();
+  return files.empty() ? e.what() : files + ": " + e.code().message();
+}
+
 /// Everything from the command line to the exit status.
 int run_words(int argc, char** argv) {
   CLI::App app{"softgrain: contact laws of soft particles for extremely polydisperse packings", "softgrain"};
@@ -398,7 +406,9 @@ int run_words(int argc, char** argv) {
     return complain(e.status(), with_missing_files_explained(e.what(), {argv, argv + argc}), as_json);
   } catch (const std::bad_alloc&) {
     return complain(ExitStatus::not_usable, "not enough memory", as_json);
-  } catch (const std::system_error& e) {  // of file systems and streams
+  } catch (const std::filesystem::filesystem_error& e) {
+    return complain(ExitStatus::file_trouble, text_of(e), as_json);
+  } catch (const std::system_error& e) {  // of streams
     return complain(ExitStatus::file_trouble, e.what(), as_json);
   } catch (const std::exception& e) {
     return complain(ExitStatus::not_usable, std::string("unexpected: ") + e.what(), as_json);

@@ -52,6 +52,28 @@ void check_one(const std::string& directory, const std::string& name,
   for (const std::string& warning : one.warnings()) out.warn(name + ": " + warning);
 }
 
+/// A file with the name of one kind of results and the content of another is not what its name says.
+void require_own_content(const std::string& path) {
+  const ResultFile* named = result_file(fs::path(path).filename().string());
+  const ResultFile* held = result_file_of(h5::open_file(path));
+  if (named != nullptr && named->is != nullptr && held != nullptr && held != named)
+    throw IoError(path + ": does not hold what files of this name hold: another file was put in its place");
+}
+
+/// Files of results that the summary of the run names and that are gone.
+void warn_of_missing_files(const std::string& directory, Findings& out) {
+  const json summary = json::parse(read_text(directory + "/summary.json"), nullptr, false);
+  const auto files = summary.is_object() ? summary.find("files") : summary.end();
+  if (files == summary.end() || !files->is_object()) return;
+  std::error_code ignored;
+  for (const json& file : *files) {
+    if (!file.is_string()) continue;
+    const std::string name = fs::path(file.get<std::string>()).filename().string();
+    if (file_form(name) == FileForm::hdf5 && !fs::exists(directory + "/" + name, ignored))
+      out.warn("the run wrote " + name + ", which is not here any more");
+  }
+}
+
 /// Files that only a run at work needs are not looked at.
 bool is_scratch(const std::string& name) {
   return name.starts_with("checkpoint") || name.ends_with(".tmp") || name.find(".previous") != std::string::npos;
@@ -108,10 +130,16 @@ void check_directory(const std::string& path, Findings& out) {
   bool any = false;
   const auto has = [&](const std::string& name) { return std::binary_search(names.begin(), names.end(), name); };
   for (const std::string& name : names)
-    if (const auto check = check_of(name)) any = true, check_one(path, name, check, out);
+    if (const auto check = check_of(name)) {
+      any = true;
+      if (check == check_data) require_own_content(path + "/" + name);
+      check_one(path, name, check, out);
+    }
   if (!any) throw InputError(path + ": no run directory: neither summary.json nor a file of results is in it");
   if (!has("summary.json"))
     out.warn("no summary.json: the run has not ended; go on with --resume, or see log.txt for what stopped it");
+  else
+    warn_of_missing_files(path, out);
   if (has("checkpoint.h5")) out.warn("a checkpoint is there: the run was stopped, --resume goes on with it");
 }
 

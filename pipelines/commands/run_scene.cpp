@@ -30,6 +30,15 @@ void warn_of_cores(const CommonOptions& options) {
     }
 }
 
+/// Runs it; what does not go together in the scene and shows only now is said with its file.
+ExitStatus run_kind(const SceneKind& kind, const Scene& scene, const CommonOptions& options) {
+  try {
+    return kind.run(scene, options);
+  } catch (const UnfitScene& e) {
+    throw InputError(scene.path() + ": " + e.what());
+  }
+}
+
 ExitStatus run_scene(const CommonOptions& options, const std::string& command) {
   if (options.inputs.size() != 1)
     throw InputError(command + ": one scene is needed (softgrain " + command + " SCENE.toml)");
@@ -41,7 +50,7 @@ ExitStatus run_scene(const CommonOptions& options, const std::string& command) {
     if (options.seed_given) throw InputError("--seeds: goes without --seed");
     return run_set(options, make_plan({}, options.seeds, options.overrides), command, "seeds");
   }
-  return kind.run(scene, options);
+  return run_kind(kind, scene, options);
 }
 
 }  // namespace

@@ -393,7 +393,7 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
   std::vector<std::pair<std::string, std::string>> files;  // by key; read when all choices are known
   for (const Key& key : {Key{"card", "law card (pair law, as published)"},
                          Key{"table", "law table; `table`, `card` or both must be given"}})
-    if (law.has(key.name)) files.emplace_back(key.name, law_path(scene, law.text(key)));
+    if (law.has(key.name)) files.emplace_back(key.name, law_path(scene, law.filled_text(key)));
   const bool with_table = law.has("table");
   if (files.empty()) law.throw_error("table", "give a law table, a law card, or both");
   if (law.has("forms")) out.forms = read_forms(law, with_table);
@@ -463,9 +463,14 @@ LawSources read_scene_law(const SceneTable& root, const std::string& path) {
 }
 
 NamedLaws law_of_form(const LawSources& sources, WantedForm form, const MacroSpec& spec, double contents_fraction) {
-  const LawCard* card = sources.serving(form).card();
-  return card != nullptr ? pair_law_of(*card, spec, "pair", sources.beyond, sources.card_unloading)
-                         : table_law_of(sources, form, spec, contents_fraction);
+  const FittedLaw& file = sources.serving(form);
+  try {
+    return file.card() != nullptr ? pair_law_of(*file.card(), spec, "pair", sources.beyond, sources.card_unloading)
+                                  : table_law_of(sources, form, spec, contents_fraction);
+  } catch (const InputError& e) {
+    if (file.path.empty()) throw;
+    throw InputError(file.path + ": " + e.what());
+  }
 }
 
 NamedLaws scene_law(const LawSources& sources, const MacroSpec& spec, double contents_fraction,

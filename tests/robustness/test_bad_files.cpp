@@ -136,6 +136,17 @@ TEST_F(BadFiles, NestingBeyondReason) {
   }
 }
 
+/// The reason stands behind the file, without the words of the C++ library.
+TEST_F(BadFiles, AFolderOrALinkToItselfInPlaceOfAFile) {
+  fs::create_directories(directory_.file("folder/run.h5"));
+  expect("report '" + directory_.file("folder") + "'", 4, {"folder/run.h5: Is a directory"}, "folder");
+  fs::create_directory(directory_.file("link"));
+  fs::create_symlink("run.h5", directory_.file("link/run.h5"));
+  for (const char* command : {"report", "export --to csv"})
+    expect(command + (" '" + directory_.file("link") + "'"), 4, {"link/run.h5: Too many levels of symbolic links"},
+           command);
+}
+
 /// A file that is good before it is edited.
 class BadResults : public BadFiles {
  protected:

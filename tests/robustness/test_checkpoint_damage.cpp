@@ -11,6 +11,7 @@
 #include "tests/support/process.h"
 #include "tests/support/program.h"
 #include "tests/support/run_comparison.h"
+#include "tests/support/tiny_files.h"
 #include "tests/support/unwrapped.h"
 
 namespace {
@@ -134,6 +135,21 @@ TEST(DamagedRun, GoesOnFromTheCheckpointBefore) {
     EXPECT_NE(log_of(runs.out(out)).find("continuing from the checkpoint before it"), std::string::npos);
     expect_same_runs(runs.out("whole"), runs.out(out));
   }
+}
+
+TEST(DamagedRun, CheckSaysWhatIsGoneOrExchanged) {
+  const KindRuns runs({"grain-box", "run", kTinyGrainBox, 0});
+  ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("out"))), 0));
+  const std::string record = runs.out("out") + "/grain_box.h5";
+  const auto expect_check = [&](int status, const std::string& words) {
+    const ProgramOutcome outcome = run_the_program("check '" + runs.out("out") + "' --threads 1");
+    EXPECT_EQ(outcome.status, status) << outcome.output;
+    EXPECT_NE(unwrapped(outcome.output).find(words), std::string::npos) << words << " not in " << outcome.output;
+  };
+  fs::remove(record);
+  expect_check(0, "the run wrote grain_box.h5, which is not here any more");
+  tiny_measurements(record);
+  expect_check(4, "grain_box.h5: does not hold what files of this name hold");
 }
 
 /// Of a run of many tasks, one whose every copy is damaged is done again with a word; the others go on. The kept states

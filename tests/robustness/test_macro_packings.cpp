@@ -56,6 +56,16 @@ class MacroPackings : public ::testing::Test {
   TemporaryDirectory directory_;
 };
 
+TEST_F(MacroPackings, WhatIsRefusedInTheRunNamesItsFile) {
+  scene("bodies = 20\nconstruction = \"voids\"\nsolid_fill = 0.73\n");
+  expect(macro("run"), 2, {"scene.toml: macro: the solid grains jam", "before solid_fill = 0.73"});
+  LawCard card = synthetic::card();
+  card.pairs.pop_back();
+  save_card(card, file("law.toml"));
+  scene("bodies = 20\n");
+  expect(macro("other"), 2, {"law.toml: law card: no usable soft-soft law"});
+}
+
 TEST_F(MacroPackings, WhatWasPreparedOnceIsTakenFromTheCache) {
   const std::string cache = "--packing-cache '" + file("cache") + "' ";
   expect(macro("first", cache), 0, {});

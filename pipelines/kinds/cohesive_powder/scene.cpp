@@ -20,6 +20,13 @@ namespace softgrain {
 
 namespace {
 
+/// Bounds of a stiffness over that by which the adhesion (or the pressure) presses, and of other numbers of the
+/// protocol: beyond it they mean nothing, and their products are no numbers.
+constexpr double kLeastStiffness = 1.0;
+constexpr double kLargestStiffness = 1e12;
+constexpr double kLongest = 1e12;  // [T0]
+constexpr double kLargest = 1e6;
+
 void read_disks(const SceneTable& t, PowderSpec& spec) {
   spec.disks = t.count({"count", "disks per packing"}, 2, 1000000, spec.disks);
   spec.diameter_min =
@@ -36,12 +43,13 @@ void read_disks(const SceneTable& t, PowderSpec& spec) {
 void read_contact(const SceneTable& t, PowderSpec& spec) {
   spec.cohesive = t.flag({"cohesive", "adhesion F0 or none"}, spec.cohesive);
   spec.stiffness = t.number({"kappa", "stiffness a K_N/F0; without cohesion K_N/P"}, Unit::none,
-                            Range::closed(1.0, 1e12), spec.stiffness);
-  spec.stiffness_ratio = t.number({"kt_ratio", "K_T/K_N"}, Unit::none, Range::positive(), spec.stiffness_ratio);
+                            Range::closed(kLeastStiffness, kLargestStiffness), spec.stiffness);
+  spec.stiffness_ratio =
+      t.number({"kt_ratio", "K_T/K_N"}, Unit::none, Range{0.0, 100.0, true, false}, spec.stiffness_ratio);
   spec.friction = t.number({"mu", "friction; 0 omits tangential springs and spins"}, Unit::none, Range::not_negative(),
                            spec.friction);
-  spec.damping =
-      t.number({"zeta", "damping, as a fraction of critical damping"}, Unit::none, Range::not_negative(), spec.damping);
+  spec.damping = t.number({"zeta", "damping, as a fraction of critical damping"}, Unit::none, Range::closed(0.0, 100.0),
+                          spec.damping);
   spec.range =
       t.number({"range", "range D0 of the attraction, over a"}, Unit::none, Range{0.0, 0.5, true, false}, spec.range);
   spec.rolling = t.flag({"rolling", "rolling resistance"}, spec.rolling);
@@ -87,16 +95,19 @@ void read_protocol(const SceneTable& t, PowderSetup& setup) {
   const bool aggregates = p.method == 2;
   p.edge_speed_cap = t.number({"edge_speed_cap", "largest |dL/dt| of a cell edge of length L, in a/T0; 0: none",
                                "0 for method 1, 0.05 for method 2"},
-                              Unit::none, Range::not_negative(), aggregates ? 0.05 : 0.0);
+                              Unit::none, Range::closed(0.0, kLargest), aggregates ? 0.05 : 0.0);
   if (!aggregates) t.refuse({"aggregation_kappa", "stiffening_time"}, "only method 2 has disks that aggregate first");
   if (!aggregates) return;
   p.aggregation_kappa = t.number({"aggregation_kappa", "method 2: stiffness during aggregation; 0: `kappa`"},
-                                 Unit::none, Range::not_negative(), 0.0);
+                                 Unit::none, Range::closed(0.0, kLargestStiffness), 0.0);
+  if (p.aggregation_kappa > 0.0 && p.aggregation_kappa < kLeastStiffness)
+    t.add_error("aggregation_kappa",
+                fmt::format("must be 0, or from {:g} to {:g}", kLeastStiffness, kLargestStiffness));
   if (p.aggregation_kappa == 0.0) t.refuse({"stiffening_time"}, "nothing stiffens without an aggregation_kappa");
   if (p.aggregation_kappa > 0.0)
     p.stiffening_time = t.number(
         {"stiffening_time", "method 2 with `aggregation_kappa`: time in T0 in which the stiffness grows to `kappa`"},
-        Unit::none, Range::positive(), p.stiffening_time);
+        Unit::none, Range{0.0, kLongest, true, false}, p.stiffening_time);
 }
 
 /// Reads `pressures`: they rise to a largest one and, where that is not the last, fall from there.
@@ -107,7 +118,7 @@ void read_pressures(const SceneTable& t, PowderSetup& setup) {
                                            "instead of `pressure`: a list of P*, each held until equilibrium; they "
                                            "increase to a largest one and may then decrease",
                                            "none"},
-                                          Unit::none, Range::positive());
+                                          Unit::none, Range{0.0, kLargestStiffness, true, false});
   if (p.empty()) {
     t.add_error("pressures", "needs at least one pressure");
     return;
@@ -160,7 +171,7 @@ void read_assembly(const SceneTable& t, PowderSetup& setup, bool valid) {
   if (valid && !setup.spec.cohesive && setup.protocol.method == 2)
     t.add_error("method", "disks without cohesion do not aggregate");
   setup.spec.pressure = t.number({"pressure", "pressure P* = P a/F0; refused without cohesion"}, Unit::none,
-                                 Range::not_negative(), setup.spec.pressure);
+                                 Range::closed(0.0, kLargestStiffness), setup.spec.pressure);
   read_pressures(t, setup);
   if (valid && setup.protocol.method == 1 && setup.spec.cohesive && setup.spec.pressure == 0.0)
     t.add_error("pressure", "method 1 starts at rest: without pressure nothing moves");
@@ -168,15 +179,16 @@ void read_assembly(const SceneTable& t, PowderSetup& setup, bool valid) {
                                ? t.number({"start_speed",
                                            "method 2: root mean square V0 of each velocity component, over sqrt(F0 "
                                            "D0/m); that of the speed is sqrt 2 V0"},
-                                          Unit::none, Range::positive(), 9.48)
+                                          Unit::none, Range{0.0, kLargest, true, false}, 9.48)
                                : 0.0;
   if (t.has_errors()) (void)t.has("start_speed");
   refuse_old_keys(t, setup.spec, valid);
   read_protocol(t, setup);
-  setup.options.cell_inertia = t.number({"cell_inertia",
-                                         "inertia Mc of the cell over the mass of all disks: Mc d^2eps/dt^2 = P - "
-                                         "stress; eps is the strain since the start of the phase"},
-                                        Unit::none, Range::positive(), setup.options.cell_inertia);
+  setup.options.cell_inertia =
+      t.number({"cell_inertia",
+                "inertia Mc of the cell over the mass of all disks: Mc d^2eps/dt^2 = P - "
+                "stress; eps is the strain since the start of the phase"},
+               Unit::none, Range::closed(1.0 / kLargest, kLargest), setup.options.cell_inertia);
   setup.options.step = t.number({"step", "time step over sqrt(m_min/K_N), m_min the smallest mass"}, Unit::none,
                                 Range::closed(1e-6, 0.5), setup.options.step);
   setup.options.settle_drag =
@@ -188,11 +200,11 @@ void read_assembly(const SceneTable& t, PowderSetup& setup, bool valid) {
       Unit::none, Range::not_negative(), setup.options.settle_kinetic);
   setup.options.settle_after =
       t.number({"settle_after", "the drag starts when cell or contacts have not changed for this time, in T0"},
-               Unit::none, Range::not_negative(), setup.options.settle_after);
-  setup.options.time_max =
-      t.number({"time_max", "longest phase, in T0"}, Unit::none, Range::positive(), setup.options.time_max);
+               Unit::none, Range::closed(0.0, kLongest), setup.options.settle_after);
+  setup.options.time_max = t.number({"time_max", "longest phase, in T0"}, Unit::none, Range{0.0, kLongest, true, false},
+                                    setup.options.time_max);
   setup.options.record_every = t.number({"record_every", "time between recorded points, in T0"}, Unit::none,
-                                        Range::positive(), setup.options.record_every);
+                                        Range{0.0, kLongest, true, false}, setup.options.record_every);
   check_cap(t, setup, valid);
 }
 
@@ -257,7 +269,7 @@ PowderSetup read_powder(const Scene& scene) {
         setup.rigidity);
     setup.states =
         analysis.has("states")
-            ? scene.resolve(analysis.text(
+            ? scene.resolve(analysis.filled_text(
                   {"states", "`powder.h5` of an earlier run; its states are analysed and no new packings are made",
                    "none"}))
             : "";

@@ -27,14 +27,23 @@ constexpr std::array kTakenNames{report::kFigureFolder, report::kCurveFolder, "w
 /// Keys of a variant that replace those of the scene.
 constexpr std::array kReplacing{"title", "samples", "disks", "contact", "assembly", "analysis"};
 
+/// Quantities that may be below 0: forces of both signs, what they are divided by, and slopes.
+constexpr std::array kSigned{"mean_normal", "mean_tensile", "rumpf_ratio", "lambda", "alpha"};
+
+Range published_range(const std::string& quantity) {
+  const bool is_signed = std::ranges::find(kSigned, quantity) != kSigned.end();
+  return is_signed ? Range::any() : Range::not_negative();
+}
+
 std::vector<PublishedValue> read_published(const SceneTable& t) {
   std::vector<PublishedValue> out;
   for (const std::string quantity : powder_comparable()) {
     const Key error{quantity + "_error", "error of the published value"};
     const bool there = t.has(quantity);
     if (there)
-      out.push_back(
-          {quantity, t.number({quantity, "published value, for comparison"}, Unit::none, Range::any()), std::nullopt});
+      out.push_back({quantity,
+                     t.number({quantity, "published value, for comparison"}, Unit::none, published_range(quantity)),
+                     std::nullopt});
     if (!t.has(error.name)) continue;
     const double value = t.number(error, Unit::none, Range::positive());
     if (there)

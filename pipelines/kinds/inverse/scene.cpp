@@ -132,10 +132,10 @@ void require_same_grains(const SceneTable& t, const SoftParticleSpec& file, cons
 
 /// Mean curve of a file, at evenly spread overlaps within its range.
 void read_file(const Scene& scene, const SceneTable& t, InverseSetup& s) {
-  const std::string path = scene.resolve(
-      t.text({"file",
-              "table of a force-displacement curve; offsets of the force are subtracted. `Rs`, `E`, `nu`, `mu` and "
-              "`density` in its comments must agree with the scene, unless they are searched"}));
+  const std::string path = scene.resolve(t.filled_text(
+      {"file",
+       "table of a force-displacement curve; offsets of the force are subtracted. `Rs`, `E`, `nu`, `mu` and "
+       "`density` in its comments must agree with the scene, unless they are searched"}));
   ForceCurveOptions options;
   if (t.has("contact") || !said_by_comments(CsvFile::read(path)).kind) options.kind = s.kind;
   options.shell_radius = s.measure.spec.shell_radius;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "common/data/soft_particle_schema.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
 #include "pipelines/kinds/soft_particle/scene.h"
 
@@ -19,7 +20,7 @@ LawTableVariant read_variant(const SceneTable& t, const MultiContactSetup& base,
                           "volume of the grains that are drawn, over the volume of the shell; this key or `trials` "
                           "must differ from `[packing]`",
                           "as `[packing]`"},
-                         Unit::none, Range::positive(), v.spec.beta);
+                         Unit::none, soft_particle_number(&SoftParticleSpec::beta).drawn, v.spec.beta);
   v.spec.trials =
       t.count({"trials", "random positions tried per grain", "as `[packing]`"}, 1, 1000000000000, v.spec.trials);
   if (valid) require_drawable(t, v.spec);

@@ -183,14 +183,14 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
 
 MacroScene read_macro_scene(const Scene& scene, const std::string& law) {
   return scene.read([&](const SceneTable& root) {
-    const std::string written = root.text(kLawKey, "");
+    const std::string written = root.filled_text(kLawKey, "");
     return read_with_law(root, !law.empty() || written.empty() ? law : law_path(scene, written));
   });
 }
 
 MacroScene read_macro_scene_alone(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
-    (void)root.text(kLawKey, "");
+    (void)root.filled_text(kLawKey, "");
     if (root.has("fines")) (void)read_fines(root);
     if (root.has("library")) read_library_keys(root);
     return read_with_law(root, "");

@@ -258,7 +258,7 @@ void read_test(const SceneTable& t, MacroSpec& spec) {
          MacroTest::direct_shear});
   if (spec.test == MacroTest::simple_shear || spec.test == MacroTest::direct_shear) require_sliding(t, "test", spec);
   spec.strain_end =
-      t.number({"strain", "strain at the end"}, Unit::none, Range{0.0, 0.5, true, false}, spec.strain_end);
+      t.number({"strain", "strain at the end"}, Unit::none, Range::closed(kLeastStrain, 0.5), spec.strain_end);
   spec.preload =
       t.number({"preload",
                 "`\"shear\"`, `\"undrained\"`, `\"simple-shear\"`, `\"direct-shear\"`: isotropic strain before the "
@@ -322,9 +322,10 @@ void read_given(const SceneTable& t, MacroSetup& setup) {
   if (setup.samples > 1) t.add_error("samples", "a packing is one sample: must be 1");
   if (!own) return;
   t.section([&] {
-    const std::string file = t.resolve(t.text({"packing",
-                                               "file with positions, radii and kinds of all particles, which then are "
-                                               "not drawn; path relative to the scene"}));
+    const std::string file =
+        t.resolve(t.filled_text({"packing",
+                                 "file with positions, radii and kinds of all particles, which then are "
+                                 "not drawn; path relative to the scene"}));
     setup.given = read_packing_file(file, setup.spec.boundary);
     const MacroPacking& p = *setup.given;
     MacroSpec& spec = setup.spec;

@@ -90,7 +90,7 @@ class StageReader {
   }
 
   static std::string given_name(const SceneTable& t, const char* usual) {
-    const std::string name = t.text(kNameKey, usual);
+    const std::string name = t.filled_text(kNameKey, usual);
     if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < ' '; }))
       t.add_error("name", "must be one line of text");
     return name;
@@ -131,15 +131,25 @@ class StageReader {
 
   [[nodiscard]] std::int64_t here() const { return static_cast<std::int64_t>(stages_.size()) - 1; }
 
+  /// Less is lost in the rounding of the box.
+  static void require_strain(const SceneTable& t, const std::string& key, double strain) {
+    if (strain != 0.0 && std::abs(strain) < kLeastStrain)
+      t.add_error(key, fmt::format("must be at least {:g} in size, either sign", kLeastStrain));
+  }
+
   static double read_strain(const SceneTable& t, bool back) {
-    const Range range = back ? Range{0.0, kLargestStrain, true, false} : Range::closed(-kLargestStrain, kLargestStrain);
+    const Range range =
+        back ? Range::closed(kLeastStrain, kLargestStrain) : Range::closed(-kLargestStrain, kLargestStrain);
     const double strain =
         t.number({"strain",
                   "nominal strain from the start of the stage (`\"shear\"`, `\"undrained\"`: logarithmic; "
                   "`\"simple-shear\"`, `\"direct-shear\"`: shear strain); negative values lengthen the box. In "
                   "`\"unload\"`, `\"reload\"` and `\"cycles\"`: amount of strain, above 0"},
                  Unit::none, range);
-    if (strain == 0.0) t.add_error("strain", "must not be 0: kind = \"hold\" keeps the box as it is");
+    if (strain == 0.0)
+      t.add_error("strain", "must not be 0: kind = \"hold\" keeps the box as it is");
+    else
+      require_strain(t, "strain", strain);
     return strain;
   }
 
@@ -232,6 +242,7 @@ class StageReader {
         stage.axis[k] = {true, t.number(stress, Unit::pressure, Range::positive()), -1};
       else
         stage.axis[k].value = t.number(strain, Unit::none, Range::closed(-kLargestStrain, kLargestStrain), 0.0);
+      if (!stage.axis[k].by_stress) require_strain(t, strain.name, stage.axis[k].value);
     }
     if (!any) t.add_error("kind", "no axis is driven: give strain_x, stress_z, ...; kind = \"hold\" drives none");
   }

@@ -10,6 +10,9 @@
 
 namespace softgrain {
 
+/// Least strain of a test: what is left of less than that after the rounding of positions is no measurement.
+inline constexpr double kLeastStrain = 1e-9;
+
 /// Reads the tables `stage` of `holder`; where there are any they are the test, in place of what `spec` had, and
 /// `macro`, the table that says everything else of the scene, must not name one. Steps, increments and tolerance of a
 /// stage are those of `spec` unless it says them. Throws InputError.

@@ -44,7 +44,7 @@ double read_mass(const SceneTable& t) {
 Constituent read_constituent(const SceneTable& t, const MacroSpec& common) {
   Constituent c;
   t.section([&] {
-    c.name = t.text({"name", "name of the constituent"});
+    c.name = t.filled_text({"name", "name of the constituent"});
     c.mass_share = read_mass(t);
     read_own_material(t, common, c);
     c.sizes = read_sizes(t, {"sizes", "its size distribution, such as a sieve curve"}, {});

@@ -30,8 +30,8 @@ void require_own_keys(const SceneTable& t, ModelKind kind) {
 }
 
 CellCard read_card(const Scene& scene, const SceneTable& t, MaterialModelsScene& out) {
-  const std::string path =
-      scene.resolve(t.text({"card", "card of the cell law, for cells, mean fields and mapped substitutes", "-"}));
+  const std::string path = scene.resolve(
+      t.filled_text({"card", "card of the cell law, for cells, mean fields and mapped substitutes", "-"}));
   if (std::find(out.files.begin(), out.files.end(), path) == out.files.end()) {
     out.files.push_back(path);
     out.text += read_text(path);
@@ -41,7 +41,7 @@ CellCard read_card(const Scene& scene, const SceneTable& t, MaterialModelsScene&
 
 LawSources read_shells(const Scene& scene, const SceneTable& t, MaterialModelsScene& out) {
   LawSources law;
-  const std::string path = scene.resolve(t.text({"table", "shells: a law table", "-"}));
+  const std::string path = scene.resolve(t.filled_text({"table", "shells: a law table", "-"}));
   law.forms = {t.choice<LawForm>({"form", "shells: form of the law"}, LawForm::directional)};
   law.laws = {law_of_key(t, "table", path)};
   if (std::find(out.files.begin(), out.files.end(), path) == out.files.end()) {

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/core/error.h"
+#include "common/core/limits.h"
 #include "common/core/particles.h"
 #include "common/dynamics/contact_watch.h"
 #include "common/dynamics/force_pass.h"
@@ -26,12 +28,30 @@ namespace {
 constexpr std::int64_t kTrialSteps = 200;
 constexpr double kTrialSeconds = 0.5;
 
-/// Wall time per step, with one pass before it that makes the neighbour list. Moves the system.
+/// Wall time per step, with one pass before it that makes the neighbour list. Moves the system. Not known, with a
+/// warning, where the first steps end the run.
 template <int D>
-double step_seconds(System<D>& s, const SceneTime& time) {
+double step_seconds(System<D>& s, const SceneTime& time, Findings& out) {
   VelocityVerlet<D> integrator(time.step);
-  integrator.initialise(s);
-  return seconds_per_call([&] { integrator.step(s); }, kTrialSeconds, std::min(kTrialSteps, time.steps));
+  try {
+    integrator.initialise(s);
+    return seconds_per_call([&] { integrator.step(s); }, kTrialSeconds, std::min(kTrialSteps, time.steps));
+  } catch (const UnusableResult& e) {
+    out.warn(fmt::format("the run will end in its first {} steps: {}; look at gravity, speeds and the time step",
+                         kTrialSteps, e.what()));
+    return kNaN;
+  }
+}
+
+/// Says how long the run takes, where that is known.
+void add_time(double seconds, Findings& out) {
+  if (std::isnan(seconds)) return;
+  constexpr double kDay = 86400.0;
+  if (seconds > kDay) out.warn("it takes about " + time_text(seconds));
+  const std::string busy = busy_text();  // threads of the trial may have waited for cores
+  out.add("seconds", seconds,
+          fmt::format("expected time: about {:.3g} s with {} threads{}", seconds, omp_get_max_threads(),
+                      busy.empty() ? "" : "; " + busy + ": less once it is idle"));
 }
 
 /// Adds the solid fraction of a cell that is periodic along all axes.
@@ -147,7 +167,7 @@ void check_particles(const ParticlesSceneOf<D>& scene, Findings& out) {
   add_solid_fraction(s, out);
   force_pass(s, 0.0);
   const System<D> first = s;
-  const double seconds = step_seconds(s, scene.time) * static_cast<double>(scene.time.steps);
+  const double seconds = step_seconds(s, scene.time, out) * static_cast<double>(scene.time.steps);
   const ContactTotals<D> totals = contact_totals(first);
   out.add("contacts", totals.contacts,
           fmt::format("contacts at the start: {}, {:.2f} per grain; {} pairs listed", totals.contacts,
@@ -160,12 +180,7 @@ void check_particles(const ParticlesSceneOf<D>& scene, Findings& out) {
   for (const std::string& remark : scene.remarks) out.warn(remark);
   warn_of_step(scene.time, out);
   warn_of_fast(scene.system, scene.time.step, out);
-  constexpr double kDay = 86400.0;
-  if (seconds > kDay) out.warn("it takes about " + time_text(seconds));
-  const std::string busy = busy_text();  // threads of the trial may have waited for cores
-  out.add("seconds", seconds,
-          fmt::format("expected time: about {:.3g} s with {} threads{}", seconds, omp_get_max_threads(),
-                      busy.empty() ? "" : "; " + busy + ": less once it is idle"));
+  add_time(seconds, out);
 }
 
 template void check_particles<2>(const ParticlesSceneOf<2>&, Findings&);

@@ -10,7 +10,8 @@ namespace softgrain {
 namespace {
 
 LawSources read_multi_contact_law(const Scene& scene, const SceneTable& law) {
-  const std::string path = law_path(scene, law.text({"table", "existing law table (path relative to the scene)"}));
+  const std::string path =
+      law_path(scene, law.filled_text({"table", "existing law table (path relative to the scene)"}));
   LawSources out = read_scene_law(law, path);
   if (out.table() == nullptr)
     law.throw_error("table", path + " is no law table (the pair law is the one that this run measures)");

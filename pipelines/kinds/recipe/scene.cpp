@@ -194,7 +194,7 @@ void read_rest(const SceneTable& root, RecipeScene& out) {
       macro.count({"samples", "samples of level 1, which is loaded with the cell law"}, 1, 1000, out.macro.samples);
   out.macro.strain = macro.number(
       {"strain", "axial strain of the loading of level 1", "that of the test, or half of the porosity if that is less"},
-      Unit::none, Range{0.0, 0.5, true, false}, out.macro.strain);
+      Unit::none, Range::closed(kLeastStrain, 0.5), out.macro.strain);
   if (!root.has("shells")) return;
   const SceneTable shells =
       root.table({"shells", "comparison with a hierarchy of soft particles; without the table there is no hierarchy"});
