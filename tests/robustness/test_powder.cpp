@@ -110,7 +110,7 @@ TEST_F(Powder, WhatCannotBeIsRefused) {
   expect_refused(powder + "--set assembly.pressures=[0.1,0.1]", "rise to a largest one");
   expect_refused(powder + "--set assembly.pressures=[0.1,0]", "above 0");
   expect_refused(powder + "--set assembly.pressures=[0.1,1] --set assembly.pressure=1", "leave one of the two out");
-  expect_refused("--set assembly.cell_inertia=0", "above 0");
+  expect_refused("--set assembly.cell_inertia=0", "must be from 1e-06 to 1000000");
   expect_refused("--set assembly.edge_speed_cap=1e-3", "allow at least");
   expect_refused("--set assembly.edge_speed_cap=1e-8 --set assembly.time_max=1e12", "days of one core");
   // L/a = sqrt(100 pi 7/12/4/0.36) = 11.3, but for the draw of the sizes.

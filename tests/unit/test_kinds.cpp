@@ -243,7 +243,7 @@ snapshot = 3
 )",
      R"(s:2: seed = -1: must be a whole number from 0 to 1000000000000
 s:4: preparation = "lammps": "lammps" goes with construction "mixed": holes are filled in a packing that is compacted
-s:6: strain = 0: must be above 0 and at most 0.5
+s:6: strain = 0: must be from 1e-09 to 0.5
 s:8: unknown key 'snapshot' in [output]; nearest known key is 'snapshots')"},
     {R"(kind = "macro-comparison"
 [macro]
@@ -369,7 +369,7 @@ Phi_error = 0.1
 s:5: unknown key 'zetta' in [contact]; nearest known key is 'zeta' (in the variant "a")
 s:7: method = 3: must be a whole number from 1 to 2 (in the variant "a")
 s:12: name = "a": is used twice
-s:14: diameter_min = 7: must be above 0 and at most 1 (in the variant "a")
+s:14: diameter_min = 7: must be from 0.001 to 1 (in the variant "a")
 s:16: Phi_error = 0.1: without the value Phi)"},
     {R"(kind = "particles"
 gravity = [0, 0]

@@ -281,7 +281,7 @@ TEST(Stages, WhatContradictsIsNamed) {
       {load + stage("kind = \"reload\""), "nothing was unloaded before"},
       {stage("kind = \"consolidation\"\nstress = 100\n") + stage("kind = \"reload\"\nstress = 200\nstrain = 0.1"),
        "goes to a stress"},
-      {load + stage("kind = \"unload\"\nstrain = -0.01"), "above 0"},
+      {load + stage("kind = \"unload\"\nstrain = -0.01"), "must be from 1e-09"},
       {load + stage("kind = \"hold\"\nstrain = 0.1"), "nothing is driven"},
       {load + stage("kind = \"hold\"\nby = \"weight\""), "stress"},
       {load + stage("kind = \"cycles\"\nstrain = 0.1"), "count"},

@@ -26,16 +26,22 @@ constexpr double kLeastStiffness = 1.0;
 constexpr double kLargestStiffness = 1e12;
 constexpr double kLongest = 1e12;  // [T0]
 constexpr double kLargest = 1e6;
+constexpr double kSmallest = 1e-3;  // diameter over the largest; the time step is as small
 
 void read_disks(const SceneTable& t, PowderSpec& spec) {
   spec.disks = t.count({"count", "disks per packing"}, 2, 1000000, spec.disks);
   spec.diameter_min =
       t.number({"diameter_min", "smallest diameter over a, the largest; diameters are uniform between both"},
-               Unit::none, Range{0.0, 1.0, true, false}, spec.diameter_min);
+               Unit::none, Range::closed(kSmallest, 1.0), spec.diameter_min);
   spec.sizes = read_sizes(
       t, {"sizes", "another distribution, by area, instead of `diameter_min`; its largest size is a", "none"},
       {"diameter_min"}, 2);
-  if (spec.sizes) spec.diameter_min = spec.sizes->smallest() / spec.sizes->largest();
+  if (spec.sizes) {
+    spec.diameter_min = spec.sizes->smallest() / spec.sizes->largest();
+    if (spec.diameter_min < kSmallest)
+      t.add_error("sizes", fmt::format("the smallest disk is {:.3g} of the largest: must be at least {:g}",
+                                       spec.diameter_min, kSmallest));
+  }
   spec.solid_fraction = t.number({"solid_fraction", "Phi_I, solid fraction at the start"}, Unit::none,
                                  Range{0.0, 0.9, true, true}, spec.solid_fraction);
 }
