@@ -126,7 +126,8 @@ void describe(const LeastSquaresProblem& problem, const LeastSquaresOptions& opt
   describe(problem, options, best, linearise(problem, best.parameters, options.rank_tolerance), fit);
 }
 
-/// Ends a stalled fit in the minimum on kinks that it stalled before, where there is one.
+/// Ends a fit that stalled, or went to and fro across a kink until its iterations were over, in the minimum that it
+/// stopped short of, where there is one.
 void settle_on_kinks(const LeastSquaresProblem& problem, const LeastSquaresOptions& options, const EndPoint& best,
                      LeastSquaresFit& fit) {
   const auto found = find_kink_minimum(problem, best.parameters, options.rank_tolerance);
@@ -206,7 +207,8 @@ LeastSquaresFit fit_least_squares(const LeastSquaresProblem& problem, const std:
     run_strategies(problem, spread_start(problem, starts[origin], k + 1), origin, options, best, fit);
     if (best.ran) describe(problem, options, best, fit);
   }
-  if (problem.kinks && fit.end == FitEnd::stalled) settle_on_kinks(problem, options, best, fit);
+  if (problem.kinks && (fit.end == FitEnd::stalled || fit.end == FitEnd::capped))
+    settle_on_kinks(problem, options, best, fit);
   if (!best.ran) {
     fit.end = FitEnd::failed;
     fit.message = "failed: the model could not be evaluated at any start";

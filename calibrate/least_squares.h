@@ -79,7 +79,7 @@ struct LeastSquaresFit {
 
 /// Runs every strategy from every start, polishes each end point and keeps the one with the smallest S. While that one
 /// is not usable (and `thorough` holds) further starts are spread around the given ones, a decade to either side. A fit
-/// that stalls in the end is searched for a minimum on the problem's kinks.
+/// that does not converge is searched for a minimum on the problem's kinks.
 /// Throws InputError when starts, bounds and residuals do not fit together; a fit that goes wrong is reported, not
 /// thrown.
 LeastSquaresFit fit_least_squares(const LeastSquaresProblem& problem, const std::vector<std::vector<double>>& starts,
