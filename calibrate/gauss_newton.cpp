@@ -126,10 +126,6 @@ void fill_free(const Decomposition& d, Linearisation& out) {
   for (std::size_t c = 0; c < columns; ++c) out.undetermined[d.free[c]] = d.norm[c] == 0.0 || seen[c] < 1.0 - 1e-8;
 }
 
-}  // namespace
-
-namespace {
-
 Linearisation undefined(std::size_t parameters) {
   Linearisation out;
   out.step.assign(parameters, 0.0);

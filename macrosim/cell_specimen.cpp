@@ -185,12 +185,13 @@ std::string start_remark(const MacroSpec& spec, const CellStart& start) {
   const bool of_other_grading = card.memory && spec.cells->preparation.empty() && other_preparation_text(spec).empty();
   const double far = of_other_grading ? 0.05 : 0.5;
   if (!spec.cells->at_density && std::abs(start.excess_share - 1.0) > far)
-    add(fmt::format(
-        "excess pores are {:.3g} times those of the card at this start pressure{}", start.excess_share,
-        of_other_grading
-            ? fmt::format(", which the critical state does not follow; with [fines] preparation = \"{}\" it does",
-                          card.preparation)
-            : ""));
+    add(fmt::format("excess pores are {:.3g} times those of the card at this start pressure{}", start.excess_share,
+                    of_other_grading ? fmt::format(", which the critical state does not follow{}",
+                                                   card.preparation.empty()
+                                                       ? ""
+                                                       : fmt::format("; with [fines] preparation = \"{}\" it does",
+                                                                     card.preparation))
+                                     : ""));
   if (!spec.cells->at_density && spec.start_pressure < card.pressure_low)
     add(fmt::format("the specimen starts at p/E = {:.3g}, below {:.3g}, from which on the law was fitted",
                     spec.start_pressure, card.pressure_low));
