@@ -404,6 +404,15 @@ std::vector<FormOffset> form_offsets(const MultiContactLaw& law) {
   return out;
 }
 
+std::int64_t read_draw_count(const SceneTable& table, const Key& key, std::int64_t most, std::int64_t otherwise) {
+  constexpr std::int64_t kFewest = 8;
+  const std::int64_t draws = table.count(key, 0, most, otherwise);
+  if (draws > 0 && draws < kFewest)
+    table.add_error(key.name,
+                    fmt::format("{} draws say nothing of a 95 % band: 0 (none), or at least {}", draws, kFewest));
+  return draws;
+}
+
 LawDraws law_draws(const LawSources& sources, const NamedLaws& law, const MacroSpec& spec, double contents_fraction,
                    std::int64_t count) {
   if (sources.cells() != nullptr) return cell_draws(*sources.cells(), law.name, count);

@@ -47,6 +47,10 @@ struct LawDraws {
 LawDraws law_draws(const LawSources& sources, const NamedLaws& law, const MacroSpec& spec, double contents_fraction,
                    std::int64_t count);
 
+/// The number of draws that a key asks for, at most `most`; 0: none. Between it and eight is an error of the scene: so
+/// few draws say nothing of a 95 % band.
+std::int64_t read_draw_count(const SceneTable& table, const Key& key, std::int64_t most, std::int64_t otherwise);
+
 /// Whether a law of pairs has a covariance, so that it can be drawn.
 bool has_draws(const PairLaw& law);
 

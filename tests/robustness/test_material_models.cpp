@@ -82,6 +82,33 @@ TEST(MaterialModelsRun, WritesItsTableAndSaysWhatCouldNotBe) {
   EXPECT_NE(read_text(out + "/models.csv").find("density,cells,no,"), std::string::npos);
 }
 
+/// Each draw of the card is a run of its own; without bands the model is the same to the last bit.
+TEST(MaterialModelsRun, DrawsOfTheCardGiveABand) {
+  const TemporaryDirectory directory;
+  const std::string scene =
+      "kind = \"material-models\"\nsamples = 1\n[packing]\npreparation = \"fast\"\n[test]\nstrain = 0.02\nsteps = 2\n"
+      "[grains]\ncount = 300\nratio = 4\n[[model]]\nname = \"cells\"\nkind = \"cells\"\ncard = \"" +
+      std::string(SOFTGRAIN_SOURCE_DIR) + "/results/material_law/cell_law_memory.toml\"\n";
+  const auto run = [&](const std::string& name, const std::string& more) {
+    write_text_atomic(directory.file(name + ".toml"), scene + more);
+    return run_the_program("run '" + directory.file(name + ".toml") + "' --quiet --out '" + directory.file(name) + "'");
+  };
+  const ProgramOutcome few = run("few", "bands = 7\n");
+  EXPECT_EQ(few.status, 2);
+  EXPECT_NE(unwrapped(few.output).find("7 draws say nothing of a 95 % band"), std::string::npos) << few.output;
+  ASSERT_EQ(run("without", "").status, 0);
+  const ProgramOutcome outcome = run("with", "bands = 8\n");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const nlohmann::json with = scores_of(directory.file("with"))["cells"];
+  const nlohmann::json without = scores_of(directory.file("without"))["cells"];
+  EXPECT_EQ(with["axial"], without["axial"]);
+  EXPECT_TRUE(without["band"].is_null()) << without["band"];
+  EXPECT_GT(with["band"].get<double>(), 0.03);  // K alone is known to 10 %
+  EXPECT_LT(with["band"].get<double>(), 1.0);
+  EXPECT_GE(with["inside"].get<double>(), 0.0);
+  EXPECT_LE(with["inside"].get<double>(), 1.0);
+}
+
 /// The card is of grains with mu = 0.3; what needs none is run.
 TEST(MaterialModelsRun, RefusesACardOfGrainsWithAnotherFriction) {
   const TemporaryDirectory directory;

@@ -233,5 +233,36 @@ TEST(MaterialModels, ErrorsAndCostsAreOfTheSameSamples) {
   EXPECT_EQ(table.rows.front().back(), s.remark);
 }
 
+/// Draws at 1 -+ 0.1 of the model have the deviation 0.1 sqrt(8/7) of eight, and Student's 95 % of seven degrees is
+/// 2.3646. What the truth is off at each sample decides whether it lies within; a draw that broke off has no part.
+TEST(MaterialModels, BandsAreThoseOfTheDrawsSampleBySample) {
+  const CellCard card = card_of(StateForm::porosity);
+  const auto sample = [&](double stress, bool usable = true) {
+    MacroCurve c = exact(card, 0.66, 0.64);
+    for (double& s : c.stress_axial) s *= stress;
+    c.stages = {StageRecord{}};
+    c.stage.assign(c.strain.size(), 0.0);
+    c.usable = usable;
+    return c;
+  };
+  const MaterialVariant variant{"v", {}};
+  const MaterialModel model{.name = "m", .bands = 9};
+  VariantResult truth{&variant, "", {}, nullptr};
+  truth.curves = {sample(0.8), sample(1.3), sample(1.0, false)};
+  ModelRun run{&model, &truth, {}, "", ""};
+  run.curves = {sample(1.0), sample(1.0), sample(1.0)};
+  for (int k = 0; k < 8; ++k) {
+    const double off = k % 2 == 0 ? 0.9 : 1.1;
+    run.drawn.push_back({sample(off), sample(off), sample(5.0)});
+  }
+  run.drawn.push_back({sample(7.0, false), sample(7.0, false), sample(7.0, false)});
+  const ModelScore s = score(run, false);
+  const double half = 2.364624 * 0.1 * std::sqrt(8.0 / 7.0);
+  EXPECT_NEAR(s.band, half * std::sqrt(2.0 / (0.8 * 0.8 + 1.3 * 1.3)), 1e-6);
+  EXPECT_EQ(s.inside, 0.5);  // 0.2 is within 0.253, 0.3 is not
+  run.drawn.clear();
+  EXPECT_TRUE(std::isnan(score(run, false).band));
+}
+
 }  // namespace
 }  // namespace softgrain

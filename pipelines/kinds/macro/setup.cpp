@@ -440,12 +440,6 @@ std::string assumed_text(const MacroSetup& setup) {
   return "the law does not say all of the grains' material; of solid grains this is taken: " + join_text(setup.assumed);
 }
 
-namespace {
-
-constexpr std::int64_t kFewestDraws = 8;
-
-}  // namespace
-
 MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
   MacroSetup setup = base;
   read_bodies(macro, setup);
@@ -459,13 +453,11 @@ MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
   setup.samples = macro.count({"samples", "independent random boxes"}, 1, 10000, setup.samples);
   read_given(macro, setup);
   require_density(macro, setup);
-  setup.bands = macro.count(
+  setup.bands = read_draw_count(
+      macro,
       {"bands",
        "number of draws (laws with parameters drawn from their scatter) for the error bars, 8 or more; 0: no bars"},
-      0, 100000, setup.bands);
-  if (setup.bands > 0 && setup.bands < kFewestDraws)
-    macro.add_error("bands", fmt::format("{} draws say nothing of a 95 % band: 0 (none), or at least {}", setup.bands,
-                                         kFewestDraws));
+      100000, setup.bands);
   setup.band_estimator = macro.choice<BandEstimator>(
       {"band_estimator",
        "`\"draws\"`: one run per draw; `\"components\"`: at most twelve runs per sample, with the combinations of "

@@ -20,6 +20,7 @@
 #include "macrosim/test_protocol.h"
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/macro/stage.h"
+#include "pipelines/law/law_draws.h"
 #include "pipelines/run/result_cache.h"
 
 namespace softgrain {
@@ -35,6 +36,7 @@ struct OneSample {
   const VariantResult& truth;
   const Run& run;
   SubstituteRuns& substitutes;
+  std::string draw{};  ///< of the card, in the names of its files; empty: the card itself
 
   /// Bodies in places of their own, which no loading moves.
   [[nodiscard]] MacroPacking own_packing(const std::string& key, const std::function<MacroPacking()>& make) const {
@@ -50,7 +52,8 @@ struct OneSample {
     setup.kept_states = 0;
     setup.twins.clear();
     // Names have no '+': of "m" on "x-y" and "m-x" on "y" neither goes on from the checkpoints of the other.
-    const std::string name = fmt::format("{}+{}+{}", model.name, truth.variant->name, sample);
+    std::string name = fmt::format("{}+{}+{}", model.name, truth.variant->name, sample);
+    if (!draw.empty()) name += "+" + draw;
     const std::vector<MacroPacking> packings{packing};
     std::vector<NamedLaws> laws;
     if (law != nullptr) laws.push_back(*law);
@@ -298,21 +301,59 @@ std::string other_fines(const MaterialModel& model, const MacroSpec& spec) {
   return text;
 }
 
+namespace {
+
+std::vector<MacroCurve> curves_of(const OneSample& one) {
+  std::vector<MacroCurve> out;
+  for (std::size_t k = 0; k < one.truth.packings->size(); ++k) out.push_back(curve_of(one, k));
+  return out;
+}
+
+/// Why a model is none for this material; empty: it is one.
+std::string refusal_of(const std::function<void()>& go) {
+  try {
+    go();
+  } catch (const UnusableResult& e) {
+    return e.what();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+void run_draws(const OneSample& one, ModelRun& out) {
+  const LawDraws draws = cell_draws(*one.model.card, one.model.name, one.model.bands);
+  std::string why;
+  std::size_t refused = 0;
+  for (const std::vector<double>& numbers : draws.draws) {
+    const NamedLaws law = draws.with(numbers);
+    MaterialModel model = one.model;
+    model.card = law.cells;
+    const OneSample drawn{model, one.truth, one.run, one.substitutes, law.tag};
+    std::vector<MacroCurve> curves;
+    const std::string refusal = refusal_of([&] { curves = curves_of(drawn); });
+    if (refusal.empty()) {
+      out.drawn.push_back(std::move(curves));
+    } else {
+      ++refused;
+      why = refusal;
+    }
+  }
+  if (refused > 0)
+    append_part(out.remark,
+                fmt::format("{} of {} draws of the card give no curve ({})", refused, draws.draws.size(), why));
+}
+
+}  // namespace
+
 ModelRun run_model(const MaterialModel& model, const VariantResult& truth, const Run& run,
                    SubstituteRuns& substitutes) {
   ModelRun out{&model, &truth, {}, "", other_fines(model, spec_of(truth))};
   if (const std::string assumed = assumed_exponent(model, spec_of(truth)); !assumed.empty())
     append_part(out.remark, assumed);
   const OneSample one{model, truth, run, substitutes};
-  try {
-    for (std::size_t k = 0; k < truth.packings->size(); ++k) out.curves.push_back(curve_of(one, k));
-  } catch (const UnusableResult& e) {
-    out.curves.clear();
-    out.refusal = e.what();
-  } catch (const InputError& e) {
-    out.curves.clear();
-    out.refusal = e.what();
-  }
+  out.refusal = refusal_of([&] { out.curves = curves_of(one); });
+  if (out.refusal.empty() && model.bands > 0) run_draws(one, out);
   return out;
 }
 

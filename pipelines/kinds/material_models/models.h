@@ -20,6 +20,8 @@ struct ModelRun {
   std::vector<MacroCurve> curves;  ///< one per sample
   std::string refusal;             ///< why there are none
   std::string remark;              ///< what to mind about them
+  /// Curves of draws of the card, one per draw and sample. Draws that are no law are left out.
+  std::vector<std::vector<MacroCurve>> drawn{};
 };
 
 /// Curves of the substitutes of one variant as they are run, by split, smallest radius and sample: mapped ones are

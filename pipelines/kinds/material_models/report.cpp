@@ -23,17 +23,22 @@ std::string percent(double share, double error = kNaN) {
   return with_error(100.0 * share, if_finite(100.0 * error), form) + " %";
 }
 
+/// Half width of the band, and the share of the points that it holds.
+std::string band_text(const ModelScore& s) {
+  return std::isfinite(s.band) ? "± " + percent(s.band) + ", " + percent(s.inside) : "–";
+}
+
 std::string score_table(const std::vector<ModelScore>& scores, bool blind) {
   HtmlTable table({"material", "model", "bodies", "axial", "lateral", "at 2 %", "at the end", "q/p at 2 %",
-                   "q/p at 6 %", "unloading modulus", "truth ±", "fewer evaluations", "faster", "with preparation",
-                   "remark"});
+                   "q/p at 6 %", "unloading modulus", "truth ±", "band, inside", "fewer evaluations", "faster",
+                   "with preparation", "remark"});
   for (const ModelScore& s : scores)
     if (s.blind == blind)
       table.row({s.variant, s.model, format_count(s.bodies), percent(s.axial, s.axial_error),
                  percent(s.lateral, s.lateral_error), percent(s.axial_at_2), percent(s.axial_at_end),
                  percent(s.ratio_at_2), percent(s.ratio_at_6), percent(s.unloading), percent(s.truth_error),
-                 format_number(s.evaluations, 3), format_number(s.seconds, 3), format_number(s.seconds_all, 3),
-                 s.remark});
+                 band_text(s), format_number(s.evaluations, 3), format_number(s.seconds, 3),
+                 format_number(s.seconds_all, 3), s.remark});
   return table.empty() ? "" : table.html();
 }
 
@@ -111,7 +116,8 @@ std::string material_models_section(const RunData& run) {
   if (summary.scores.empty()) return "";
   std::string body = paragraph(
       "Errors over the curve: square root of the sum of (model − truth)² over that of truth², of all points from 1 % "
-      "strain on, of means over samples. Others: model over truth less 1.");
+      "strain on, of means over samples. Others: model over truth less 1. Band: half width of the 95 % band that the "
+      "errors of the card give the axial stress, and the share of all points that it holds.");
   body += score_table(summary.scores, false);
   const std::string blind = score_table(summary.scores, true);
   if (!blind.empty()) body += "<h3>Blind: other mixtures and preparations than the law was measured on</h3>\n" + blind;

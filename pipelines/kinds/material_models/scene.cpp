@@ -6,6 +6,7 @@
 #include <set>
 
 #include "common/io/text_file.h"
+#include "pipelines/law/law_draws.h"
 #include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
@@ -26,6 +27,7 @@ void require_own_keys(const SceneTable& t, ModelKind kind) {
   for (const char* key : {"table", "form", "scale"}) only(key, {ModelKind::shells});
   only("radii", {ModelKind::shells, ModelKind::cells});
   only("soft_share", {ModelKind::cells});
+  only("bands", {ModelKind::cells, ModelKind::mean_field});
   only("card", {ModelKind::cells, ModelKind::mean_field, ModelKind::substitute});
 }
 
@@ -50,6 +52,18 @@ LawSources read_shells(const Scene& scene, const SceneTable& t, MaterialModelsSc
   }
   law.range = RangePolicy::clamp;
   return law;
+}
+
+void read_bands(const SceneTable& t, MaterialModel& m) {
+  m.bands = read_draw_count(t,
+                            {"bands",
+                             "cells, mean fields: number of draws of the card, whose numbers vary within their errors, "
+                             "for error bands, 8 or more; each runs the model once more; 0: no bands"},
+                            1000, m.bands);
+  if (m.bands > 0 && m.card && m.card->correlation.numbers.empty())
+    t.add_error("bands",
+                "the card has no [correlation] of its numbers: measure it from two samples or more (kind "
+                "\"material-law\")");
 }
 
 MaterialModel read_model(const Scene& scene, const SceneTable& t, MaterialModelsScene& out) {
@@ -94,6 +108,7 @@ MaterialModel read_model(const Scene& scene, const SceneTable& t, MaterialModels
     m.law = read_shells(scene, t, out);
   else if (m.kind != ModelKind::coarse && (m.kind != ModelKind::substitute || m.mapped))
     m.card = read_card(scene, t, out);
+  read_bands(t, m);
   return m;
 }
 

@@ -50,6 +50,7 @@ struct MaterialModel {
   ModelPlaces places = ModelPlaces::truth;
   ModelStart start = ModelStart::pressure;
   std::optional<CellCard> card{};         ///< card for cells, mean fields and substitutes (for the equation of state)
+  std::int64_t bands = 0;                 ///< draws of the card for error bands; 0: none
   double soft_share = 0.0;                ///< volume share of soft bodies among all bodies, for cells in own places
   double smallest = 0.2;                  ///< smallest radius of substitutes over the largest of the material
   bool mapped = false;                    ///< whether stresses of substitutes are mapped by the equation of state

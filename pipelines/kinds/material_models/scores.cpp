@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/few_samples.h"
 #include "common/core/limits.h"
+#include "common/core/statistics.h"
 #include "common/core/text.h"
 #include "pipelines/compare/stage_match.h"
 #include "pipelines/compare/stage_results.h"
@@ -39,6 +41,7 @@ std::vector<double> ratio_of(const MacroCurve& c) { return stress_ratios(c); }
 struct Pairs {
   std::vector<MacroCurve> truth;
   std::vector<MacroCurve> model;
+  std::vector<std::size_t> sample;
 };
 
 Pairs pairs_of(const ModelRun& run, std::string& remark) {
@@ -50,6 +53,7 @@ Pairs pairs_of(const ModelRun& run, std::string& remark) {
     if (t.usable && whole) {
       out.truth.push_back(t);
       out.model.push_back(m);
+      out.sample.push_back(k);
       if (!m.note.empty()) append_part(remark, fmt::format("sample {}: {}", k, m.note));
     } else if (t.usable) {
       append_part(remark, fmt::format("sample {} left out: {}", k, m.note.empty() ? "it ends early" : m.note));
@@ -144,6 +148,46 @@ void add_costs(const Pairs& pairs, ModelScore& s) {
   if (model.contact_evaluations == 0) s.evaluations = s.seconds = s.seconds_all = kInfinity;
 }
 
+/// Half width of the 95 % band of one sample at its points, by Student's t over its draws; empty where fewer than two
+/// draws came through.
+std::vector<double> half_widths(const ModelRun& run, std::size_t sample, std::size_t points) {
+  std::vector<std::vector<double>> values(points);
+  for (const std::vector<MacroCurve>& draw : run.drawn) {
+    const MacroCurve& c = draw[sample];
+    if (!c.usable || c.stress_axial.size() != points) continue;
+    for (std::size_t k = 0; k < points; ++k) values[k].push_back(c.stress_axial[k]);
+  }
+  std::vector<double> out;
+  for (const std::vector<double>& at : values) {
+    if (at.size() < 2) return {};
+    out.push_back(student95(static_cast<double>(at.size() - 1)) * mean_error(at).deviation);
+  }
+  return out;
+}
+
+/// Width of the band and share of the points in it; NaN without draws.
+void add_band(const ModelRun& run, const Pairs& pairs, const std::vector<bool>& given, std::size_t first,
+              ModelScore& s) {
+  double width2 = 0.0;
+  double size2 = 0.0;
+  double points = 0.0;
+  double held = 0.0;
+  for (std::size_t pair = 0; pair < pairs.truth.size(); ++pair) {
+    const std::vector<double>& truth = pairs.truth[pair].stress_axial;
+    const std::vector<double>& model = pairs.model[pair].stress_axial;
+    const std::vector<double> half = half_widths(run, pairs.sample[pair], model.size());
+    for (std::size_t k = first; k < half.size(); ++k) {
+      if (k < given.size() && given[k]) continue;
+      width2 += half[k] * half[k];
+      size2 += truth[k] * truth[k];
+      points += 1.0;
+      held += std::abs(truth[k] - model[k]) <= half[k] ? 1.0 : 0.0;
+    }
+  }
+  s.band = size2 > 0.0 ? std::sqrt(width2 / size2) : kNaN;
+  s.inside = points > 0.0 ? held / points : kNaN;
+}
+
 std::string percent(double x) { return percent_text(x, {1, true, true}, "-"); }
 std::string times(double x) { return rounded_text(x, {3}, "-"); }
 
@@ -167,7 +211,7 @@ ModelScore score(const ModelRun& run, bool blind) {
                .remark = run.refusal};
   for (double* value :
        {&s.axial, &s.axial_error, &s.lateral, &s.lateral_error, &s.axial_at_2, &s.axial_at_end, &s.ratio_at_2,
-        &s.ratio_at_6, &s.unloading, &s.truth_error, &s.evaluations, &s.seconds, &s.seconds_all})
+        &s.ratio_at_6, &s.unloading, &s.truth_error, &s.band, &s.inside, &s.evaluations, &s.seconds, &s.seconds_all})
     *value = kNaN;
   const Pairs pairs = pairs_of(run, s.remark);
   if (pairs.truth.empty()) return s;
@@ -198,6 +242,7 @@ ModelScore score(const ModelRun& run, bool blind) {
     s.ratio_at_6 = excess(q_model, q_truth, point_at(strain, 0.06));
   }
   s.unloading = unloading_of(pairs.model) / unloading_of(truth) - 1.0;
+  add_band(run, pairs, axial, first, s);
   add_costs(pairs, s);
   if (!run.remark.empty()) append_part(s.remark, run.remark);
   return s;
@@ -220,6 +265,8 @@ TextTable table_of(const std::vector<ModelScore>& scores) {
                  "q/p at 6 %",
                  "unloading modulus",
                  "standard error of the truth",
+                 "band",
+                 "inside",
                  "evaluations",
                  "seconds",
                  "seconds with preparation",
@@ -234,7 +281,7 @@ TextTable table_of(const std::vector<ModelScore>& scores) {
                                  std::to_string(s.bodies)};
     for (const double x :
          {s.axial, s.axial_error, s.lateral, s.lateral_error, s.axial_at_2, s.axial_at_end, s.ratio_at_2, s.ratio_at_6,
-          s.unloading, s.truth_error, s.evaluations, s.seconds, s.seconds_all})
+          s.unloading, s.truth_error, s.band, s.inside, s.evaluations, s.seconds, s.seconds_all})
       row.push_back(std::isfinite(x) ? fmt::format("{:.4g}", x) : "");
     row.push_back(s.remark);
     out.rows.push_back(std::move(row));
@@ -255,6 +302,9 @@ std::string console_summary(const std::vector<ModelScore>& scores) {
     if (std::isfinite(s.ratio_at_6))
       text += fmt::format(", q/p at 2 and 6 % {} and {}", percent(s.ratio_at_2), percent(s.ratio_at_6));
     if (std::isfinite(s.unloading)) text += ", unloading modulus " + percent(s.unloading);
+    if (std::isfinite(s.band))
+      text += fmt::format("; 95 % band ±{:.0f} % of the axial stress, which holds {:.0f} % of the points",
+                          100.0 * s.band, 100.0 * s.inside);
     text += fmt::format("; {} times fewer evaluations, {} times faster{}\n", times(s.evaluations), times(s.seconds),
                         s.remark.empty() ? "" : "; " + s.remark);
   }

@@ -25,6 +25,8 @@ struct ModelScore {
   double ratio_at_6 = 0.0;
   double unloading = 0.0;
   double truth_error = 0.0;
+  double band = 0.0;
+  double inside = 0.0;
   double evaluations = 0.0;  ///< truth over model: of contacts, or faces of cells
   double seconds = 0.0;      ///< truth over model, tests alone
   double seconds_all = 0.0;  ///< truth over model, preparations included
@@ -50,6 +52,11 @@ void fields(auto&& visit, Of<ModelScore> auto& s) {
   visit("unloading", s.unloading, Means{"secant modulus of the first unloading, model/truth - 1", "1"});
   visit("truth_error", s.truth_error,
         Means{"standard error of the mean axial stress of the truth at the end, relative", "1"});
+  visit("band", s.band,
+        Means{"half width of the 95 % band that the errors of the card give the axial stress, over the curve and over "
+              "the truth as the error is",
+              "1"});
+  visit("inside", s.inside, Means{"share of the points beyond 1 % strain, of all samples, within that band", "1"});
   visit("evaluations", s.evaluations, Means{"contact evaluations, or faces of cells, truth over model", "1"});
   visit("seconds", s.seconds, Means{"time of the tests, truth over model", "1"});
   visit("seconds_with_preparation", s.seconds_all, Means{"time with preparations, truth over model", "1"});
