@@ -325,11 +325,10 @@ void run_draws(const OneSample& one, ModelRun& out) {
   const LawDraws draws = cell_draws(*one.model.card, one.model.name, one.model.bands);
   std::string why;
   std::size_t refused = 0;
-  for (const std::vector<double>& numbers : draws.draws) {
-    const NamedLaws law = draws.with(numbers);
+  for (std::size_t k = 0; k < draws.draws.size(); ++k) {
     MaterialModel model = one.model;
-    model.card = law.cells;
-    const OneSample drawn{model, one.truth, one.run, one.substitutes, law.tag};
+    model.card = draws.with(draws.draws[k]).cells;
+    const OneSample drawn{model, one.truth, one.run, one.substitutes, fmt::format("draw-{}", k + 1)};
     std::vector<MacroCurve> curves;
     const std::string refusal = refusal_of([&] { curves = curves_of(drawn); });
     if (refusal.empty()) {
