@@ -48,7 +48,7 @@ bool TaskStore::load(const std::string& task, const std::function<void(const h5:
     return false;
   }
   if (!note.empty()) context_.say(note);
-  if (group) read(*group);
+  if (group) h5::naming_file(file(task), [&] { read(*group); });
   return true;
 }
 
