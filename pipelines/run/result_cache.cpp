@@ -21,6 +21,8 @@ void SharedResults::read(const std::string& format, const std::string& file, con
   const std::string path = directory_ + "/" + file + ".h5";
   std::error_code is_a_loop;
   if (directory_.empty() || !std::filesystem::exists(path, is_a_loop)) return;
+  // Where a folder or a pipe has its name a result cannot be kept: said before it is computed.
+  if (!std::filesystem::is_regular_file(path, is_a_loop)) require_readable_file(path);
   try {
     const std::lock_guard lock(h5::library_mutex());
     if (check_seal(path) != Seal::whole) throw IoError(path + ": damaged, or written by an earlier version");

@@ -1,5 +1,6 @@
 // Checkpoints and results with flipped bits or cut short: never taken for what they were not.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -89,6 +90,16 @@ TEST_F(CheckpointDamage, BytesAddedOrExchangedAreFound) {
   EXPECT_FALSE(newest_is_taken());
   std::swap_ranges(whole.begin(), whole.begin() + 8, whole.begin() + 30000);
   write_text_atomic(path_, whole);
+  EXPECT_FALSE(newest_is_taken());
+}
+
+/// A pipe kept the run waiting for ever.
+TEST_F(CheckpointDamage, APipeOrAFolderInItsPlaceIsPassedOver) {
+  fs::remove(path_);
+  ASSERT_EQ(::mkfifo(path_.c_str(), 0600), 0);
+  EXPECT_FALSE(newest_is_taken());
+  fs::remove(path_);
+  fs::create_directory(path_);
   EXPECT_FALSE(newest_is_taken());
 }
 
