@@ -25,13 +25,13 @@ class TaskStore {
   void save(const std::string& task, const std::function<void(const h5::Group&)>& content) const;
   /// Which of the two copies that are kept may be read.
   enum class Copy {
-    newest_sound,
+    newest_valid,
     newest  ///< what other files go with: the copy before it is older than they are
   };
   /// Calls `read` with the saved content when there is one for this scene. One of which all copies that may be read are
   /// damaged, or those of another task, goes with a remark: its task starts afresh; returns false then.
   bool load(const std::string& task, const std::function<void(const h5::Group&)>& read,
-            Copy copy = Copy::newest_sound) const;
+            Copy copy = Copy::newest_valid) const;
   /// Whether anything is saved of a task.
   [[nodiscard]] bool has(const std::string& task) const;
   /// Removes what is saved of a task, with a remark that says why.

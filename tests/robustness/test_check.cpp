@@ -434,7 +434,7 @@ void expect_counts_of_the_run(const std::string& text) {
 /// Soft particles were packed before, by the run too, and `check` did not name the file.
 TEST_F(Check, ACardWithoutAUsableLawIsRefusedFirst) {
   write_text_atomic(directory_.file("scene.toml"), test::kTinyMacro);
-  LawCard card = test::synthetic::card();
+  LawCard card = synthetic::card();
   card.pairs.resize(1);
   save_card(card, directory_.file("law.toml"));
   for (const std::string command : {"check", "run"}) {
