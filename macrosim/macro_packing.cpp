@@ -179,6 +179,17 @@ void read_springs(const h5::Group& group, MacroPacking& packing) {
   for (const BodySpring& s : packing.springs)
     if (s.i < 0 || s.i >= bodies || s.j < 0 || s.j >= bodies + kWalls)
       throw IoError("macro packing: a spring of bodies that are not there");
+  for (const BodySpring& s : packing.springs)
+    if (!std::isfinite(norm2(s.spring)) || !std::isfinite(norm2(s.roll)))
+      throw IoError("macro packing: 'springs' or 'rolls' holds a number that is not finite");
+}
+
+void require_places(const MacroPacking& packing) {
+  if (!std::isfinite(norm2(packing.low)) || !std::isfinite(norm2(packing.high)))
+    throw IoError("macro packing: 'box' holds a number that is not finite");
+  for (const MacroBody& b : packing.bodies)
+    if (!std::isfinite(norm2(b.x)) || !std::isfinite(b.r) || !(b.r > 0.0))
+      throw IoError("macro packing: 'bodies' holds a place that is not finite, or a radius that is not above 0");
 }
 
 }  // namespace
@@ -205,6 +216,7 @@ MacroPacking read_macro_packing(const h5::Group& group) {
       if (b.material < 0 || b.material >= static_cast<std::int64_t>(GrainMaterials::kMost))
         throw IoError("macro packing: no such material");
   }
+  require_places(packing);
   read_springs(group, packing);
   if (group.has_attribute("loop_passes")) read_attributes(group, packing.cost);
   packing.density = read_density_search(group);

@@ -42,6 +42,23 @@ void require_within(double value, const Limits& limits, const std::string& name,
     throw IoError(fmt::format("data set '{}' holds {} in row {}; allowed: {}", name, value, row, text_of(limits)));
 }
 
+std::vector<double> finite_numbers(const h5::Group& group, const std::string& name) {
+  std::vector<double> values = group.doubles(name);
+  const auto wrong = std::ranges::find_if(values, [](double x) { return !std::isfinite(x); });
+  if (wrong != values.end())
+    group.refuse(name, fmt::format("holds a number that is not finite, number {} of {}",
+                                   std::distance(values.begin(), wrong) + 1, values.size()));
+  return values;
+}
+
+void require_finite_content(const h5::Group& group) {
+  for (const std::string& name : group.children())
+    if (group.has_group(name))
+      require_finite_content(group.open(name));
+    else
+      (void)finite_numbers(group, name);
+}
+
 std::vector<double> read_numbers(const h5::Group& group, const std::string& name, const std::string& unit,
                                  const h5::Shape& shape, const Limits& limits) {
   require_shape(group, name, shape);

@@ -60,6 +60,12 @@ void require_unit(const h5::Group& group, const std::string& name, const std::st
 void require_shape(const h5::Group& group, const std::string& name, const h5::Shape& shape);
 void require_within(double value, const Limits& limits, const std::string& name, std::size_t row);
 
+/// The numbers of a data set. Throws IoError where one is not finite.
+std::vector<double> finite_numbers(const h5::Group& group, const std::string& name);
+
+/// Throws IoError where a number of any data set in the group, or in the groups below, is not finite.
+void require_finite_content(const h5::Group& group);
+
 /// Finite numbers of this unit, shape and range, row by row. Throws IoError.
 std::vector<double> read_numbers(const h5::Group& group, const std::string& name, const std::string& unit,
                                  const h5::Shape& shape, const Limits& limits = {});

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <utility>
 
 #include "common/core/error.h"
 
@@ -24,7 +25,7 @@ void CurveRows::read() {
     const std::size_t sample = sample_of(row);
     const double delta = overlap(row);
     if (delta < 0.0)
-      add_before_touch(row, sample);
+      add_before_touch(row, delta, sample);
     else if (is_rotated(row))
       add_tangential(row, delta, sample);
     else
@@ -102,13 +103,15 @@ std::size_t CurveRows::sample_of(const CsvRow& row) {
     out_.samples.push_back({name, {}, {}, {}, {}});
     lines_.emplace_back();
     turns_.emplace_back();
+    negative_.emplace_back();
   }
   return known->second;
 }
 
 /// Such readings say where the zero of the force is.
-void CurveRows::add_before_touch(const CsvRow& row, std::size_t sample) {
+void CurveRows::add_before_touch(const CsvRow& row, double delta, std::size_t sample) {
   ++before_touch_;
+  if (!out_.samples[sample].normal.empty()) negative_[sample] = Negative{row.line, delta};
   if (const auto force = file_.number(row, at_.fn, Unit::force))
     out_.samples[sample].before_touch.push_back(*force - at_.zero_force);
 }
@@ -124,6 +127,7 @@ void CurveRows::add_normal(const CsvRow& row, double delta, std::size_t index) {
       throw InputError(fmt::format("{}: column \"{}\": {} must not be negative", file_.where(row.line),
                                    file_.columns()[at_.error].title, row.cells[at_.error]));
   }
+  const std::optional<Negative> negative = std::exchange(negative_[index], std::nullopt);
   if (returns(row, delta, sample)) {
     if (options_.unloading == Unloading::fit) return add_returned(p, sample);
     if (options_.unloading == Unloading::drop) {
@@ -136,10 +140,24 @@ void CurveRows::add_normal(const CsvRow& row, double delta, std::size_t index) {
         "a law to them)",
         file_.where(row.line), sample.name, delta, sample.normal.back().delta));
   }
+  if (negative) refuse_wrong_sign(sample.name, *negative, sample.normal.back().delta, delta);
   add_stiffness(row, delta, sample);
   sample.normal.push_back(p);
   lines_[index].push_back(row.line);
   turns_[index] = {delta, true, {}};
+}
+
+/// An overlap that would rise with the others but for its sign. It would count as a reading before touch, whose force
+/// says where the zero is. Jitter of the displacement around touch is smaller.
+void CurveRows::refuse_wrong_sign(const std::string& sample, const Negative& reading, double before,
+                                  double after) const {
+  constexpr double kLeastOverlap = 0.01;
+  const double overlap = -reading.delta;
+  if (overlap < kLeastOverlap || overlap <= before || overlap >= after) return;
+  throw InputError(fmt::format(
+      "{}: sample \"{}\": Delta = {:.6g} stands between {:.6g} and {:.6g}: is the sign wrong? Negative overlaps are "
+      "readings before touch",
+      file_.where(reading.line), sample, reading.delta, before, after));
 }
 
 /// Whether a reading belongs to unloading or reloading: as its branch says, else by its overlap.

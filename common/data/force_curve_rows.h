@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -34,13 +35,27 @@ class CurveRows {
   void read();
 
  private:
+  /// The rows that were turned at one overlap.
+  struct Turn {
+    double delta = std::numeric_limits<double>::quiet_NaN();
+    bool after_reading = false;  ///< it follows a reading of the normal force at this overlap
+    std::vector<double> angles;
+  };
+
+  /// A reading of negative overlap that follows one of the loading.
+  struct Negative {
+    int line = 0;
+    double delta = 0.0;
+  };
+
   [[nodiscard]] double required(const CsvRow& row, std::size_t column, Unit unit) const;
   [[nodiscard]] double overlap(const CsvRow& row) const;
   [[nodiscard]] bool has_force(const CsvRow& row) const;
   [[nodiscard]] bool is_rotated(const CsvRow& row) const;
   void add_tangential(const CsvRow& row, double delta, std::size_t sample);
   std::size_t sample_of(const CsvRow& row);  ///< index into the samples
-  void add_before_touch(const CsvRow& row, std::size_t sample);
+  void add_before_touch(const CsvRow& row, double delta, std::size_t sample);
+  void refuse_wrong_sign(const std::string& sample, const Negative& reading, double before, double after) const;
   void add_normal(const CsvRow& row, double delta, std::size_t index);
   [[nodiscard]] bool returns(const CsvRow& row, double delta, const ForceCurve& sample) const;
   static void add_returned(const ForcePoint& point, ForceCurve& sample);
@@ -49,13 +64,6 @@ class CurveRows {
   void note_falls();
   void require_enough() const;
 
-  /// The rows that were turned at one overlap.
-  struct Turn {
-    double delta = std::numeric_limits<double>::quiet_NaN();
-    bool after_reading = false;  ///< it follows a reading of the normal force at this overlap
-    std::vector<double> angles;
-  };
-
   const CsvFile& file_;
   const CurveLayout& at_;
   const ForceCurveOptions& options_;
@@ -63,6 +71,7 @@ class CurveRows {
   std::unordered_map<std::string, std::size_t> index_;  ///< index of each sample by its name
   std::vector<std::vector<int>> lines_;                 ///< file lines of the normal points of each sample
   std::vector<Turn> turns_;                             ///< turn that each sample is in
+  std::vector<std::optional<Negative>> negative_;       ///< the last reading of each sample, where it is one
   std::int64_t before_touch_ = 0;
   std::int64_t dropped_ = 0;
 };

@@ -57,10 +57,14 @@ void write_table(const LawCard& card, const std::string& path, const Provenance&
 
 /// Card (or law table) and .h5 name each other by `table_id`. Throws InputError when the file belongs to another one.
 void require_own_table(const h5::Group& root, const std::string& table_id, const std::string& path);
-inline constexpr const char* kTableId = "belongs_to";  ///< attribute of the .h5
+inline constexpr const char* kTableId = "belongs_to";          ///< attribute of the .h5
+inline constexpr const char* kLawFormat = "soft contact law";  ///< of the .h5 beside a card
 
 /// Fills the table rows of the pairs that the file holds, and the bands of laws whose numbers are those of the card; a
 /// law that was edited has none, which LawCard::notes say. Throws IoError, InputError for the table of another card.
 void read_table(LawCard& card, const std::string& path);
+
+/// Reads everything that read_table() may take from such a file, whatever its card. Throws IoError for damage.
+void check_table(const std::string& path);
 
 }  // namespace softgrain

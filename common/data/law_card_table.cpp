@@ -8,6 +8,7 @@
 
 #include "common/core/error.h"
 #include "common/core/text.h"
+#include "common/data/columns.h"
 #include "common/data/law_card_format.h"
 #include "common/data/soft_particle_schema.h"
 
@@ -15,7 +16,6 @@ namespace softgrain {
 
 namespace {
 
-constexpr const char* kLawFormat = "soft contact law";
 constexpr std::string_view kBandInterval = "95 %, ";  ///< before PairLaw::band_origin
 
 void write_parameters(const h5::Group& group, const PairLaw& pair) {
@@ -168,6 +168,41 @@ void read_table(LawCard& card, const std::string& path) {
   if (!edited.empty())
     card.notes.push_back("the numbers of the card are not those that " + path + " was written with (" +
                          join_text(edited) + "): its 95 % bands are not used");
+}
+
+namespace {
+
+/// `known`: the fit is good, so that its numbers are finite; errors and intervals may be infinite all the same.
+void check_parameters(const h5::Group& law, bool known) {
+  constexpr std::size_t kColumns = 4;
+  for (const LawParameterName& p : kLawParameters) {
+    const std::vector<double> row = law.doubles(p.key);
+    if (row.size() != kColumns || (known && !std::isfinite(row.front())))
+      law.refuse(p.key, "must hold a finite number, its standard error and the ends of its interval");
+  }
+}
+
+}  // namespace
+
+void check_table(const std::string& path) {
+  h5::naming_file(path, [&] {
+    const h5::Group root = h5::open_file(path);
+    require_format(root, kLawFormat, path);
+    for (const PairKind kind : kPairKinds) {
+      PairLaw pair;
+      pair.kind = kind;
+      const std::string name = to_string(kind);
+      if (!root.has(name)) continue;
+      const h5::Group group = root.open(name);
+      const h5::Group table = group.open("table");
+      const bool known = group.text("status") == to_string(LawStatus::good);
+      (void)read_curve(table, path);
+      if (known) (void)finite_numbers(table, "force_mean");  // stiffnesses that were not measured are NaN
+      for (const LawPartName& part : kLawParts) check_parameters(group.open(part.key), known);
+      std::vector<std::string> of_other_numbers;
+      read_bands(root, pair, path, of_other_numbers);
+    }
+  });
 }
 
 }  // namespace softgrain

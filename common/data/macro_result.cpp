@@ -344,6 +344,19 @@ std::vector<std::vector<double>> read_rows(const h5::Group& group, const char* n
   return rows;
 }
 
+/// What every point of a test in stages has: results of stages are taken from it.
+void require_columns_of_stages(const MacroCurve& curve) {
+  for (const auto column : {&MacroCurve::stage, &MacroCurve::strain_x, &MacroCurve::strain_y, &MacroCurve::strain_z,
+                            &MacroCurve::stress_x, &MacroCurve::stress_y})
+    if ((curve.*column).empty())
+      throw IoError(
+          fmt::format("data set '{}' is missing, which curves of tests in stages have", macro_column(column).name));
+  const auto stages = static_cast<double>(curve.stages.size());
+  for (const double stage : curve.stage)
+    if (stage >= stages)
+      throw IoError(fmt::format("data set 'stage' holds {}; there are {} stages, counted from 0", stage, stages));
+}
+
 }  // namespace
 
 void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
@@ -374,6 +387,7 @@ MacroCurve read_macro_curve(const h5::Group& group) {
   for (const MacroColumn& c : kColumns) read_column(group, curve, c, points);
   for (const MacroColumn& c : kOptionalColumns)
     if (group.has(c.name)) read_column(group, curve, c, points);
+  if (!curve.stages.empty() && points > 0) require_columns_of_stages(curve);
   read_tensors(group, curve, points);
   if (group.has("more")) {
     const h5::Group more = group.open("more");

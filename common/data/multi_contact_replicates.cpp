@@ -12,6 +12,7 @@
 #include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
+#include "common/data/columns.h"
 #include "common/data/law_card_format.h"
 #include "common/io/hdf5_file.h"
 
@@ -86,6 +87,47 @@ void read_replicates(LawTable& table, const std::string& toml_path) {
             table.entries[k].solid_fraction, to_string(law.form), path));
     }
   }
+}
+
+namespace {
+
+void require_rows(const h5::Group& group, const char* name, std::size_t rows) {
+  const h5::Shape shape = group.shape(name);
+  if (shape.size() != 2 || shape[0] != rows) group.refuse(name, fmt::format("must have {} rows", rows));
+}
+
+/// `known`: this form is taken unless another is asked for, so that its numbers are finite; errors of parameters may be
+/// infinite all the same. Numbers of forms whose fit failed may be anything.
+void check_form(const h5::Group& law, bool known) {
+  require_rows(law, "parameters", kMultiContactParameters.size());
+  const std::vector<double> parameters = law.doubles("parameters");
+  const std::size_t columns = parameters.size() / kMultiContactParameters.size();
+  for (std::size_t k = 0; known && k < parameters.size(); k += columns)
+    if (!std::isfinite(parameters[k]))
+      law.refuse("parameters", fmt::format("row {} begins with a number that is not finite", k / columns));
+  for (const char* grid : {"overlap", "force"}) {
+    require_rows(law, grid, law.integers("kind").size());
+    if (known) (void)finite_numbers(law, grid);
+  }
+  if (!law.has("replicates")) return;
+  const h5::Shape shape = law.shape("replicates");
+  if (shape.size() != 2 || shape[1] != finite_numbers(law, "numbers").size())
+    law.refuse("replicates", "must have a column for each of 'numbers'");
+  (void)finite_numbers(law, "replicates");
+}
+
+}  // namespace
+
+void check_replicates(const std::string& path) {
+  h5::naming_file(path, [&] {
+    const h5::Group root = h5::open_file(path);
+    for (std::size_t k = 0; root.has(fmt::format("entry_{}", k)); ++k) {
+      const h5::Group entry = root.open(fmt::format("entry_{}", k));
+      const std::string best = entry.text("best");
+      for (const std::string& name : entry.children())
+        if (name != "spec") check_form(entry.open(name), name == best);
+    }
+  });
 }
 
 LawTable replicate_of(const LawTable& table, LawForm form, std::size_t r) {

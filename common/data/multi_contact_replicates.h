@@ -24,6 +24,9 @@ MultiContactLaw with_numbers(const MultiContactLaw& law, const std::vector<doubl
 /// for a damaged one, InputError for that of another table.
 void read_replicates(LawTable& table, const std::string& toml_path);
 
+/// Reads the whole .h5 of a table, whatever its .toml. Throws IoError for damage.
+void check_replicates(const std::string& path);
+
 /// The table as replicate `r` of each entry's law of this form; entries draw their packings independently, so any
 /// pairing of their replicates is one draw of the whole table.
 LawTable replicate_of(const LawTable& table, LawForm form, std::size_t r);

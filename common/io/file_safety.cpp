@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "common/core/error.h"
+#include "common/io/text_file.h"
 
 namespace softgrain {
 
@@ -113,6 +114,7 @@ void seal_file(const std::string& path) {
 }
 
 Seal check_seal(const std::string& path) {
+  require_readable_file(path);  // a pipe would keep the program waiting for ever
   const Stream file = open_stream(path, "rb");
   const std::uint64_t length = length_of(file.get(), path);
   if (length < kSealBytes) return Seal::none;

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "common/core/error.h"
+
 namespace softgrain::h5 {
 
 using Shape = std::vector<std::size_t>;
@@ -22,10 +24,11 @@ class Group {
   struct Impl;
   explicit Group(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
-  [[nodiscard]] Group create(const std::string& name) const;  ///< new child group
-  [[nodiscard]] Group open(const std::string& name) const;    ///< existing child group
-  [[nodiscard]] bool has(const std::string& name) const;      ///< child group or data set
-  [[nodiscard]] std::vector<std::string> children() const;    ///< names of the children in order of creation
+  [[nodiscard]] Group create(const std::string& name) const;    ///< new child group
+  [[nodiscard]] Group open(const std::string& name) const;      ///< existing child group
+  [[nodiscard]] bool has(const std::string& name) const;        ///< child group or data set
+  [[nodiscard]] bool has_group(const std::string& name) const;  ///< child group, not a data set
+  [[nodiscard]] std::vector<std::string> children() const;      ///< names of the children in order of creation
 
   /// Data sets; an empty shape means one-dimensional. Stored with a Fletcher-32 checksum so that damage is found.
   void write(const std::string& name, std::span<const double> values, const Shape& shape = {}) const;
@@ -48,12 +51,27 @@ class Group {
   [[nodiscard]] double number(const std::string& name) const;
   [[nodiscard]] std::int64_t integer(const std::string& name) const;
 
+  /// Throws IoError for a child or attribute that is not what it must be: "path: /group/name: problem".
+  [[noreturn]] void refuse(const std::string& name, const std::string& problem) const;
+
  private:
   std::shared_ptr<Impl> impl_;
 };
 
 /// Opens an existing file for reading. Throws IoError (missing, not HDF5, truncated).
 Group open_file(const std::string& path);
+
+/// What `read()` returns; every IoError of it names the file.
+template <class Read>
+decltype(auto) naming_file(const std::string& path, const Read& read) {
+  try {
+    return read();
+  } catch (const IoError& e) {
+    const std::string said = e.what();
+    if (said.find(path) != std::string::npos) throw;
+    throw IoError(path + ": " + said);
+  }
+}
 
 /// A file that appears under its name only when complete: written to `path + ".tmp"`, flushed to disk, renamed by
 /// commit(). Destruction without commit() removes the temporary file.

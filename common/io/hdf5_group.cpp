@@ -99,6 +99,18 @@ bool Group::has(const std::string& name) const {
   return found > 0;
 }
 
+bool Group::has_group(const std::string& name) const {
+  if (!has(name)) return false;
+  const Handle object(H5Oopen(impl_->handle.id(), name.c_str(), H5P_DEFAULT), H5Oclose);
+  H5Eclear2(H5E_DEFAULT);  // a link may lead nowhere
+  return object.id() >= 0 && H5Iget_type(object.id()) == H5I_GROUP;
+}
+
+void Group::refuse(const std::string& name, const std::string& problem) const {
+  H5Eclear2(H5E_DEFAULT);
+  impl_->fail(name, problem);
+}
+
 std::vector<std::string> Group::children() const {
   H5G_info_t info;
   if (H5Gget_info(impl_->handle.id(), &info) < 0) impl_->fail("", "damaged group");

@@ -34,13 +34,15 @@ void write_slots(const h5::Group& g, const std::string& name, const std::vector<
   g.write(name, std::vector<Count>(values.begin(), values.end()));
 }
 
-[[noreturn]] void damaged(const std::string& name) {
-  throw IoError("saved state: '" + name + "' does not fit the rest of the file");
+[[noreturn]] void damaged(const h5::Group& g, const std::string& name) {
+  g.refuse(name, "saved state: '" + name + "' does not fit the rest of the file");
 }
 
 std::vector<double> read_numbers(const h5::Group& g, const std::string& name, std::size_t size) {
   std::vector<double> values = g.doubles(name);
-  if (values.size() != size) damaged(name);
+  if (values.size() != size) damaged(g, name);
+  if (!std::ranges::all_of(values, [](double x) { return std::isfinite(x); }))
+    g.refuse(name, "saved state: '" + name + "' holds a number that is not finite");
   return values;
 }
 
@@ -57,11 +59,11 @@ std::vector<V> read_vectors(const h5::Group& g, const std::string& name, std::si
 std::vector<std::int32_t> read_slots(const h5::Group& g, const std::string& name, std::size_t size, Count low,
                                      Count high) {
   const std::vector<Count> values = g.integers(name);
-  if (values.size() != size) damaged(name);
+  if (values.size() != size) damaged(g, name);
   std::vector<std::int32_t> out;
   out.reserve(size);
   for (const Count v : values) {
-    if (v < low || v >= high) damaged(name);
+    if (v < low || v >= high) damaged(g, name);
     out.push_back(static_cast<std::int32_t>(v));
   }
   return out;
@@ -155,7 +157,7 @@ std::vector<std::int32_t> read_ids(const h5::Group& g, std::int32_t grains) {
   std::vector<std::int32_t> id = read_slots(g, "id", static_cast<std::size_t>(grains), 0, grains);
   std::vector<bool> seen(id.size());
   for (const std::int32_t k : id) seen[static_cast<std::size_t>(k)] = true;
-  if (std::find(seen.begin(), seen.end(), false) != seen.end()) damaged("id");
+  if (std::find(seen.begin(), seen.end(), false) != seen.end()) damaged(g, "id");
   return id;
 }
 
@@ -166,22 +168,22 @@ constexpr double kMostLength = 1e30;
 bool is_length(double x) { return x >= kLeastLength && x <= kMostLength; }
 
 template <int D>
-void require_places(const Particles<D>& p) {
+void require_places(const h5::Group& g, const Particles<D>& p) {
   for (Slot k = 0; k < p.size(); ++k) {
     const Sphere<D>& sphere = p.sphere[static_cast<std::size_t>(k)];
     for (const double x : sphere.x.v)
-      if (!(std::abs(x) <= kMostLength)) damaged("sphere");
-    if (k < p.first_plane() && !is_length(sphere.r)) damaged("sphere");
+      if (!(std::abs(x) <= kMostLength)) damaged(g, "sphere");
+    if (k < p.first_plane() && !is_length(sphere.r)) damaged(g, "sphere");
   }
 }
 
 /// A grain lies in a shell or in none; a shell that lies in itself, by whatever way round, would be followed for ever.
 template <int D>
-void require_shells(const Particles<D>& p) {
+void require_shells(const h5::Group& g, const Particles<D>& p) {
   for (const std::int32_t first : p.shell) {
     Slot k = first;
     for (Slot depth = 0; k >= 0; ++depth) {
-      if (k < p.grains || k >= p.first_plane() || depth > p.shells) damaged("shell");
+      if (k < p.grains || k >= p.first_plane() || depth > p.shells) damaged(g, "shell");
       k = p.shell[static_cast<std::size_t>(k)];
     }
   }
@@ -234,10 +236,10 @@ template <int D>
 void read_bodies(const h5::Group& g, Particles<D>& p, Count materials) {
   read_counts(g, p);
   body_arrays<D>(StateReader{g}, p, materials);
-  require_places(p);
-  require_shells(p);
+  require_places(g, p);
+  require_shells(g, p);
   const auto is_volume = [](double volume) { return volume >= 0.0 && volume <= kMostLength; };
-  if (!std::all_of(p.largest_volume.begin(), p.largest_volume.end(), is_volume)) damaged("largest_volume");
+  if (!std::all_of(p.largest_volume.begin(), p.largest_volume.end(), is_volume)) damaged(g, "largest_volume");
 }
 
 void cell_parts(auto&& visit, auto& cell) {
@@ -251,7 +253,7 @@ void read_cell(const h5::Group& g, Cell<D>& cell) {
   cell_parts(StateReader{g}, cell);
   for (int r = 0; r < D; ++r)
     for (int c = 0; c < D; ++c)
-      if (r == c ? !is_length(cell.edges[r][c]) : !(std::abs(cell.edges[r][c]) <= kMostLength)) damaged("edges");
+      if (r == c ? !is_length(cell.edges[r][c]) : !(std::abs(cell.edges[r][c]) <= kMostLength)) damaged(g, "edges");
 }
 
 void neighbour_counts(auto&& visit, auto& n) {
@@ -276,9 +278,9 @@ void write_neighbours(const h5::Group& g, const NeighbourState<D>& n) {
 template <int D>
 void read_neighbours(const h5::Group& g, NeighbourState<D>& n, std::size_t bodies) {
   const std::size_t listed = g.doubles("skin").size();
-  if (listed != 0 && listed != bodies) damaged("skin");
+  if (listed != 0 && listed != bodies) damaged(g, "skin");
   build_arrays(StateReader{g}, n, listed);
-  if (!std::all_of(n.skin.begin(), n.skin.end(), is_length)) damaged("skin");
+  if (!std::all_of(n.skin.begin(), n.skin.end(), is_length)) damaged(g, "skin");
   n.short_lived = 0;
   neighbour_counts(AttributeReader{g}, n);
 }
@@ -319,22 +321,22 @@ void read_sections(const h5::Group& g, std::vector<ContactSection>& sections, Co
   for (const ContactSection& s : sections) {
     const auto geometry = static_cast<Count>(s.geometry);
     if (s.begin != end || s.end <= end || geometry < 0 || geometry > 2 || s.law < 0 || s.law >= laws)
-      damaged("sections");
+      damaged(g, "sections");
     end = s.end;
   }
-  if (end != pairs) damaged("sections");
+  if (end != pairs) damaged(g, "sections");
 }
 
 /// The second body of every pair is of the kind that its section says.
 template <int D>
-void require_partners(const ContactList<D>& list, const Particles<D>& p) {
+void require_partners(const h5::Group& g, const ContactList<D>& list, const Particles<D>& p) {
   for (const ContactSection& s : list.sections)
     for (auto c = static_cast<std::size_t>(s.begin); c < static_cast<std::size_t>(s.end); ++c) {
       const Slot j = list.j[c];
       const Geometry found = j < p.grains          ? Geometry::sphere_sphere
                              : j < p.first_plane() ? Geometry::sphere_shell
                                                    : Geometry::sphere_plane;
-      if (found != s.geometry || list.i[c] == j) damaged("sections");
+      if (found != s.geometry || list.i[c] == j) damaged(g, "sections");
     }
 }
 
@@ -343,17 +345,17 @@ void read_contacts(const h5::Group& g, System<D>& s) {
   ContactList<D>& list = s.contacts;
   pair_arrays(StateReader{g}, list, g.integers("i").size(), s.particles);
   read_sections(g, list.sections, list.size(), s.laws.size());
-  require_partners(list, s.particles);
+  require_partners(g, list, s.particles);
   adopt_list(s);
   history_arrays(StateReader{g}, list);
 }
 
 void clock_and_counters(auto&& visit, auto& s) {
-  visit("time", s.time);
+  visit("time", s.time, Limits{});
   visit("step", s.step);
   visit("loop_passes", s.cost.loop_passes);
   visit("contact_evaluations", s.cost.contact_evaluations);
-  visit("seconds", s.cost.seconds);
+  visit("seconds", s.cost.seconds, Limits::not_negative());
 }
 
 }  // namespace
@@ -371,7 +373,7 @@ void write_system(const h5::Group& group, const System<D>& s) {
 
 template <int D>
 void read_system(const h5::Group& group, System<D>& s) {
-  if (group.integer("dimension") != D) damaged("dimension");
+  if (group.integer("dimension") != D) damaged(group, "dimension");
   read_bodies(group.open("bodies"), s.particles, s.laws.materials());
   read_cell(group.open("cell"), s.cell);
   read_neighbours(group.open("neighbours"), s.neighbours, static_cast<std::size_t>(s.particles.size()));

@@ -25,15 +25,15 @@ BoxPhase phase_of(std::int64_t number) {
 }  // namespace
 
 void fields(auto&& visit, Of<BoxPoint> auto& p) {
-  const Limits any = Limits::anything();
+  const Limits any = Limits::anything();  // NaN: not defined for this loading, or not probed
   visit("phase", p.phase, "1", UpTo{BoxPhase::done, "a phase that is not known"});
-  visit("strain", p.strain, "1", kAsRows, any);
-  visit("lengths", p.lengths, "m", kAsRows, any);
-  visit("stress", p.stress, "Pa", kAsRows, any);
-  visit("shear_stress", p.shear, "Pa", any);
-  visit("imbalance", p.imbalance, "1", any);
-  visit("pressure", p.pressure, "Pa", any);
-  visit("deviator", p.deviator, "Pa", any);
+  visit("strain", p.strain, "1", kAsRows);
+  visit("lengths", p.lengths, "m", kAsRows);
+  visit("stress", p.stress, "Pa", kAsRows);
+  visit("shear_stress", p.shear, "Pa");
+  visit("imbalance", p.imbalance, "1");
+  visit("pressure", p.pressure, "Pa");
+  visit("deviator", p.deviator, "Pa");
   visit("bulk_modulus", p.bulk, "Pa", any);
   visit("shear_modulus", p.shear_modulus, "Pa", any);
   visit("bulk_modulus_elastic_probe", p.bulk_probe, "Pa", any);
@@ -41,11 +41,11 @@ void fields(auto&& visit, Of<BoxPoint> auto& p) {
   visit("bulk_modulus_effective_medium", p.bulk_medium, "Pa", any);
   visit("shear_modulus_effective_medium", p.shear_medium, "Pa", any);
   visit("sliding_share", p.sliding_share, "1", any);
-  visit("coordination", p.coordination, "1", any);
-  visit("coordination_without_rattlers", p.coordination_without, "1", any);
-  visit("mean_normal_force", p.mean_force, "N", any);
-  visit("solid_fraction", p.solid_fraction, "1", any);
-  visit("wall_moment", p.moment, "Pa", any, kLater);
+  visit("coordination", p.coordination, "1");
+  visit("coordination_without_rattlers", p.coordination_without, "1");
+  visit("mean_normal_force", p.mean_force, "N");
+  visit("solid_fraction", p.solid_fraction, "1");
+  visit("wall_moment", p.moment, "Pa", kLater);
   visit("sliding_limit_at_start", p.at_start_limit, "1", any, kLater);
   visit("rattlers", p.rattlers, "1");
   visit("fewest_contacts", p.fewest_contacts, "1");
@@ -56,7 +56,7 @@ void fields(auto&& visit, Of<BoxPoint> auto& p) {
   visit("linear_iterations", p.effort.linear_iterations, "1");
   visit("equilibria", p.effort.solutions, "1");
   visit("retries", p.effort.retries, "1");
-  visit("residual", p.effort.residual, "1", any);
+  visit("residual", p.effort.residual, "1");
 }
 
 void fields(auto&& visit, Of<BoxFailure> auto& f) {

@@ -110,13 +110,15 @@ bool ParticlesRun<D>::restore() {
   if (!control_.resume || control_.checkpoint.empty()) return false;
   const std::optional<h5::Group> saved = open_saved();
   if (!saved) return false;
-  read_system(saved->open("system"), system_);
-  trajectory_ = read_trajectory(saved->open("trajectory"));
-  const auto& p = system_.particles;
-  frame_contacts_ = read_frame_contacts(saved->open("frame_contacts"), static_cast<std::size_t>(p.grains),
-                                        static_cast<std::size_t>(p.size()));
-  monitor_.load(saved->open("contacts"));
-  guards_.load(saved->open("guards"));
+  h5::naming_file(control_.checkpoint, [&] {
+    read_system(saved->open("system"), system_);
+    trajectory_ = read_trajectory(saved->open("trajectory"));
+    const auto& p = system_.particles;
+    frame_contacts_ = read_frame_contacts(saved->open("frame_contacts"), static_cast<std::size_t>(p.grains),
+                                          static_cast<std::size_t>(p.size()));
+    monitor_.load(saved->open("contacts"));
+    guards_.load(saved->open("guards"));
+  });
   if (control_.say) control_.say("continuing from step " + std::to_string(system_.step));
   return true;
 }

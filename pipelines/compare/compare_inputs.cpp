@@ -13,6 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// What load_side() takes from a directory.
+constexpr const char* kComparedFiles = "macro.h5, material.h5, material_NAME.h5, measurements.h5 or law.toml";
+
 /// material.h5, or material_NAME.h5 of several materials, whose curves are then called by their names.
 std::vector<MacroCurve> load_materials(const std::string& path) {
   const std::string kind = "material";
@@ -59,7 +62,7 @@ CompareSide load_one_file(const std::string& path) {
   } else if (form == FileForm::hdf5) {
     side.measurements = load_measurements(path);
   } else {
-    throw InputError(path + ": expected a run directory, macro.h5, material.h5, measurements.h5 or law.toml");
+    throw InputError(path + ": expected a run directory, " + kComparedFiles);
   }
   return side;
 }
@@ -217,7 +220,7 @@ CompareSide load_side(const std::string& path) {
   CompareSide side = fs::is_directory(path) ? load_directory(path) : load_one_file(path);
   side.name = path;
   if (side.macro.empty() && !side.measurements && !side.card) {
-    throw InputError(path + ": holds nothing to compare (macro.h5, material.h5, measurements.h5 or law.toml)");
+    throw InputError(path + ": holds nothing to compare (" + kComparedFiles + ")");
   }
   return side;
 }

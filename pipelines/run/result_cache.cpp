@@ -19,7 +19,10 @@ std::string SharedResults::name(const std::string& prefix, const std::string& ke
 void SharedResults::read(const std::string& format, const std::string& file, const std::string& key,
                          const std::string& again, const std::function<void(const h5::Group&)>& content) const {
   const std::string path = directory_ + "/" + file + ".h5";
-  if (directory_.empty() || !std::filesystem::exists(path)) return;
+  std::error_code is_a_loop;
+  if (directory_.empty() || !std::filesystem::exists(path, is_a_loop)) return;
+  // Where a folder or a pipe has its name a result cannot be kept: said before it is computed.
+  if (!std::filesystem::is_regular_file(path, is_a_loop)) require_readable_file(path);
   try {
     const std::lock_guard lock(h5::library_mutex());
     if (check_seal(path) != Seal::whole) throw IoError(path + ": damaged, or written by an earlier version");

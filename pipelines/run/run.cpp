@@ -17,6 +17,9 @@ namespace {
 /// Folder of a run directory for results of tasks until the run ends.
 constexpr const char* kTaskFolder = "work";
 
+/// Attribute of the file of a task: its name. All tasks of a run share the fingerprint of the scene.
+constexpr const char* kTaskName = "task";
+
 }  // namespace
 
 TaskStore::TaskStore(const RunContext& context, const Scene& scene, std::uint64_t seed, const std::string& beside)
@@ -33,23 +36,46 @@ void TaskStore::save(const std::string& task, const std::function<void(const h5:
   std::error_code error;
   std::filesystem::create_directories(directory_, error);
   if (error) throw IoError(directory_ + ": cannot be created: " + error.message());
-  write_checkpoint(file(task), fingerprint_, content);
+  write_checkpoint(file(task), fingerprint_, [&](const h5::Group& root) {
+    root.attribute(kTaskName, task);
+    content(root);
+  });
 }
 
-bool TaskStore::load(const std::string& task, const std::function<void(const h5::Group&)>& read) const {
+bool TaskStore::load(const std::string& task, const std::function<void(const h5::Group&)>& read, Copy copy) const {
   const std::lock_guard lock(h5::library_mutex());
   std::string note;
   std::optional<h5::Group> group;
   try {
     group = open_checkpoint(file(task), fingerprint_, note);
   } catch (const DamagedCheckpoint& e) {
-    context_.say(std::string(e.what()) + ": " + task + " starts afresh");
-    remove(task);
+    start_afresh(task, e.what());
+    return false;
+  }
+  std::error_code ignored;
+  const bool older = !note.empty() || !std::filesystem::exists(file(task), ignored);
+  std::string why;
+  if (group && older && copy == Copy::newest)
+    why = "the newest copy is damaged or gone";
+  else if (group && group->has_attribute(kTaskName) && group->text(kTaskName) != task)
+    why = "holds the task " + group->text(kTaskName);
+  if (!why.empty()) {
+    start_afresh(task, file(task) + ": " + why);
     return false;
   }
   if (!note.empty()) context_.say(note);
-  if (group) read(*group);
+  if (group) h5::naming_file(file(task), [&] { read(*group); });
   return true;
+}
+
+bool TaskStore::has(const std::string& task) const {
+  std::error_code ignored;
+  return std::filesystem::exists(file(task), ignored) || std::filesystem::exists(file(task) + ".previous", ignored);
+}
+
+void TaskStore::start_afresh(const std::string& task, const std::string& why) const {
+  context_.say(why + ": " + task + " starts afresh");
+  remove(task);
 }
 
 void TaskStore::remove(const std::string& task) const { remove_checkpoint(file(task)); }

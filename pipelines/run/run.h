@@ -23,9 +23,19 @@ class TaskStore {
   TaskStore(const RunContext& context, const Scene& scene, std::uint64_t seed, const std::string& beside = "");
 
   void save(const std::string& task, const std::function<void(const h5::Group&)>& content) const;
-  /// Calls `read` with the saved content when there is one for this scene. One of which all copies are damaged goes,
-  /// with a remark: its task starts afresh; returns false then.
-  bool load(const std::string& task, const std::function<void(const h5::Group&)>& read) const;
+  /// Which of the two copies that are kept may be read.
+  enum class Copy {
+    newest_valid,
+    newest  ///< what other files go with: the copy before it is older than they are
+  };
+  /// Calls `read` with the saved content when there is one for this scene. One of which all copies that may be read are
+  /// damaged, or those of another task, goes with a remark: its task starts afresh; returns false then.
+  bool load(const std::string& task, const std::function<void(const h5::Group&)>& read,
+            Copy copy = Copy::newest_valid) const;
+  /// Whether anything is saved of a task.
+  [[nodiscard]] bool has(const std::string& task) const;
+  /// Removes what is saved of a task, with a remark that says why.
+  void start_afresh(const std::string& task, const std::string& why) const;
   /// Wall time between two saves of a task that is under way [s].
   [[nodiscard]] double seconds() const { return context_.checkpoint_seconds(); }
   /// Removes what is saved of one task.

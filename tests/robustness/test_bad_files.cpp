@@ -8,6 +8,8 @@
 #include <limits>
 #include <sstream>
 
+#include "common/data/multi_contact_replicates.h"
+#include "macrosim/macro_packing.h"
 #include "tests/support/hdf5_contents.h"
 #include "tests/support/hdf5_edit.h"
 #include "tests/support/program.h"
@@ -263,6 +265,82 @@ TEST_F(BadResults, MacroCurvesAndGrainBoxes) {
   boxes([](Hdf5Edit& f) { f.resize("packs/pack_000/pack/wall_E_nu_mu", 9); }, {"'wall_point' has a wrong shape"});
   boxes([](Hdf5Edit& f) { f.resize("packs/pack_000/fits/ranges", 3); }, {"'ranges' has a wrong length"});
   boxes([](Hdf5Edit& f) { f.set_attribute("packs/pack_000", "phase", -1LL); }, {"a phase that is not known"});
+  for (const std::string name : {"solid_fraction", "residual", "stress", "pressure"})
+    boxes([&](Hdf5Edit& f) { f.set("packs/pack_000/points/" + name, 1, kNan); },
+          {"'" + name + "' holds a number that is not finite"});
+}
+
+/// What is not defined for a loading, or was not probed, is no damage.
+TEST_F(BadResults, ModuliOfGrainBoxesMayBeUnknown) {
+  const std::string path = directory_.file("grain_box.h5");
+  tiny_grain_boxes(path);
+  {
+    Hdf5Edit file(path);
+    file.set("packs/pack_000/points/bulk_modulus", 0, kNan);
+    file.set("packs/pack_000/points/sliding_share", 1, kNan);
+  }
+  EXPECT_EQ(run_the_program("check '" + path + "'").status, 0);
+}
+
+TEST_F(BadResults, TheEndOfAParticlesRun) {
+  for (const std::string name : {"bodies/inverse_inertia", "bodies/force", "neighbours/skin"})
+    expect_refused(tiny_particles_run, [&](Hdf5Edit& f) { f.set("final/" + name, 0, kNan); },
+                   {"/final/" + name + ": holds a number that is not finite, number 1 of"});
+}
+
+void tiny_packings(const std::string& path) {
+  MacroPacking packing;
+  packing.high = {{1.0, 1.0, 1.0}};
+  packing.bodies = {{{{0.3, 0.5, 0.5}}, 0.1, false}, {{{0.7, 0.5, 0.5}}, 0.1, true}};
+  h5::AtomicFile file(path);
+  write_macro_packing(file.root().create("sample_0"), packing);
+  file.commit();
+}
+
+TEST_F(BadResults, Packings) {
+  tiny_packings(directory_.file("good.h5"));
+  const ProgramOutcome good = run_the_program("check '" + directory_.file("good.h5") + "'");
+  EXPECT_EQ(good.status, 0) << good.output;
+  EXPECT_NE(good.output.find("packings: 1, with 2 bodies in all"), std::string::npos) << good.output;
+  const auto bad = [&](const Edit& edit, const std::vector<std::string>& words) {
+    expect_refused(tiny_packings, edit, words);
+  };
+  bad([](Hdf5Edit& f) { f.set("sample_0/bodies", 1, kNan); }, {"'bodies' holds a place that is not finite"});
+  bad([](Hdf5Edit& f) { f.set("sample_0/bodies", 3, 0.0); }, {"a radius that is not above 0"});
+  bad([](Hdf5Edit& f) { f.set("sample_0/box", 4, HUGE_VAL); }, {"'box' holds a number that is not finite"});
+  bad([](Hdf5Edit& f) { f.remove("sample_0/bodies"); }, {"/sample_0/bodies: missing or damaged data set"});
+}
+
+/// The files beside law cards and law tables.
+TEST_F(BadResults, ValuesOfLaws) {
+  const auto card = [](const std::string& path) {
+    save_card(synthetic::card(), fs::path(path).replace_extension(".toml").string());
+  };
+  const auto table = [](const std::string& path) {
+    LawTable all{1, {synthetic::law_entry()}};
+    for (MultiContactLaw& law : all.entries[0].laws) law.replicates.assign(2, multi_contact_numbers(law));
+    save_law_table(all, fs::path(path).replace_extension(".toml").string());
+  };
+  for (const Writer write : {Writer(card), Writer(table)}) {
+    write(directory_.file("case.h5"));
+    EXPECT_EQ(run_the_program("check '" + directory_.file("case.h5") + "'").status, 0);
+  }
+  expect_refused(card, [](Hdf5Edit& f) { f.set("soft-solid/normal/a", 0, kNan); },
+                 {"/soft-solid/normal/a: must hold a finite number"});
+  expect_refused(card, [](Hdf5Edit& f) { f.remove("soft-soft/table"); }, {"table: missing or damaged group"});
+  expect_refused(table, [](Hdf5Edit& f) { f.set("entry_0/directional/parameters", 4, kNan); },
+                 {"/entry_0/directional/parameters: row 1 begins with a number that is not finite"});
+  expect_refused(table, [](Hdf5Edit& f) { f.set("entry_0/pair/replicates", 1, kNan); },
+                 {"/entry_0/pair/replicates: holds a number that is not finite, number 2 of"});
+  expect_refused(table, [](Hdf5Edit& f) { f.resize("entry_0/pair/numbers", 5); }, {"must have a column for each"});
+}
+
+TEST_F(BadFiles, NothingToCompareNamesAllFilesThatCouldBe) {
+  const std::string empty = directory_.file("empty");
+  fs::create_directory(empty);
+  expect("compare '" + empty + "'", 2,
+         {"empty: holds nothing to compare (macro.h5, material.h5, material_NAME.h5, measurements.h5 or law.toml)"},
+         "compare");
 }
 
 /// Exports and the report read the states that runs keep.
@@ -344,10 +422,17 @@ TEST_F(BadResults, PowdersOfAReport) {
   const std::string system = "sample_0/system/";
   bad([&](Hdf5Edit& f) { f.resize(system + "bodies/sphere", 10); }, {"'sphere' does not fit"});
   // Found by fuzzing: the neighbour search went out of bounds.
-  bad([&](Hdf5Edit& f) { f.set(system + "bodies/sphere", 4, kNan); }, {"'sphere' does not fit"});
+  bad([&](Hdf5Edit& f) { f.set(system + "bodies/sphere", 4, kNan); }, {"'sphere' holds a number that is not finite"});
   bad([&](Hdf5Edit& f) { f.set(system + "bodies/sphere", 5, -1.0); }, {"'sphere' does not fit"});
   bad([&](Hdf5Edit& f) { f.set(system + "cell/edges", 0, 0.0); }, {"'edges' does not fit"});
-  bad([&](Hdf5Edit& f) { f.set(system + "neighbours/skin", 2, kNan); }, {"'skin' does not fit"});
+  bad([&](Hdf5Edit& f) { f.set(system + "neighbours/skin", 2, kNan); }, {"'skin' holds a number that is not finite"});
+  bad([&](Hdf5Edit& f) { f.set(system + "neighbours/skin", 2, -1.0); }, {"'skin' does not fit"});
+  bad([&](Hdf5Edit& f) { f.set(system + "bodies/spin", 3, kNan); }, {"'spin' holds a number that is not finite"});
+  bad([&](Hdf5Edit& f) { f.resize(system + "neighbours/reference", 4); },
+      {"powder.h5: /sample_0/system/neighbours/reference: saved state: 'reference' does not fit"});
+  bad([&](Hdf5Edit& f) { f.set("sample_0/course", 2, kNan); },
+      {"powder.h5: /sample_0/course: holds a number that is not finite"});
+  bad([&](Hdf5Edit& f) { f.resize("sample_0/course", 3); }, {"powder.h5"});
   bad([&](Hdf5Edit& f) { f.set(system + "bodies/material", 3, 4); }, {"'material' does not fit"});
   bad([&](Hdf5Edit& f) { f.set(system + "bodies/counts", 0, 1e9); }, {"'counts' does not fit"});
   bad([&](Hdf5Edit& f) { f.set_attribute("sample_0/system", "dimension", 3LL); }, {"'dimension' does not fit"});

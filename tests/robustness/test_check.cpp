@@ -431,6 +431,23 @@ void expect_counts_of_the_run(const std::string& text) {
   EXPECT_GT(twins, 0U);
 }
 
+/// Soft particles were packed before, by the run too, and `check` did not name the file.
+TEST_F(Check, ACardWithoutAUsableLawIsRefusedFirst) {
+  write_text_atomic(directory_.file("scene.toml"), test::kTinyMacro);
+  LawCard card = synthetic::card();
+  card.pairs.resize(1);
+  save_card(card, directory_.file("law.toml"));
+  for (const std::string command : {"check", "run"}) {
+    const test::ProgramOutcome said =
+        run_the_program(command + " '" + directory_.file("scene.toml") + "'" +
+                        (command == "run" ? " --quiet --out '" + directory_.file("out") + "'" : ""));
+    EXPECT_EQ(said.status, 2) << said.output;
+    EXPECT_NE(said.output.find("law.toml: law card: no usable soft-soft law: the card has none"), std::string::npos)
+        << said.output;
+  }
+  EXPECT_FALSE(fs::exists(directory_.file("out")));
+}
+
 TEST_F(Check, CountsAreThoseOfTheRun) {
   // Two contents: of more, a check makes those that take two seconds, and says "about".
   const std::string macro =

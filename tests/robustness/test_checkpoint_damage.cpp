@@ -1,5 +1,6 @@
 // Checkpoints and results with flipped bits or cut short: never taken for what they were not.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -92,6 +93,16 @@ TEST_F(CheckpointDamage, BytesAddedOrExchangedAreFound) {
   EXPECT_FALSE(newest_is_taken());
 }
 
+/// A pipe kept the run waiting for ever.
+TEST_F(CheckpointDamage, APipeOrAFolderInItsPlaceIsPassedOver) {
+  fs::remove(path_);
+  ASSERT_EQ(::mkfifo(path_.c_str(), 0600), 0);
+  EXPECT_FALSE(newest_is_taken());
+  fs::remove(path_);
+  fs::create_directory(path_);
+  EXPECT_FALSE(newest_is_taken());
+}
+
 TEST_F(CheckpointDamage, BothDamagedIsTrouble) {
   flip(path_, 500, 3);
   flip(path_ + ".previous", 600, 3);
@@ -175,6 +186,54 @@ TEST(DamagedRun, StartsATaskAfreshOfWhichNothingIsLeft) {
     EXPECT_NE(log_of(runs.out(out)).find(task + " starts afresh"), std::string::npos) << task;
     expect_same_runs(runs.out("whole"), runs.out(out));
   }
+}
+
+/// The task went on with states of an earlier moment: those in between were not in the results, and nothing said so.
+TEST(DamagedRun, DoesNotTakeStatesThatAreOlderThanTheirTask) {
+  const KindRuns runs({"soft-particle", "microsim", kTinySoftParticle, 0});
+  ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("whole"))), 0));
+  const std::string ending = ".previous";
+  const auto states = [&] {
+    std::string found;
+    std::error_code not_there_yet;
+    for (const auto& entry : fs::directory_iterator(runs.out("out") + "/work", not_there_yet))
+      if (entry.path().string().ends_with("-states.h5" + ending)) found = entry.path().string();
+    return found;
+  };
+  const auto start = [&] {
+    return start_program(runs.arguments("out", {"--threads", "1", "--checkpoint-every", "0"}));
+  };
+  ASSERT_TRUE(interrupted_in_the_middle(
+      start, [&] { return !states().empty(); }, runs.out("out")));
+  const std::string name = fs::path(states()).filename().string();
+  for (const bool gone : {false, true}) {
+    const std::string out = gone ? "gone" : "flipped";
+    fs::copy(runs.out("out"), runs.out(out), fs::copy_options::recursive);
+    const std::string file = runs.out(out) + "/work/" + name.substr(0, name.size() - ending.size());
+    if (gone)
+      fs::remove(file);
+    else
+      flip(file, fs::file_size(file) / 2, 4);
+    ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments(out, {"--resume"}))), 0));
+    EXPECT_NE(log_of(runs.out(out)).find("starts afresh"), std::string::npos) << out;
+    expect_same_runs(runs.out("whole"), runs.out(out));
+  }
+}
+
+/// All tasks of a run have the fingerprint of its scene.
+TEST(DamagedRun, DoesNotTakeTheFileOfAnotherTask) {
+  const KindRuns runs({"powder", "run", kTinyPowder, 0});
+  ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("whole"))), 0));
+  const std::string work = runs.out("out") + "/work/";
+  const auto begun = [&] { return fs::exists(work + "powder-0.h5") && fs::exists(work + "powder-1.h5"); };
+  const auto start = [&] {
+    return start_program(runs.arguments("out", {"--threads", "2", "--checkpoint-every", "0"}));
+  };
+  ASSERT_TRUE(interrupted_in_the_middle(start, begun, runs.out("out")));
+  fs::copy_file(work + "powder-0.h5", work + "powder-1.h5", fs::copy_options::overwrite_existing);
+  ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("out", {"--resume"}))), 0));
+  EXPECT_NE(log_of(runs.out("out")).find("holds the task powder-0: powder-1 starts afresh"), std::string::npos);
+  expect_same_runs(runs.out("whole"), runs.out("out"));
 }
 
 /// The files below a run directory from which --resume goes on.

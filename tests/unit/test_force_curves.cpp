@@ -124,6 +124,14 @@ TEST_F(ForceCurveFile, ReadingsBeforeTouchAreKept) {
   EXPECT_EQ(c.samples[0].normal.size(), 5U);
 }
 
+/// It was a reading before touch, and its force moved the zero.
+TEST_F(ForceCurveFile, AnOverlapOfTheWrongSignIsRefused) {
+  expect_refused(replaced(kGood, "2.4, 300", "-2.4, 300"), {"data.csv:9", "Delta = -0.15 stands between 0.1 and 0.2"});
+  const ForceCurves jitter = read(replaced(kGood, "0.8, 0\n", "0.08, 0\n-0.1, 1\n0.8, 0\n"));
+  EXPECT_EQ(jitter.samples[0].before_touch, (std::vector<double>{0.001}));
+  EXPECT_EQ(jitter.samples[0].normal.size(), 6U);
+}
+
 TEST_F(ForceCurveFile, SemicolonsTabsAndDecimalCommas) {
   ForceCurveOptions o;
   o.kind = PairKind::soft_solid;

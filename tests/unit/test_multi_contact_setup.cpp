@@ -1,5 +1,6 @@
 // Scenes of kind law-table: what is read, what is refused, where states are recorded, what names a kept run.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 
@@ -249,6 +250,25 @@ TEST(SharedResults, KeepsAndIgnoresDamage) {
   cache.keep(form, "key", sample_run());
   EXPECT_TRUE(cache.find(form, "key"));
   EXPECT_FALSE(SharedResults("", [](const std::string&) {}).find(form, "key"));
+}
+
+/// A folder under the name of a result was met when the result was there and could not be kept, and a pipe was waited
+/// for.
+TEST(SharedResults, WhatIsNoFileIsRefusedAtOnce) {
+  const test::TemporaryDirectory directory;
+  const SharedResults cache(directory.path(), [](const std::string&) {});
+  const KeptForm<MultiContactRun>& form = kept_multi_contact_run();
+  const std::string file = directory.file(multi_contact_run_name("key") + ".h5");
+  std::filesystem::create_directory(file);
+  EXPECT_THROW((void)cache.find(form, "key"), IoError);
+  std::filesystem::remove(file);
+  ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+  EXPECT_THROW((void)cache.find(form, "key"), IoError);
+  std::filesystem::remove(file);
+  std::filesystem::create_symlink(std::filesystem::path(file).filename(), file);  // to itself
+  EXPECT_FALSE(cache.find(form, "key"));
+  cache.keep(form, "key", sample_run());
+  EXPECT_TRUE(cache.find(form, "key"));
 }
 
 }  // namespace

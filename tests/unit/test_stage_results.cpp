@@ -17,6 +17,7 @@
 #include "pipelines/results/set_summary.h"
 #include "pipelines/results/summary.h"
 #include "pipelines/runs/set_text.h"
+#include "tests/support/hdf5_edit.h"
 #include "tests/support/temporary_directory.h"
 
 namespace softgrain {
@@ -438,6 +439,35 @@ TEST(StageResults, IntervalsAreKeptWithTheirCurve) {
   EXPECT_EQ(back[0].stages[0].modulus_stress, (std::array<double, 2>{1e4, 4e4}));
   EXPECT_EQ(back[0].stages[1].modulus_stress, (std::array<double, 2>{}));
   EXPECT_EQ(back[1].stages[0].modulus_stress, (std::array<double, 2>{}));
+}
+
+/// The report of a material without the stress along y ended in a segmentation fault.
+TEST(StageResults, CurvesWithoutTheColumnsOfStagesAreRefused) {
+  const test::TemporaryDirectory directory;
+  const std::string path = directory.file("macro.h5");
+  const auto refusal = [&](const auto& edit) -> std::string {
+    save_macro({pressed_and_slid().curve}, path);
+    {
+      test::Hdf5Edit file(path);
+      edit(file);
+    }
+    try {
+      (void)load_macro(path);
+    } catch (const IoError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const std::string curve = "curves/curve_000000/";
+  EXPECT_EQ(refusal([](test::Hdf5Edit&) {}), "");
+  for (const std::string name : {"stage", "strain_x", "strain_y", "strain_z", "stress_x", "stress_y"})
+    EXPECT_NE(refusal([&](test::Hdf5Edit& f) {
+                f.remove(curve + name);
+              }).find("macro.h5: curve_000000: data set '" + name + "' is missing"),
+              std::string::npos)
+        << name;
+  EXPECT_NE(refusal([&](test::Hdf5Edit& f) { f.set(curve + "stage", 2, 7.0); }).find("there are 2 stages"),
+            std::string::npos);
 }
 
 TEST(StageResults, MeansLeaveOutWhatIsNotUsable) {

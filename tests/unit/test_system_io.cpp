@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "common/core/error.h"
 #include "common/dynamics/verlet.h"
@@ -80,6 +81,20 @@ TEST(SystemIo, AStateOfOtherDimensionOrLengthIsRefused) {
   const h5::Group group = h5::open_file(directory.file("state.h5")).open("state");
   System<2> flat = shell_and_plane_system<2>(0.4, 0.7, false);
   EXPECT_THROW(read_system(group, flat), IoError);
+}
+
+/// A run went on with them, to results that were no numbers.
+TEST(SystemIo, NumbersThatAreNotFiniteAreDamage) {
+  System3 s = shell_and_plane_system<3>(0.4, 0.7, false);
+  s.particles.spin.front()[1] = std::numeric_limits<double>::quiet_NaN();
+  try {
+    (void)saved_and_read(s);
+    ADD_FAILURE() << "it was read";
+  } catch (const IoError& e) {
+    EXPECT_NE(std::string(e.what()).find("state.h5: /state/bodies/spin: saved state: 'spin' holds a number"),
+              std::string::npos)
+        << e.what();
+  }
 }
 
 /// Whatever follows shells outwards would go round for ever.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 #include "common/data/attributes.h"
@@ -45,11 +46,23 @@ std::optional<FittedCurve> read_scattering(const h5::Group& group) {
   return out;
 }
 
+/// Moduli of a stage may be unknown; nothing else of a sample at rest is.
+void require_finite(const h5::Group& group, const PowderSample& sample) {
+  const auto is_finite = [](auto... numbers) { return (std::isfinite(numbers) && ...); };
+  for (const PowderPoint& p : sample.course)
+    if (!is_finite(p.time, p.fraction, p.coordination, p.kinetic, p.stress[0], p.stress[1]))
+      group.refuse("course", "holds a number that is not finite");
+  for (const PowderStage& s : sample.stages)
+    if (!is_finite(s.pressure, s.time, s.fraction, s.coordination, s.mean_repulsive, s.mean_tensile))
+      group.refuse("stages", "holds a number that is not finite");
+}
+
 PowderSample read_sample(const h5::Group& group, const PowderSpec& spec) {
   PowderSample out;
   out.usable = group.integer("usable") != 0;
   out.course = read_course(group);
   out.stages = read_stages(group);
+  if (out.usable) require_finite(group, out);
   const System<2> system = read_powder_system(group, spec);
   out.packing = snapshot_of(system, false);
   out.contacts = contact_records(system);
@@ -77,15 +90,17 @@ SnapshotSeries read_powder_series(const h5::Group& sample, Snapshot state) {
 }
 
 PowderRun load_powder(const std::string& path) {
-  const h5::Group root = h5::open_file(path);
-  const PowderSpec spec = read_powder_spec(root.open("spec"));
-  PowderRun run;
-  run.cohesive = spec.cohesive;
-  if (spec.rolling) run.idle_colour = kRollingIdleColour;
-  for (std::size_t k = 0; root.has(fmt::format("sample_{}", k)); ++k)
-    run.samples.push_back(read_sample(root.open(fmt::format("sample_{}", k)), spec));
-  run.scattering = read_scattering(root);
-  return run;
+  return h5::naming_file(path, [&] {
+    const h5::Group root = h5::open_file(path);
+    const PowderSpec spec = read_powder_spec(root.open("spec"));
+    PowderRun run;
+    run.cohesive = spec.cohesive;
+    if (spec.rolling) run.idle_colour = kRollingIdleColour;
+    for (std::size_t k = 0; root.has(fmt::format("sample_{}", k)); ++k)
+      run.samples.push_back(read_sample(root.open(fmt::format("sample_{}", k)), spec));
+    run.scattering = read_scattering(root);
+    return run;
+  });
 }
 
 }  // namespace softgrain

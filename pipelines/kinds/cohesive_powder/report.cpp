@@ -290,12 +290,21 @@ void name_units(Snapshot& s, const PowderSpec& spec) {
   s.time_unit = form.time_unit;
 }
 
+struct SampleStates {
+  Snapshot last;
+  std::optional<SnapshotSeries> pictures;  ///< of the assembly
+};
+
+SampleStates read_states(const h5::Group& group, const PowderSpec& spec, SnapshotChoice choice) {
+  SampleStates out{snapshot_of(read_powder_system(group, spec)), {}};
+  name_units(out.last, spec);
+  out.last.time = group.open("system").number("time");
+  if (choice == SnapshotChoice::all) out.pictures = read_powder_series(group, out.last);
+  return out;
+}
+
 /// The last picture of an assembly may be its end, which is told with contacts instead.
-void visit_sample(const h5::Group& group, const PowderSpec& spec, std::size_t sample, SnapshotChoice choice,
-                  const VisitSnapshot& visit) {
-  Snapshot last = snapshot_of(read_powder_system(group, spec));
-  name_units(last, spec);
-  last.time = group.open("system").number("time");
+void visit_sample(SampleStates states, std::size_t sample, const VisitSnapshot& visit) {
   std::int64_t frame = 0;
   const auto show = [&](Snapshot& s) {
     s.series = fmt::format("sample_{}", sample);
@@ -303,12 +312,9 @@ void visit_sample(const h5::Group& group, const PowderSpec& spec, std::size_t sa
     s.frame = frame++;
     visit(s);
   };
-  if (choice == SnapshotChoice::all) {
-    const SnapshotSeries pictures = read_powder_series(group, last);
-    for (std::size_t k = 0; k < pictures.size(); ++k)
-      if (auto picture = pictures.at(k); picture && picture->time < last.time) show(*picture);
-  }
-  show(last);
+  for (std::size_t k = 0; states.pictures && k < states.pictures->size(); ++k)
+    if (auto picture = states.pictures->at(k); picture && picture->time < states.last.time) show(*picture);
+  show(states.last);
 }
 
 }  // namespace
@@ -316,8 +322,10 @@ void visit_sample(const h5::Group& group, const PowderSpec& spec, std::size_t sa
 void visit_powder(const std::string& path, SnapshotChoice choice, const VisitSnapshot& visit) {
   const h5::Group root = h5::open_file(path);
   const PowderSpec spec = read_powder_spec(root.open("spec"));
-  for (std::size_t k = 0; root.has(fmt::format("sample_{}", k)); ++k)
-    visit_sample(root.open(fmt::format("sample_{}", k)), spec, k, choice, visit);
+  for (std::size_t k = 0; root.has(fmt::format("sample_{}", k)); ++k) {
+    const h5::Group sample = root.open(fmt::format("sample_{}", k));
+    visit_sample(h5::naming_file(path, [&] { return read_states(sample, spec, choice); }), k, visit);
+  }
 }
 
 namespace {

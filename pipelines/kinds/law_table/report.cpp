@@ -9,6 +9,7 @@
 #include "calibrate/multi_contact_states.h"
 #include "common/contact/make_laws.h"
 #include "common/data/law_words.h"
+#include "common/data/multi_contact_replicates.h"
 #include "pipelines/kinds/law_table/scene.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
@@ -262,12 +263,24 @@ NextSteps next_of(const RunData& run) {
 
 }  // namespace
 
+namespace {
+
+void check_table_values(const std::string& path, Findings& out) {
+  check_replicates(path);
+  out.add("kind", "law table values", "values and refits of a law table");
+}
+
+}  // namespace
+
 KindResults law_table_results() {
   return {.files = {{.names = "(multi_contact|crowd)(_(variant|level)_[0-9]+)?\\.h5",
                      .is = [](const h5::Group& root) { return root.has("configurations"); },
                      .check = check_multi_contact_file},
                     {.names = "law(_table)?\\.toml", .check = check_laws},
-                    {.names = "law_table\\.h5|law_table_level_[0-9]+\\.(toml|h5)"}},
+                    {.names = "law_table_level_[0-9]+\\.toml"},
+                    {.names = "law_table(_level_[0-9]+)?\\.h5",
+                     .is = [](const h5::Group& root) { return root.has("entry_0"); },
+                     .check = check_table_values}},
           .sections = {{Part::several, law_table_section}},
           .lines = lines_of,
           .values = values_of,

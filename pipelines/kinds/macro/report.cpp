@@ -9,6 +9,8 @@
 
 #include "common/core/error.h"
 #include "common/core/statistics.h"
+#include "common/io/hdf5_file.h"
+#include "macrosim/macro_packing.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/compare/stage_match.h"
 #include "pipelines/compare/stage_results.h"
@@ -317,6 +319,17 @@ void check_macro_file(const std::string& path, Findings& out) {
   }
 }
 
+void check_packings_file(const std::string& path, Findings& out) {
+  std::size_t samples = 0;
+  std::size_t bodies = 0;
+  h5::naming_file(path, [&] {
+    const h5::Group root = h5::open_file(path);
+    for (std::string name = "sample_0"; root.has(name); name = fmt::format("sample_{}", ++samples))
+      bodies += read_macro_packing(root.open(name)).bodies.size();
+  });
+  out.add("kind", "packings", fmt::format("packings: {}, with {} bodies in all", samples, bodies));
+}
+
 /// Where usable runs of one engine ended, when there is nothing to compare with. Strains of tests in stages may differ
 /// between samples.
 std::string end_line(const std::vector<MacroCurve>& curves) {
@@ -425,9 +438,12 @@ NextSteps next_of(const RunData& run) {
 }  // namespace
 
 KindResults macro_results() {
-  return {.files = {{.names = "macro(_initial)?\\.h5",
+  return {.files = {{.names = "macro\\.h5",
                      .is = [](const h5::Group& root) { return root.has("curves"); },
                      .check = check_macro_file},
+                    {.names = "macro_initial\\.h5",
+                     .is = [](const h5::Group& root) { return root.has("sample_0") && !root.has("spec"); },
+                     .check = check_packings_file},
                     {.names = "states_macro\\.h5|lammps-[0-9]+"}},
           .sections = {{Part::macro, macro_section}},
           .lines = lines_of,

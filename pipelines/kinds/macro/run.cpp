@@ -199,6 +199,8 @@ MacroScene read_with_options(const Scene& scene, const CommonOptions& options) {
   if (macro.setup.bands == 0 && scene.root().table("macro").has("band_estimator"))
     scene.root().table("macro").throw_error("band_estimator",
                                             "goes with bands, the number of draws of the law, or --bands");
+  // A card without a usable law is refused before soft particles are packed.
+  if (macro.law.card() != nullptr) (void)scene_law(macro.law, macro.setup.spec, 0.0, "law");
   return macro;
 }
 

@@ -91,7 +91,7 @@ EquationSettings read_equation(const SceneTable& t) {
 StateCurve state_curve(const MacroCurve& c, const std::string& group, double span) {
   StateCurve out{group, span, {}, {}, {}};
   const auto phi = c.more.find(kSolidFraction);
-  if (phi == c.more.end()) return out;
+  if (phi == c.more.end() || c.stages.empty()) return out;
   const std::vector<double> p = mean_stresses(c);
   for (std::size_t k = 0; k < phi->second.size(); ++k) {
     const bool goes_on = out.phi.empty() || phi->second[k] > out.phi.back();

@@ -436,9 +436,12 @@ NextSteps next_of(const RunData&) {
 }  // namespace
 
 std::vector<double> mean_stresses(const MacroCurve& c) {
+  // Curves that name no stages may not have the stress on each axis.
+  const bool each_axis = c.stress_x.size() == c.strain.size() && c.stress_y.size() == c.strain.size();
   std::vector<double> p;
   for (std::size_t k = 0; k < c.strain.size(); ++k)
-    p.push_back((c.stress_x[k] + c.stress_y[k] + c.stress_axial[k]) / 3.0);
+    p.push_back(each_axis ? (c.stress_x[k] + c.stress_y[k] + c.stress_axial[k]) / 3.0
+                          : (2.0 * c.stress_lateral[k] + c.stress_axial[k]) / 3.0);
   return p;
 }
 

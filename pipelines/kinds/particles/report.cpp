@@ -10,6 +10,7 @@
 
 #include "common/core/error.h"
 #include "common/core/text.h"
+#include "common/data/columns.h"
 #include "common/data/snapshot_frames.h"
 #include "pipelines/kinds/particles/scene.h"
 #include "pipelines/kinds/particles/summary.h"
@@ -202,12 +203,13 @@ namespace {
 
 void check_particles_file(const std::string& path, Findings& out) {
   std::size_t frames = 0;
-  try {
+  h5::naming_file(path, [&] {
     visit_particles(path, SnapshotChoice::all, [&](const Snapshot&) { ++frames; });
-  } catch (const IoError& e) {
-    const std::string text = e.what();
-    throw IoError(text.starts_with(path) ? text : path + ": " + text);
-  }
+    // A run that lost a particle ends in numbers that are none, and says that it is not usable.
+    const h5::Group root = h5::open_file(path);
+    if (root.has_attribute("status") && is_good(root.text("status")) && root.has("final"))
+      require_finite_content(root.open("final"));
+  });
   out.add("kind", "particles", fmt::format("particles: {} recorded frames", frames));
 }
 

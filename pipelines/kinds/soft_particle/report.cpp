@@ -10,6 +10,7 @@
 #include "common/core/error.h"
 #include "common/core/statistics.h"
 #include "common/core/text.h"
+#include "common/data/law_card_format.h"
 #include "pipelines/compare/compare_inputs.h"
 #include "pipelines/compare/compare_measurements.h"
 #include "pipelines/kinds/soft_particle/scene.h"
@@ -372,11 +373,26 @@ NextSteps next_of(const RunData& run) {
 
 }  // namespace
 
+namespace {
+
+void check_card_table(const std::string& path, Findings& out) {
+  check_table(path);
+  out.add("kind", "law card values", "measured curves and bands of a law card");
+}
+
+}  // namespace
+
 KindResults soft_particle_results() {
   return {.files = {{.names = "measurements\\.h5",
                      .is = [](const h5::Group& root) { return root.has("runs") && !root.has("configurations"); },
                      .check = check_measurements_file},
-                    {.names = "law\\.h5|states_measurements\\.h5"}},
+                    {.names = "law\\.h5",
+                     .is =
+                         [](const h5::Group& root) {
+                           return root.has_attribute("format") && root.text("format") == kLawFormat;
+                         },
+                     .check = check_card_table},
+                    {.names = "states_measurements\\.h5"}},
           .sections = {{Part::measurements, normal_section},
                        {Part::measurements, tangential_section},
                        {Part::measurements, stiffness_section},

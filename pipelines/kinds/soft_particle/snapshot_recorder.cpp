@@ -26,8 +26,16 @@ SnapshotRecorder::SnapshotRecorder(const TaskStore& store, const std::string& ta
                                    std::int64_t wanted)
     : store_(store), task_(task + "-states"), points_(points), wanted_(wanted) {
   if (wanted_ <= 0) return;
-  const bool whole = store_.load(task_, [&](const h5::Group& g) { states_ = read_snapshot_list(g); });
-  if (!whole) store_.remove(task);
+  const bool there = store_.has(task_);
+  // The copy before the newest lacks states of points that the task has behind it.
+  const bool whole = store_.load(
+      task_, [&](const h5::Group& g) { states_ = read_snapshot_list(g); }, TaskStore::Copy::newest);
+  if (!whole)
+    store_.remove(task);
+  else if (!there && store_.has(task))
+    store_.start_afresh(task, "the states that it has kept are gone");
+  // Even without states: whether they are missing can then be told.
+  if (!store_.has(task_)) store_.save(task_, [&](const h5::Group& g) { write_snapshot_list(g, states_); });
 }
 
 bool SnapshotRecorder::has(std::int64_t point) const {
