@@ -6,6 +6,7 @@
 
 #include "common/core/error.h"
 #include "common/core/particles.h"
+#include "common/core/text.h"
 #include "common/packing/void_filling.h"
 #include "macrosim/cell_specimen.h"
 #include "macrosim/preparation.h"
@@ -37,10 +38,10 @@ VoidFilling fill(const MacroSpec& spec, const MacroPacking& packing) {
 
 [[noreturn]] void refuse(const MacroSpec& spec, double fraction, double reached) {
   throw UnfitScene(
-      "macro: soft_share = " + std::to_string(spec.soft_share) + " cannot be reached: between solid grains " +
-      "that fill " + std::to_string(fraction) + " of the box, soft particles of radii from " +
-      std::to_string(spec.soft_radius_max / spec.soft_polydispersity) + " to " + std::to_string(spec.soft_radius_max) +
-      " m hold at most " + std::to_string(reached) + "; lower solid_fill or raise soft_polydispersity");
+      "macro: soft_share = " + rounded_text(spec.soft_share) + " cannot be reached: between solid grains " +
+      "that fill " + rounded_text(fraction) + " of the box, soft particles of radii from " +
+      rounded_text(spec.soft_radius_max / spec.soft_polydispersity) + " to " + rounded_text(spec.soft_radius_max) +
+      " m hold at most " + rounded_text(reached) + "; lower solid_fill or raise soft_polydispersity");
 }
 
 /// The last sphere goes when the share is nearer without it.

@@ -34,7 +34,7 @@ const auto& numbers() {
         "E of the grains [Pa]", "Young's modulus of the grains", true},
        {"poisson_ratio", "nu", &S::poisson_ratio, Unit::none, kPoissonRange, kPoissonRange, "nu", "nu",
         "nu of the grains", "Poisson's ratio of the grains"},
-       {"friction", "mu", &S::friction, Unit::none, not_negative, not_negative, "mu", "mu", "mu of the grains",
+       {"friction", "mu", &S::friction, Unit::none, not_negative, Range::friction(), "mu", "mu", "mu of the grains",
         "friction between grains"},
        {"density", "density", &S::density, Unit::density, positive, positive, "density", "[kg/m^3]", "",
         "density of the grains"},

@@ -67,6 +67,13 @@ void with_steps_short_enough(Experiment& e, const Work& stretch) {
   }
 }
 
+// Limits of what a scene may ask of dynamics: a time beyond them has more steps than can be counted, and a speed beyond
+// them is not slow against sound in the grains. Speeds over sqrt(E/rho), times over R sqrt(rho/E).
+inline constexpr double kSlowestApproach = 1e-7;
+inline constexpr double kFastestApproach = 0.1;
+inline constexpr double kLongestSettling = 1e6;
+inline constexpr double kShortestStep = 0.01;  ///< over that of the published protocol
+
 /// Dynamics with dashpots for a time [s], in steps of `step_factor` times that of the published protocol, masses raised
 /// to match. Experiment: has `system` and set_damping(bool), and is without damping before and after.
 template <class Experiment>

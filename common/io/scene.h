@@ -51,6 +51,8 @@ struct Range {
   static Range not_negative() { return {0.0, std::numeric_limits<double>::infinity(), false, false}; }
   static Range closed(double low, double high) { return {low, high, false, false}; }
   static Range above(double low) { return {low, std::numeric_limits<double>::infinity(), true, false}; }
+  /// Of coefficients of friction: with a thousand no contact slides that bears anything, and more is a wrong unit.
+  static Range friction() { return closed(0.0, 1000.0); }
 };
 
 /// "above 0", "from 0 to 0.5", "at least 0 and below 1"; empty when all numbers are allowed.

@@ -9,6 +9,7 @@
 
 #include "common/core/error.h"
 #include "common/core/parallel_tasks.h"
+#include "common/core/text.h"
 #include "common/neighbours/hierarchical_grid.h"
 #include "common/neighbours/skin.h"
 
@@ -307,9 +308,9 @@ void require_valid(const Particles<D>& p, const Cell<D>& cell, Slot begin, Slot 
       const Vec<D> image = cell.image_shift(cell.image_near(p.sphere[u].x, shell.x));
       const double outside = norm(p.sphere[u].x - shell.x - image) - p.sphere[u].r - shell.r;
       if (outside <= 0.0) continue;
-      throw UnusableResult("grain " + std::to_string(i) + " (radius " + std::to_string(p.sphere[u].r) +
-                           " m) has been squeezed out of its shell (radius " + std::to_string(shell.r) +
-                           " m): " + std::to_string(outside) + " m lie between them");
+      throw UnusableResult(grain_name(p, i) + " (radius " + rounded_text(p.sphere[u].r) +
+                           " m) has been squeezed out of its shell (radius " + rounded_text(shell.r) +
+                           " m): " + rounded_text(outside) + " m lie between them");
     }
   }
 }

@@ -8,6 +8,7 @@
 
 #include "common/core/error.h"
 #include "common/core/particles.h"
+#include "common/core/text.h"
 #include "common/io/scene.h"
 #include "microsim/particles/scene_memory.h"
 #include "microsim/particles/scene_walls.h"
@@ -152,8 +153,8 @@ void require_fits(const Builder<D>& b, Slot k) {
   const NewBody<D>& grain = b.grains[static_cast<std::size_t>(k)];
   const SceneWall<D>& wall = b.walls[static_cast<std::size_t>(b.wall_of[static_cast<std::size_t>(k)])];
   if (grain.r < wall.body.r) return;
-  throw InputError(b.out.where_of(k) + ": radius = " + std::to_string(grain.r) + ": must be below " +
-                   std::to_string(wall.body.r) + ", the radius of the sphere around it, '" + wall.name + "' (" +
+  throw InputError(b.out.where_of(k) + ": radius = " + rounded_text(grain.r, {6}) + ": must be below " +
+                   rounded_text(wall.body.r, {6}) + ", the radius of the sphere around it, '" + wall.name + "' (" +
                    wall.where + ")");
 }
 
@@ -162,7 +163,7 @@ template <int D>
 void require_mass(const Builder<D>& b, Slot k) {
   const NewBody<D>& grain = b.grains[static_cast<std::size_t>(k)];
   if (grain.inertia > 0.0 && std::isfinite(grain.mass) && std::isfinite(1.0 / grain.inertia)) return;
-  throw InputError(b.out.where_of(k) + ": radius = " + std::to_string(grain.r) +
+  throw InputError(b.out.where_of(k) + ": radius = " + rounded_text(grain.r, {6}) +
                    ": the mass of this particle is out of the range of numbers");
 }
 
@@ -206,10 +207,10 @@ void place_walls(Builder<D>& b) {
     if (!w.plane) continue;
     if (w.needs_mass) w.body.mass = total;
     if (w.body.mass > 0.0 && w.body.mass < heaviest)
-      throw InputError(w.where + ": mass = " + std::to_string(w.body.mass) +
+      throw InputError(w.where + ": mass = " + rounded_text(w.body.mass, {6}) +
                        ": a wall moved by a force must weigh at least as much as the heaviest particle, " +
-                       std::to_string(heaviest) + " kg (left out: the mass of all particles, " + std::to_string(total) +
-                       " kg)");
+                       rounded_text(heaviest, {6}) + " kg (left out: the mass of all particles, " +
+                       rounded_text(total, {6}) + " kg)");
     const Slot slot = add_plane(b.out.particles, w.body, w.normal);
     b.out.particles.plane_load[static_cast<std::size_t>(slot - b.out.particles.first_plane())] = w.load;
     b.out.wall_name.push_back(w.name);

@@ -86,7 +86,7 @@ const Key kTangentialStiffnessKey{"tangential_stiffness",
                                   "`linear-spring`, `cohesive`: tangential stiffness (K_T); needed with friction only"};
 
 double read_friction(const SceneTable& t) {
-  return t.number({"mu", "friction coefficient", "-; law table: as measured"}, Unit::none, Range::not_negative());
+  return t.number({"mu", "friction coefficient", "-; law table: as measured"}, Unit::none, Range::friction());
 }
 double read_restitution(const SceneTable& t) {
   return t.number({"restitution", "`hertz-tsuji`, `linear-spring`: coefficient of restitution"}, Unit::none,
@@ -108,7 +108,7 @@ RollingResistance read_rolling(const SceneTable& t, double friction, double rest
   read_rolling_resistance(t, friction, rolling);
   rolling.damping =
       t.number({kDamping, "with `mu_r`: dashpot constant of rolling over that of the contact times R12^2"}, Unit::none,
-               Range::not_negative(), rolling.damping);
+               Range::closed(0.0, 1000.0), rolling.damping);
   if (!t.has("mu_r")) t.refuse({kDamping}, "goes with mu_r: nothing resists rolling");
   if (restitution >= 1.0) t.refuse({kDamping}, "goes with restitution below 1: the contact has no dashpot");
   return rolling;
@@ -159,7 +159,7 @@ AnyLaw read_cohesive(const SceneTable& t, double friction) {
   law.tangential =
       read_when(t, kTangentialStiffnessKey, Unit::stiffness, kFriction, "has no effect without friction (mu = 0)");
   law.damping = t.number({"zeta", "`cohesive`: damping in contact, as a fraction of critical damping"}, Unit::none,
-                         Range::not_negative());
+                         Range::closed(0.0, 100.0));
   law.adhesion = t.number({"adhesion", "`cohesive`: adhesion force F0"}, Unit::force, Range::not_negative());
   law.range = read_when(t,
                         {"range",

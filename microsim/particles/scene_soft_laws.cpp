@@ -45,7 +45,7 @@ bool read_unloading(const SceneTable& t) {
 CardChoices read_card_choices(const SceneTable& t) {
   CardChoices c;
   c.modulus = read_modulus(t);
-  c.friction = t.number("mu", Unit::none, Range::not_negative());
+  c.friction = t.number("mu", Unit::none, Range::friction());
   c.damping = t.number({"damping", "law card: damping as a fraction of critical"}, Unit::none, Range::closed(0.0, 1.0));
   c.secant = t.choice<TangentialSlope>({"kt", "law card: slope that gives the tangential stiffness"}) ==
              TangentialSlope::secant;
@@ -100,7 +100,7 @@ MultiContactChoices read_choices(const SceneTable& t, LawForm best) {
                                               {"pair", "isotropic", "directional", "best"}, "best"))
                      .value_or(best);
   choices.modulus = read_modulus(t);
-  if (t.has("mu")) choices.friction = t.number("mu", Unit::none, Range::not_negative());
+  if (t.has("mu")) choices.friction = t.number("mu", Unit::none, Range::friction());
   choices.unloading = read_unloading(t);
   choices.rolling = t.flag({"rolling", "law table: use the rolling resistance, if measured"}, true);
   choices.beyond = read_beyond(t);

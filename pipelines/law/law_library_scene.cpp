@@ -18,7 +18,7 @@ const char* const kOrPressTest = "-, unless press_test is given";
 const Key kFriction{"mu", "Coulomb friction of the grains", kOrPressTest};
 
 LibraryPoint read_library_point(const SceneTable& t) {
-  return {t.number(kFriction, Unit::none, Range::not_negative()),
+  return {t.number(kFriction, Unit::none, Range::friction()),
           t.number({"exponent", "b of the size distribution P(r) ~ r^-b", kOrPressTest}, Unit::none),
           t.number({"ratio", "size ratio rmax/rmin of the grains", kOrPressTest}, Unit::none, Range::above(1.0)),
           t.number({"solid_fraction", "volume of grains over that of the shell", kOrPressTest}, Unit::none,
@@ -48,7 +48,7 @@ std::optional<double> read_press_friction(const SceneTable& t) {
   t.refuse({"exponent", "ratio", "solid_fraction", "E", "nu", "density"},
            "goes without press_test, whose table says what is known");
   if (!t.has("mu")) return std::nullopt;
-  return t.number(kFriction, Unit::none, Range::not_negative());
+  return t.number(kFriction, Unit::none, Range::friction());
 }
 
 /// Calls look_up(), which asks the library; what it has against the question stands at `key`.

@@ -206,7 +206,7 @@ void read_table_choices(const SceneTable& t, LawSources& out) {
                                     RangePolicy::reject);
   if (t.has("mu"))
     out.friction =
-        t.number({"mu", "law table: friction of soft particles", "as measured"}, Unit::none, Range::not_negative());
+        t.number({"mu", "law table: friction of soft particles", "as measured"}, Unit::none, Range::friction());
   out.unloading = t.flag({"unloading", "true: use the unloading branch, which must have been measured",
                           "true for a law card that has one, else false"},
                          false);

@@ -65,6 +65,15 @@ inline std::string explored_stages(const std::string& table = "") {
 
 // Names of [[variant]] tables.
 
+/// Files carry such names besides words of their own; file systems take 255 characters.
+inline constexpr std::size_t kLongestFileName = 100;
+
+/// Notes a name too long for files, so that a run does not end where it would write the first one.
+inline void require_short_name(const SceneTable& t, const std::string& name) {
+  if (name.size() > kLongestFileName)
+    t.add_error("name", "must have at most " + std::to_string(kLongestFileName) + " characters: files carry it");
+}
+
 /// The key "name", fit to be that of a file: letters, digits, '-', '_' and '.', which does not lead. Throws InputError.
 inline std::string read_variant_name(const SceneTable& variant) {
   std::string name = variant.text(
@@ -74,6 +83,7 @@ inline std::string read_variant_name(const SceneTable& variant) {
   });
   if (!plain || name.front() == '.')
     variant.add_error("name", "must be made of letters, digits, '-', '_' and '.', which does not lead");
+  require_short_name(variant, name);
   return name;
 }
 

@@ -194,7 +194,7 @@ TEST_F(PowderVariants, OneThatDoesNotRestDoesNotStopTheOthers) {
 TEST_F(PowderVariants, BadOnesAreRefusedBeforeAnyWork) {
   const auto line = [](int below) { return "scene.toml:" + std::to_string(kLastLine + below) + ":"; };
   expect_refused("[[variant]]\nname = \"a\"\ncontact = { kapa = 1e4 }\n", {line(3), "kapa", "'kappa'", "\"a\""});
-  expect_refused("[[variant]]\nname = \"a\"\n[variant.contact]\nmu = -1\n", {line(4), "mu", "at least 0"});
+  expect_refused("[[variant]]\nname = \"a\"\n[variant.contact]\nmu = -1\n", {line(4), "mu", "from 0 to 1000"});
   expect_refused("[[variant]]\nname = \"a\"\ncontct = { mu = 1 }\n", {line(3), "contct", "'contact'"});
   expect_refused("[[variant]]\nname = \"a\"\npublished = { Psi = 1 }\n", {line(3), "Psi", "'Phi'"});
   expect_refused("[[variant]]\nname = \"a\"\npublished = { z_error = 1 }\n", {line(3), "z_error", "without"});
@@ -204,7 +204,7 @@ TEST_F(PowderVariants, BadOnesAreRefusedBeforeAnyWork) {
   expect_refused("[[variant]]\nname = \"../a\"\n", {line(2), "letters"});
   expect_refused("[[variant]]\nname = \"work\"\n", {line(2), "beside"});
   expect_refused("[[variant]]\ncontact = { mu = 1 }\n", {line(1), "name"});
-  expect_refused("", {"--set contact.mu", "at least 0", "\"smooth\""}, "--set variant.1.contact.mu=-1");
+  expect_refused("", {"--set contact.mu", "from 0 to 1000", "\"smooth\""}, "--set variant.1.contact.mu=-1");
   expect_refused("", {"smoth", "nearest is \"smooth\""}, "--set only=smoth");
   expect_refused("", {"only", "at least one"}, "--set only=[]");
   expect_refused("", {"unknown key 'dsks'"}, "--set dsks.count=3");

@@ -138,7 +138,7 @@ angles_deg = [0.0, 200]
      R"(s:2: unknown key 'titel' at the top level; nearest known key is 'title'
 s:4: beta = 0.9: must be above 1
 s:5: unknown key 'raddius' in [packing]; known keys are beta, count, exponent, placement, polydispersity, rmax, shell_radius, sizes, trials
-s:6: rmax = "20 mm": the shell (shell_radius = 0.016000 m) must be larger than the largest grain
+s:6: rmax = "20 mm": the shell (shell_radius = 0.016 m) must be larger than the largest grain
 s:8: E = "3 m": unknown unit 'm', known are Pa, kPa, MPa, GPa, N/m^2, N/mm^2, bar, and must be above 0
 s:10: relaxation = "leest-work": must be "least-work", "slow-dynamics", "damped" or "published"; nearest is "least-work"
 s:12: deltas = [ 0.1, 0.05 ]: values must ascend

@@ -52,19 +52,19 @@ void read_contact(const SceneTable& t, PowderSpec& spec) {
                             Range::closed(kLeastStiffness, kLargestStiffness), spec.stiffness);
   spec.stiffness_ratio =
       t.number({"kt_ratio", "K_T/K_N"}, Unit::none, Range{0.0, 100.0, true, false}, spec.stiffness_ratio);
-  spec.friction = t.number({"mu", "friction; 0 omits tangential springs and spins"}, Unit::none, Range::not_negative(),
-                           spec.friction);
+  spec.friction =
+      t.number({"mu", "friction; 0 omits tangential springs and spins"}, Unit::none, Range::friction(), spec.friction);
   spec.damping = t.number({"zeta", "damping, as a fraction of critical damping"}, Unit::none, Range::closed(0.0, 100.0),
                           spec.damping);
   spec.range =
       t.number({"range", "range D0 of the attraction, over a"}, Unit::none, Range{0.0, 0.5, true, false}, spec.range);
   spec.rolling = t.flag({"rolling", "rolling resistance"}, spec.rolling);
   spec.rolling_stiffness = t.number({"rolling_stiffness", "with `rolling = true`: stiffness K_r [N m] over a^2 K_N"},
-                                    Unit::none, Range::positive(), spec.rolling_stiffness);
+                                    Unit::none, Range{0.0, kLargest, true, false}, spec.rolling_stiffness);
   spec.rolling_friction =
       t.number({"rolling_friction",
                 "with `rolling = true`: mu_r [m] over mu a; the rolling moment is at most mu_r K_N h at the overlap h"},
-               Unit::none, Range::not_negative(), spec.rolling_friction);
+               Unit::none, Range::closed(0.0, kLargest), spec.rolling_friction);
   if (!spec.rolling)
     t.refuse({"rolling_stiffness", "rolling_friction"}, "goes with rolling = true: nothing resists rolling here");
 }
@@ -203,7 +203,7 @@ void read_assembly(const SceneTable& t, PowderSetup& setup, bool valid) {
                Unit::none, Range::closed(0.0, 10.0), setup.options.settle_drag);
   setup.options.settle_kinetic = t.number(
       {"settle_kinetic", "the drag starts only when the kinetic energy per disk is also below this, in F1^2/K_N"},
-      Unit::none, Range::not_negative(), setup.options.settle_kinetic);
+      Unit::none, Range::closed(0.0, kLargest), setup.options.settle_kinetic);
   setup.options.settle_after =
       t.number({"settle_after", "the drag starts when cell or contacts have not changed for this time, in T0"},
                Unit::none, Range::closed(0.0, kLongest), setup.options.settle_after);

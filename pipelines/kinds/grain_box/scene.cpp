@@ -27,7 +27,7 @@ constexpr const char* kAsScene = "as the scene";
 
 /// A coefficient of friction, or "infinite".
 double read_friction(const SceneTable& t, const Key& key, double fallback) {
-  if (!t.is_text(key.name)) return t.number(key, Unit::none, Range::closed(0.0, 1000.0), fallback);
+  if (!t.is_text(key.name)) return t.number(key, Unit::none, Range::friction(), fallback);
   (void)t.choice(key, {"infinite"});
   return std::numeric_limits<double>::infinity();
 }

@@ -9,6 +9,7 @@
 
 #include "common/core/text.h"
 #include "common/data/multi_contact_measurements.h"
+#include "common/dynamics/slow_dynamics.h"
 #include "microsim/multi_contact_arrangements.h"
 #include "pipelines/kinds/soft_particle/scene.h"
 
@@ -25,7 +26,7 @@ const Key kShallow{
     "`\"beside-five\"`: 0.5; `\"scattered\"`: 0.3"};
 
 /// Least work is for one neighbour alone.
-void read_relaxation(const SceneTable& t, MultiContactOptions& o) {
+void read_relaxation(const SceneTable& t, const SoftParticleSpec& spec, MultiContactOptions& o) {
   if (t.has("relaxation"))
     o.relaxation =
         t.choice<Relaxation>({"relaxation", "method that brings the grains to equilibrium", "\"slow-dynamics\""},
@@ -36,14 +37,16 @@ void read_relaxation(const SceneTable& t, MultiContactOptions& o) {
   };
   for (const char* key : {"approach_speed", "step_factor", "settle_time"}) only_dynamics(key);
   if (t.has("approach_speed"))
-    o.approach_speed = t.number({"approach_speed", "speed of the neighbour that moves farthest; not for `\"damped\"`",
-                                 "0.002 m/s at the published parameters, scaled with sqrt(E/rho)"},
-                                Unit::velocity, Range::positive(), o.approach_speed);
+    o.approach_speed =
+        t.number({"approach_speed",
+                  "speed of the neighbour that moves farthest, 1e-7 to 0.1 of sqrt(E/rho); not for `\"damped\"`",
+                  "0.002 m/s at the published parameters, scaled with sqrt(E/rho)"},
+                 Unit::velocity, approach_speeds(spec), o.approach_speed);
   o.step_factor = t.number({"step_factor", "`\"slow-dynamics\"`: time step, over that of `\"published\"`"}, Unit::none,
                            Range::closed(0.01, 10.0), o.step_factor);
   o.settle_time =
       t.number({"settle_time", "`\"slow-dynamics\"`: waiting time before a state is recorded, over Rs sqrt(rho/E)"},
-               Unit::none, Range::not_negative(), o.settle_time);
+               Unit::none, Range::closed(0.0, kLongestSettling), o.settle_time);
 }
 
 void read_multi_contact(const SceneTable& t, MultiContactSetup& setup) {
@@ -59,7 +62,7 @@ void read_multi_contact(const SceneTable& t, MultiContactSetup& setup) {
   o.max_passes =
       t.count({"max_passes", "largest number of passes per relaxation; one pass evaluates all contacts once"}, 10,
               100000000, o.max_passes);
-  read_relaxation(t, o);
+  read_relaxation(t, setup.spec, o);
   setup.packings_min =
       t.count({"packings_min", "least number of packings per configuration"}, 2, 100000, setup.packings_min);
   setup.packings_max =

@@ -9,6 +9,7 @@
 
 #include "common/contact/rolling_scene.h"
 #include "common/core/text.h"
+#include "common/dynamics/slow_dynamics.h"
 #include "common/io/text_file.h"
 #include "common/packing/grading_scene.h"
 #include "macrosim/preparation.h"
@@ -79,7 +80,7 @@ void read_preparation(const SceneTable& t, MacroSetup& setup) {
   read(t,
        {"compaction_mu", "friction between particles during the preparation; above 0, walls have `wall_mu`",
         "0; `\"fast\"`, `\"slow\"`, `\"poured\"`: `mu`; `\"rodded\"`: `mu`, at most 0.1"},
-       &Protocol::friction, Range::not_negative());
+       &Protocol::friction, Range::friction());
   read(t, {"compaction_restitution", "coefficient of restitution during motion"}, &Protocol::restitution,
        Range::closed(0.05, 1.0));
   read(t, {"coarse_share", "volume share of the largest particles, which jam first", "1; `\"dense\"`: 0.75"},
@@ -234,9 +235,8 @@ void read_bodies(const SceneTable& t, MacroSetup& setup) {
   if (spec.construction == Construction::voids && spec.soft_share >= 1.0)
     t.add_error("soft_share", "construction \"voids\" needs solid grains: must be below 1");
   spec.friction = t.number({"mu", "friction of particles", "as `[material]`, or as the law"}, Unit::none,
-                           Range::not_negative(), spec.friction);
-  spec.wall_friction =
-      t.number({"wall_mu", "friction of walls"}, Unit::none, Range::not_negative(), spec.wall_friction);
+                           Range::friction(), spec.friction);
+  spec.wall_friction = t.number({"wall_mu", "friction of walls"}, Unit::none, Range::friction(), spec.wall_friction);
   if (spec.boundary == Boundary::periodic) t.refuse({"wall_mu"}, "a periodic cell has no walls");
   read_rolling_resistance(t, spec.friction, spec.rolling);
   read_preparation(t, setup);
@@ -388,13 +388,13 @@ void read_twin_motion(const SceneTable& t, TwinMotion& m) {
   m.speed = t.number({"twin_speed",
                       "speed at which neighbours of the largest radius approach each other, over sqrt(E/rho); the "
                       "default is as published"},
-                     Unit::none, Range{0.0, 0.1, true, false}, m.speed);
+                     Unit::none, Range::closed(kSlowestApproach, kFastestApproach), m.speed);
   m.step_factor = t.number({"twin_step_factor", "time step over that of the published protocol"}, Unit::none,
                            Range::closed(0.01, 10.0), m.step_factor);
   m.settle_time = t.number(
       {"twin_settle_time",
        "time of motion after each increment, over R sqrt(rho/E); R is `soft_radius_max`, even if no radius reaches it"},
-      Unit::none, Range::not_negative(), m.settle_time);
+      Unit::none, Range::closed(0.0, kLongestSettling), m.settle_time);
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ ComparisonScene read_scene(const SceneTable& root, const SceneTable& t, const Ma
   std::replace(name.begin(), name.end(), '.', '-');
   scene.name = t.text({"name", "name of the scene in file names", "test and soft share"}, name);
   if (!valid_name(scene.name)) t.add_error("name", "letters, digits and '-' only: it becomes part of file names");
+  require_short_name(t, scene.name);
   if (scene.name == "initial") t.add_error("name", "files of packings are called so: give another name");
   for (const ComparisonScene& s : before)
     if (s.name == scene.name)

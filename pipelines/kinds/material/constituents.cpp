@@ -24,7 +24,7 @@ void read_own_material(const SceneTable& t, const MacroSpec& common, Constituent
       t.number({"nu", "Poisson's ratio of its grains", kOfMaterial}, Unit::none, kPoissonRange, common.poisson_ratio);
   c.friction = t.number(
       {"mu", "friction coefficient of its grains; contacts of two constituents have the smaller one", kOfMaterial},
-      Unit::none, Range::not_negative(), common.friction);
+      Unit::none, Range::friction(), common.friction);
   for (const char* key : {"mu_r", "kr_ratio"})
     if (t.has(key)) t.add_error(key, "goes into [material]: all grains have one resistance to rolling");
 }
@@ -45,6 +45,8 @@ Constituent read_constituent(const SceneTable& t, const MacroSpec& common) {
   Constituent c;
   t.section([&] {
     c.name = t.filled_text({"name", "name of the constituent"});
+    if (std::any_of(c.name.begin(), c.name.end(), [](unsigned char letter) { return letter < ' '; }))
+      t.add_error("name", "must be one line of text");
     c.mass_share = read_mass(t);
     read_own_material(t, common, c);
     c.sizes = read_sizes(t, {"sizes", "its size distribution, such as a sieve curve"}, {});

@@ -55,8 +55,7 @@ void read_matter(const SceneTable& t, MacroSpec& spec) {
   spec.youngs_modulus =
       t.number({"E", "Young's modulus of the grains"}, Unit::pressure, Range::positive(), spec.youngs_modulus);
   spec.poisson_ratio = t.number({"nu", "Poisson's ratio of the grains"}, Unit::none, kPoissonRange, spec.poisson_ratio);
-  spec.friction =
-      t.number({"mu", "friction coefficient of the grains"}, Unit::none, Range::not_negative(), spec.friction);
+  spec.friction = t.number({"mu", "friction coefficient of the grains"}, Unit::none, Range::friction(), spec.friction);
   read_rolling_resistance(t, spec.friction, spec.rolling);
   spec.density = t.number({"density", "density of the grains"}, Unit::density, Range::positive(), spec.density);
 }

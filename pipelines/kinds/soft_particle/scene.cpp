@@ -9,7 +9,9 @@
 
 #include "common/core/error.h"
 #include "common/core/particles.h"
+#include "common/core/text.h"
 #include "common/data/soft_particle_schema.h"
+#include "common/dynamics/slow_dynamics.h"
 #include "common/packing/grading_scene.h"
 #include "pipelines/kinds/soft_particle/snapshot_recorder.h"
 
@@ -39,7 +41,7 @@ void read_largest(const SceneTable& t, SoftParticleSpec& spec) {
       t.add_error("rmax_over_shell",
                   "contradicts rmax: give the radius of the largest grain, or that over shell_radius, not both");
     if (rmax >= spec.shell_radius)
-      t.add_error("rmax", "the shell (shell_radius = " + std::to_string(spec.shell_radius) +
+      t.add_error("rmax", "the shell (shell_radius = " + rounded_text(spec.shell_radius, {6}) +
                               " m) must be larger than the largest grain");
     spec.rmax_over_shell = rmax / spec.shell_radius;
   } else {
@@ -96,7 +98,7 @@ void read_damped(const SceneTable& t, DampedProtocolOptions& o) {
 
 constexpr std::int64_t kMostPasses = 1000000;  ///< largest number of passes of one increment by least work
 
-void read_least_work(const SceneTable& t, LeastWorkProtocolOptions& o) {
+void read_least_work(const SceneTable& t, const SoftParticleSpec& spec, LeastWorkProtocolOptions& o) {
   o.increment = t.number({"increment", "step in Delta between two equilibria"}, Unit::none, Range::closed(1e-7, 0.1),
                          o.increment);
   o.tolerance_between = t.number({"tolerance_between", "tolerance at increments between recorded points"}, Unit::none,
@@ -109,47 +111,47 @@ void read_least_work(const SceneTable& t, LeastWorkProtocolOptions& o) {
                                 "dynamics takes it over; 0: `slow-dynamics`"},
                                0, kMostPasses, o.increment_passes);
   if (t.has("approach_speed"))
-    o.approach_speed = t.number({"approach_speed", "speed of the plane in dynamics",
+    o.approach_speed = t.number({"approach_speed", "speed of the plane in dynamics, 1e-7 to 0.1 of sqrt(E/rho)",
                                  "0.002 m/s at the published parameters, scaled with sqrt(E/rho)"},
-                                Unit::velocity, Range::positive());
+                                Unit::velocity, approach_speeds(spec));
   o.step_factor = t.number(
       {"step_factor",
        "time step of dynamics over that of the published protocol; the quickest grains are made heavier accordingly"},
-      Unit::none, Range{0.0, 20.0, true, false}, o.step_factor);
+      Unit::none, Range::closed(kShortestStep, 20.0), o.step_factor);
   o.settle_time = t.number({"settle_time", "time of dynamics before a point is recorded, over Rs sqrt(rho/E)"},
-                           Unit::none, Range::not_negative(), o.settle_time);
+                           Unit::none, Range::closed(0.0, kLongestSettling), o.settle_time);
   o.path_settle_time = t.number({"path_settle_time",
                                  "time of dynamics, at most `settle_time`, after which the next increment or rotation "
                                  "starts, over Rs sqrt(rho/E)"},
-                                Unit::none, Range::not_negative(), o.path_settle_time);
+                                Unit::none, Range::closed(0.0, kLongestSettling), o.path_settle_time);
   o.settle_time_rotated = t.number({"settle_time_rotated", "time of dynamics after a rotation, over Rs sqrt(rho/E)"},
-                                   Unit::none, Range::not_negative(), o.settle_time_rotated);
+                                   Unit::none, Range::closed(0.0, kLongestSettling), o.settle_time_rotated);
   o.step_factor_rotated =
       t.number({"step_factor_rotated", "as `step_factor`, but after a rotation; during a rotation the factor is 4"},
-               Unit::none, Range{0.0, 20.0, true, false}, o.step_factor_rotated);
+               Unit::none, Range::closed(kShortestStep, 20.0), o.step_factor_rotated);
   o.max_passes = t.count({"max_passes", "largest number of loop passes of the last relaxation of a recorded point"}, 10,
                          100000000, o.max_passes);
 }
 
-void read_published(const SceneTable& t, PublishedOptions& o) {
+void read_published(const SceneTable& t, const SoftParticleSpec& spec, PublishedOptions& o) {
   if (t.has("approach_speed"))
-    o.approach_speed = t.number(
-        {"approach_speed", "speed of the plane", "0.002 m/s at the published parameters, scaled with sqrt(E/rho)"},
-        Unit::velocity, Range::positive());
+    o.approach_speed = t.number({"approach_speed", "speed of the plane, 1e-7 to 0.1 of sqrt(E/rho)",
+                                 "0.002 m/s at the published parameters, scaled with sqrt(E/rho)"},
+                                Unit::velocity, approach_speeds(spec));
   if (t.has("stop_interval"))
-    o.stop_interval = t.number({"stop_interval", "time between two stops of all motion",
+    o.stop_interval = t.number({"stop_interval", "time between two stops of all motion, at most 1e6 Rs sqrt(rho/E)",
                                 "0.3 s at the published parameters, scaled with Rs sqrt(rho/E)"},
-                               Unit::time, Range::positive());
+                               Unit::time, Range{0.0, kLongestSettling * natural_time(spec), true, false});
   o.stops = static_cast<int>(
       t.count({"stops", "number of stops; one more interval follows the last stop"}, 0, 1000, o.stops));
   o.step_fraction = t.number(
       {"step_fraction",
        "time step over sqrt(m_min/k): m_min is the mass of the smallest grain, k its stiffness at 5 % overlap"},
-      Unit::none, Range{0.0, 0.6, true, false}, o.step_fraction);
+      Unit::none, Range::closed(kShortestStep * kPublishedStep, 0.6), o.step_fraction);
   o.crowded_fraction =
       t.number({"crowded_fraction",
                 "largest time step over sqrt(m/K): m is the mass of a grain, K the sum of its contact stiffnesses"},
-               Unit::none, Range{0.0, 1.0, true, false}, o.crowded_fraction);
+               Unit::none, Range::closed(kShortestStep, 1.0), o.crowded_fraction);
   o.tolerance = t.number(
       {"tolerance",
        "below this tolerance (largest net force on a grain over the mean contact force) a point counts as converged"},
@@ -316,6 +318,11 @@ bool MeasureSetup::turns_on() const {
   });
 }
 
+Range approach_speeds(const SoftParticleSpec& spec) {
+  const double wave_speed = std::sqrt(spec.youngs_modulus / spec.density);
+  return Range::closed(kSlowestApproach * wave_speed, kFastestApproach * wave_speed);
+}
+
 SoftParticleSpec read_soft_particle(const SceneTable& root) {
   SoftParticleSpec spec;
   read_material(root.table_or_empty({"material", "material of the grains"}), spec);
@@ -329,10 +336,11 @@ MeasureSetup read_measure_protocols(const SceneTable& root, Relaxation& relaxati
   setup.spec = read_soft_particle(root);
   const SceneTable measure = root.table_or_empty({"measure", "measurements of soft particles"});
   read_damped(measure.table_or_empty({"damped", "settings of the relaxation `damped`"}), setup.damped);
-  read_published(measure.table_or_empty({"published", "settings of the relaxation `published`"}), setup.published);
+  read_published(measure.table_or_empty({"published", "settings of the relaxation `published`"}), setup.spec,
+                 setup.published);
   read_least_work(
       measure.table_or_empty({"least_work", "settings of the relaxations `least-work` and `slow-dynamics`"}),
-      setup.least_work);
+      setup.spec, setup.least_work);
   read_turn(measure, setup.spec, plan);
   plan.shell_turns = measure.flag(
       {"shell_turns",

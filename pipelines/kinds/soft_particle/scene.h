@@ -55,6 +55,9 @@ void require_drawable(const SceneTable& packing, const SoftParticleSpec& spec);
 /// is rotated.
 void refuse_idle_protocols(const SceneTable& measure, const std::vector<Relaxation>& relaxations, bool rotates);
 
+/// Speeds at which neighbours may approach a soft particle of such grains [m/s].
+Range approach_speeds(const SoftParticleSpec& spec);
+
 /// Reads [material] and what [packing] says of the soft particle (not `count`). Throws InputError.
 SoftParticleSpec read_soft_particle(const SceneTable& root);
 
