@@ -256,11 +256,14 @@ void require_command(const CLI::App& app, int argc, char** argv) {
   throw InputError(unknown_command_text(word, nearest_text(word, names), names));
 }
 
-/// A run that is refused leaves no directory behind.
+/// A run that is refused leaves no directory behind, nor does one whose scene is not there.
 ExitStatus run_or_leave_nothing(const Command& command, const CommonOptions& options, const FreshDirectory& out) {
   try {
     return command.function(options);
   } catch (const InputError&) {
+    out.remove_if_empty();
+    throw;
+  } catch (const IoError&) {
     out.remove_if_empty();
     throw;
   }

@@ -193,6 +193,10 @@ TEST(CommandLine, MissingSceneIsFileTroubleAndMakesNothing) {
     expect(std::string(command) + " " + name + ".toml", 4, name + ".toml: no such file");
     EXPECT_FALSE(fs::exists("results/" + name));
   }
+  const test::TemporaryDirectory directory;
+  const std::string out = directory.file("new/out");
+  expect("run " + name + ".toml --out '" + out + "'", 4, name + ".toml: no such file");
+  EXPECT_FALSE(fs::exists(directory.file("new")));
 }
 
 TEST(CommandLine, UnwritableRunDirectoryIsFoundBeforeAnyWork) {
