@@ -127,18 +127,18 @@ TEST_F(PipelineBadInput, Measurements) {
     least_work(std::string(key) + " = 1e99", {std::string("scene.toml:17: ") + key + " = 1e+99", "from 0 to 1000000"});
   least_work("step_factor = 1e-30", {"scene.toml:17: step_factor = 1e-30", "from 0.01 to 20"});
   least_work("step_factor_rotated = 1e-30", {"scene.toml:17: step_factor_rotated = 1e-30", "from 0.01 to 20"});
-  // 1e-7 and 0.1 of sqrt(E/rho), 14.1421 m/s here.
-  least_work("approach_speed = 2", {"scene.toml:17: approach_speed = 2", "from 1.41421e-06 to 1.41421"});
-  least_work("approach_speed = 1e-6", {"scene.toml:17: approach_speed = 1e-06", "from 1.41421e-06 to 1.41421"});
+  // 1e-7 and 10 of sqrt(E/rho), 14.1421 m/s here.
+  least_work("approach_speed = 200", {"scene.toml:17: approach_speed = 200", "from 1.41421356"});
+  least_work("approach_speed = 1e-6", {"scene.toml:17: approach_speed = 1e-06", "from 1.41421356"});
   const auto published = [&](const std::string& line, const std::vector<std::string>& words) {
     expect("[measure.damped]", "[measure.published]\n" + line + "\n[measure.damped]", words);
   };
-  published("approach_speed = 2", {"scene.toml:17: approach_speed = 2", "from 1.41421e-06 to 1.41421"});
+  published("approach_speed = 200", {"scene.toml:17: approach_speed = 200", "from 1.41421356"});
   published("stop_interval = 1e29", {"scene.toml:17: stop_interval = 1e+29", "at most 1131.37"});
   published("step_fraction = 1e-30", {"scene.toml:17: step_fraction = 1e-30", "from 0.002 to 0.6"});
   published("crowded_fraction = 1e-30", {"scene.toml:17: crowded_fraction = 1e-30", "from 0.01 to 1"});
   least_work("increment = 0.5", {"scene.toml:17: increment = 0.5", "0.1"});
-  least_work("approach_speed = 0", {"scene.toml:17: approach_speed = 0", "from 1.41421e-06 to 1.41421"});
+  least_work("approach_speed = 0", {"scene.toml:17: approach_speed = 0", "from 1.41421356"});
   least_work("step_factor = 30", {"scene.toml:17: step_factor = 30", "20"});
   expect("increment = 0.02", "incremnt = 0.02", {"scene.toml:17", "unknown key 'incremnt'", "'increment'"});
   expect("[calibrate]", "[reference]\nrelaxation = \"damped\"\n[reference.soft_solid]\ndeltas = [0.2]\n[calibrate]",

@@ -41,7 +41,7 @@ void read_relaxation(const SceneTable& t, const SoftParticleSpec& spec, MultiCon
         t.number({"approach_speed",
                   "speed of the neighbour that moves farthest, 1e-7 to 0.1 of sqrt(E/rho); not for `\"damped\"`",
                   "0.002 m/s at the published parameters, scaled with sqrt(E/rho)"},
-                 Unit::velocity, approach_speeds(spec), o.approach_speed);
+                 Unit::velocity, approach_speeds(spec, kFastestApproach), o.approach_speed);
   o.step_factor = t.number({"step_factor", "`\"slow-dynamics\"`: time step, over that of `\"published\"`"}, Unit::none,
                            Range::closed(0.01, 10.0), o.step_factor);
   o.settle_time =

@@ -1,7 +1,10 @@
 // Models in the report: stress of truth and models, errors, error against cost. Then what runs leave behind.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 
 #include "common/core/text.h"
 #include "pipelines/kinds/material_models/scene.h"
@@ -16,30 +19,59 @@ namespace softgrain {
 namespace report {
 namespace {
 
+constexpr const char* kNothing = "–";
+
 /// "12.3 %" of a share, "12.3 ± 0.4 %" with its error; "–" where it is not finite.
 std::string percent(double share, double error = kNaN) {
-  if (!std::isfinite(share)) return "–";
+  if (!std::isfinite(share)) return kNothing;
   const ErrorForm form{.value = {1, true}, .error = {1, true}, .between = " ± "};
   return with_error(100.0 * share, if_finite(100.0 * error), form) + " %";
 }
 
 /// Half width of the band, and the share of the points that it holds.
 std::string band_text(const ModelScore& s) {
-  return std::isfinite(s.band) ? "± " + percent(s.band) + ", " + percent(s.inside) : "–";
+  return std::isfinite(s.band) ? "± " + percent(s.band) + ", " + percent(s.inside) : kNothing;
 }
 
+struct ScoreColumn {
+  const char* title;
+  std::string (*text)(const ModelScore&);
+};
+
+constexpr std::array<ScoreColumn, 13> kScoreColumns{
+    {{"bodies", [](const ModelScore& s) { return format_count(s.bodies); }},
+     {"axial", [](const ModelScore& s) { return percent(s.axial, s.axial_error); }},
+     {"lateral", [](const ModelScore& s) { return percent(s.lateral, s.lateral_error); }},
+     {"at 2 %", [](const ModelScore& s) { return percent(s.axial_at_2); }},
+     {"at the end", [](const ModelScore& s) { return percent(s.axial_at_end); }},
+     {"q/p at 2 %", [](const ModelScore& s) { return percent(s.ratio_at_2); }},
+     {"q/p at 6 %", [](const ModelScore& s) { return percent(s.ratio_at_6); }},
+     {"unloading modulus", [](const ModelScore& s) { return percent(s.unloading); }},
+     {"truth ±", [](const ModelScore& s) { return percent(s.truth_error); }},
+     {"band, inside", band_text},
+     {"fewer evaluations", [](const ModelScore& s) { return format_number(s.evaluations, 3); }},
+     {"faster", [](const ModelScore& s) { return format_number(s.seconds, 3); }},
+     {"with preparation", [](const ModelScore& s) { return format_number(s.seconds_all, 3); }}}};
+
+/// Columns that say something of any model.
 std::string score_table(const std::vector<ModelScore>& scores, bool blind) {
-  HtmlTable table({"material", "model", "bodies", "axial", "lateral", "at 2 %", "at the end", "q/p at 2 %",
-                   "q/p at 6 %", "unloading modulus", "truth ±", "band, inside", "fewer evaluations", "faster",
-                   "with preparation", "remark"});
-  for (const ModelScore& s : scores)
-    if (s.blind == blind)
-      table.row({s.variant, s.model, format_count(s.bodies), percent(s.axial, s.axial_error),
-                 percent(s.lateral, s.lateral_error), percent(s.axial_at_2), percent(s.axial_at_end),
-                 percent(s.ratio_at_2), percent(s.ratio_at_6), percent(s.unloading), percent(s.truth_error),
-                 band_text(s), format_number(s.evaluations, 3), format_number(s.seconds, 3),
-                 format_number(s.seconds_all, 3), s.remark});
-  return table.empty() ? "" : table.html();
+  std::vector<ScoreColumn> columns;
+  const auto says = [&](const ScoreColumn& c) {
+    return std::ranges::any_of(scores, [&](const ModelScore& s) { return s.blind == blind && c.text(s) != kNothing; });
+  };
+  std::ranges::copy_if(kScoreColumns, std::back_inserter(columns), says);
+  std::vector<std::string> header{"material", "model"};
+  for (const ScoreColumn& c : columns) header.emplace_back(c.title);
+  HtmlTable table(header);
+  HtmlTable remarks({"material", "model", "remark"}, 3);
+  for (const ModelScore& s : scores) {
+    if (s.blind != blind) continue;
+    std::vector<std::string> row{s.variant, s.model};
+    for (const ScoreColumn& c : columns) row.push_back(c.text(s));
+    table.row(std::move(row));
+    if (!s.remark.empty()) remarks.row({s.variant, s.model, s.remark});
+  }
+  return (table.empty() ? "" : table.html()) + (remarks.empty() ? "" : remarks.html());
 }
 
 std::string cost_figure(const std::vector<ModelScore>& scores) {
@@ -114,10 +146,14 @@ std::string stress_figure_of(const RunData& run, const MaterialVariantSummary& v
 std::string material_models_section(const RunData& run) {
   const auto summary = run.summary_as<MaterialModelsSummary>();
   if (summary.scores.empty()) return "";
-  std::string body = paragraph(
+  std::string text =
       "Errors over the curve: square root of the sum of (model − truth)² over that of truth², of all points from 1 % "
-      "strain on, of means over samples. Others: model over truth less 1. Band: half width of the 95 % band that the "
-      "errors of the card give the axial stress, and the share of all points that it holds.");
+      "strain on, of means over samples. Others: model over truth less 1.";
+  if (std::ranges::any_of(summary.scores, [](const ModelScore& s) { return std::isfinite(s.band); }))
+    text +=
+        " Band: half width of the 95 % band that the errors of the card give the axial stress; inside: the share of "
+        "all points that it holds.";
+  std::string body = paragraph(text);
   body += score_table(summary.scores, false);
   const std::string blind = score_table(summary.scores, true);
   if (!blind.empty()) body += "<h3>Blind: other mixtures and preparations than the law was measured on</h3>\n" + blind;

@@ -242,6 +242,7 @@ MeasureTrial check_measurements(const MeasureSetup& setup, Findings& out) {
       warn_of_series(setup.series.front(), kind, out);
     }
   warn_of_soft_particle(setup.spec, out);
+  for (const std::string& warning : speed_warnings(setup)) out.warn(warning);
   add_sizes(out, shell_sizes(setup.spec, {describe(trial.packing, setup.spec)}));
   return trial;
 }

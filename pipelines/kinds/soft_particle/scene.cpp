@@ -96,6 +96,7 @@ void read_damped(const SceneTable& t, DampedProtocolOptions& o) {
   o.max_passes = t.count({"max_passes", "largest number of loop passes per relaxation"}, 10, 100000000, o.max_passes);
 }
 
+constexpr double kFastestPlane = 10.0;         ///< over sqrt(E/rho)
 constexpr std::int64_t kMostPasses = 1000000;  ///< largest number of passes of one increment by least work
 
 void read_least_work(const SceneTable& t, const SoftParticleSpec& spec, LeastWorkProtocolOptions& o) {
@@ -111,9 +112,10 @@ void read_least_work(const SceneTable& t, const SoftParticleSpec& spec, LeastWor
                                 "dynamics takes it over; 0: `slow-dynamics`"},
                                0, kMostPasses, o.increment_passes);
   if (t.has("approach_speed"))
-    o.approach_speed = t.number({"approach_speed", "speed of the plane in dynamics, 1e-7 to 0.1 of sqrt(E/rho)",
-                                 "0.002 m/s at the published parameters, scaled with sqrt(E/rho)"},
-                                Unit::velocity, approach_speeds(spec));
+    o.approach_speed = t.number(
+        {"approach_speed", "speed of the plane in dynamics, 1e-7 to 10 of sqrt(E/rho); above 0.1 with a warning",
+         "0.002 m/s at the published parameters, scaled with sqrt(E/rho)"},
+        Unit::velocity, approach_speeds(spec, kFastestPlane));
   o.step_factor = t.number(
       {"step_factor",
        "time step of dynamics over that of the published protocol; the quickest grains are made heavier accordingly"},
@@ -135,9 +137,10 @@ void read_least_work(const SceneTable& t, const SoftParticleSpec& spec, LeastWor
 
 void read_published(const SceneTable& t, const SoftParticleSpec& spec, PublishedOptions& o) {
   if (t.has("approach_speed"))
-    o.approach_speed = t.number({"approach_speed", "speed of the plane, 1e-7 to 0.1 of sqrt(E/rho)",
-                                 "0.002 m/s at the published parameters, scaled with sqrt(E/rho)"},
-                                Unit::velocity, approach_speeds(spec));
+    o.approach_speed =
+        t.number({"approach_speed", "speed of the plane, 1e-7 to 10 of sqrt(E/rho); above 0.1 with a warning",
+                  "0.002 m/s at the published parameters, scaled with sqrt(E/rho)"},
+                 Unit::velocity, approach_speeds(spec, kFastestPlane));
   if (t.has("stop_interval"))
     o.stop_interval = t.number({"stop_interval", "time between two stops of all motion, at most 1e6 Rs sqrt(rho/E)",
                                 "0.3 s at the published parameters, scaled with Rs sqrt(rho/E)"},
@@ -318,9 +321,21 @@ bool MeasureSetup::turns_on() const {
   });
 }
 
-Range approach_speeds(const SoftParticleSpec& spec) {
+Range approach_speeds(const SoftParticleSpec& spec, double fastest) {
   const double wave_speed = std::sqrt(spec.youngs_modulus / spec.density);
-  return Range::closed(kSlowestApproach * wave_speed, kFastestApproach * wave_speed);
+  return Range::closed(kSlowestApproach * wave_speed, fastest * wave_speed);
+}
+
+std::vector<std::string> speed_warnings(const MeasureSetup& setup) {
+  const double wave_speed = std::sqrt(setup.spec.youngs_modulus / setup.spec.density);
+  std::vector<std::string> out;
+  for (const double speed : {setup.least_work.approach_speed, setup.published.approach_speed})
+    if (speed > kFastestApproach * wave_speed)
+      out.push_back(fmt::format(
+          "approach_speed = {:.3g} m/s is {:.2g} of sqrt(E/rho): above {:g} waves rearrange the grains, and "
+          "forces need not be those of slow loading",
+          speed, speed / wave_speed, kFastestApproach));
+  return out;
 }
 
 SoftParticleSpec read_soft_particle(const SceneTable& root) {

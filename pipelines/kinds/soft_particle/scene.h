@@ -55,8 +55,12 @@ void require_drawable(const SceneTable& packing, const SoftParticleSpec& spec);
 /// is rotated.
 void refuse_idle_protocols(const SceneTable& measure, const std::vector<Relaxation>& relaxations, bool rotates);
 
-/// Speeds at which neighbours may approach a soft particle of such grains [m/s].
-Range approach_speeds(const SoftParticleSpec& spec);
+/// Speeds at which neighbours may approach a soft particle of such grains [m/s]: `fastest` is over sqrt(E/rho).
+Range approach_speeds(const SoftParticleSpec& spec, double fastest);
+
+/// A sentence for each speed of approach above kFastestApproach (common/dynamics/slow_dynamics.h): waves then press
+/// beside the plane.
+std::vector<std::string> speed_warnings(const MeasureSetup& setup);
 
 /// Reads [material] and what [packing] says of the soft particle (not `count`). Throws InputError.
 SoftParticleSpec read_soft_particle(const SceneTable& root);
