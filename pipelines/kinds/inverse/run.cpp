@@ -340,6 +340,7 @@ Outcome run_inverse(const InverseSetup& setup, const Run& run) {
       misfit <= kReached ? RunStatus::good : RunStatus::not_usable, setup.title, remarks_of(setup, result, misfit), {}};
   summary.inverse = search_of(setup, result, misfit);
   summary.packings = summary_of(result.confirmed.packings);
+  summary.head.warnings = speed_warnings(setup.measure);
   summary.head.sizes = summaries_of(shell_sizes(result.confirmed.spec, result.confirmed.packings));
   for (const char* file : {"measurements.h5", "evaluations.csv", "report.html"})
     summary.head.files[file] = run.path(file);

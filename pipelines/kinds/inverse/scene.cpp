@@ -294,6 +294,7 @@ void check_inverse(const InverseSetup& setup, Findings& out) {
        implausible_forces(setup.target.delta, setup.target.force, spec.shell_radius, spec.youngs_modulus))
     out.warn(one);
   for (const std::string& remark : setup.remarks) out.warn(remark);
+  for (const std::string& warning : speed_warnings(setup.measure)) out.warn(warning);
   out.spend("runs", seconds_per_run(setup) * static_cast<double>(runs));
 }
 

@@ -261,10 +261,6 @@ NextSteps next_of(const RunData& run) {
               "/law_table.toml --for SCENE.toml`."};
 }
 
-}  // namespace
-
-namespace {
-
 void check_table_values(const std::string& path, Findings& out) {
   check_replicates(path);
   out.add("kind", "law table values", "values and refits of a law table");

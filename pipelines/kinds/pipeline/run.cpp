@@ -260,8 +260,7 @@ Outcome run_pipeline(const PipelineSetup& setup, const Run& run) {
   PipelineResult result;
   run.guard([&] { result.measured = run_measure_stage(setup.measure, run); });
   for (const std::string& r : measurement_remarks(result.measured.data)) result.remarks.push_back(r);
-  result.warnings = speed_warnings(setup.measure);
-  result.warnings.insert(result.warnings.end(), result.measured.left_out.begin(), result.measured.left_out.end());
+  result.warnings = warnings_of(setup.measure, result.measured);
   result.usable = result.measured.enough_left;
   fit(setup, run, result);
   measure_table(setup, run, result);

@@ -371,10 +371,6 @@ NextSteps next_of(const RunData& run) {
       "--over material.mu=0.1,0.3,0.5`."};
 }
 
-}  // namespace
-
-namespace {
-
 void check_card_table(const std::string& path, Findings& out) {
   check_table(path);
   out.add("kind", "law card values", "measured curves and bands of a law card");

@@ -34,8 +34,7 @@ Outcome run_soft_particle(const SoftParticleScene& scene, const Run& run) {
   summary.head.title = scene.title;
   summary.head.remarks = measurement_remarks(result.data);
   if (!summary.head.remarks.empty() || !result.enough_left) summary.head.status = RunStatus::not_usable;
-  summary.head.warnings = speed_warnings(setup);
-  summary.head.warnings.insert(summary.head.warnings.end(), result.left_out.begin(), result.left_out.end());
+  summary.head.warnings = warnings_of(setup, result);
   summary.measured = summary_of(result.data, setup.relaxations());
   summary.head.sizes = summaries_of(shell_sizes(setup.spec, result.data.packings));
   summary.measured.packings.broke_off = result.left_out.size();

@@ -338,6 +338,12 @@ std::vector<std::string> speed_warnings(const MeasureSetup& setup) {
   return out;
 }
 
+std::vector<std::string> warnings_of(const MeasureSetup& setup, const MeasureResult& result) {
+  std::vector<std::string> out = speed_warnings(setup);
+  out.insert(out.end(), result.left_out.begin(), result.left_out.end());
+  return out;
+}
+
 SoftParticleSpec read_soft_particle(const SceneTable& root) {
   SoftParticleSpec spec;
   read_material(root.table_or_empty({"material", "material of the grains"}), spec);

@@ -111,6 +111,9 @@ struct MeasureResult {
   double packing_seconds = 0.0;  ///< part of it that went into generating packings
 };
 
+/// What makes the measurements doubtful: fast planes, and what was left out.
+std::vector<std::string> warnings_of(const MeasureSetup& setup, const MeasureResult& result);
+
 /// Packing index of the second body of a soft-soft pair: a stream of its own.
 std::uint64_t second_body_index(std::int64_t packing);
 
