@@ -12,12 +12,15 @@
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/core/limits.h"
+#include "common/core/random.h"
 #include "common/core/statistics.h"
 #include "common/core/text.h"
 
 namespace softgrain {
 
 namespace {
+
+constexpr std::uint64_t kFirstStream = 2000000;  ///< of draws of known onsets: behind those of fits and predictions
 
 struct Onsets {
   std::vector<double> span;
@@ -167,11 +170,19 @@ bool wanted(const StateGroup& g, const OnsetOptions& options) {
   return named && (options.largest_span <= 0.0 || g.span <= options.largest_span);
 }
 
-void require_input(const StateFit& fit, double span, const OnsetOptions& options) {
+void require_fit(const StateFit& fit) {
   if (!fit.usable) throw InputError("onsets: the equation of state could not be fitted: " + fit.message);
   if (fit.degrees < 1) throw InputError("onsets: without two samples in a group nobody knows their errors");
+}
+
+void require_span(double span) {
   if (!(span >= 1.0) || !std::isfinite(span))
     throw InputError(fmt::format("onsets: span {}; it must be 1 or more", span));
+}
+
+void require_input(const StateFit& fit, double span, const OnsetOptions& options) {
+  require_fit(fit);
+  require_span(span);
   for (const auto& name : options.groups)
     if (fit.find(name) == nullptr) throw InputError(fmt::format("onsets: no group {}", name));
 }
@@ -190,6 +201,36 @@ std::string to_string(OnsetForm form) {
       break;
   }
   return "rods";
+}
+
+StateFit with_known_onsets(const StateFit& fit, const std::vector<KnownOnset>& known, std::uint64_t seed) {
+  if (known.empty()) return fit;
+  require_fit(fit);
+  StateFit out = fit;
+  const double widen = student_over_normal(fit.degrees);
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    const KnownOnset& one = known[k];
+    require_span(one.span);
+    if (!(one.value > 0.0 && one.value < 1.0))
+      throw InputError(fmt::format("onsets: {} at span {}; it must lie between 0 and 1", one.value, one.span));
+    if (!(one.standard_error > 0.0) || !std::isfinite(one.standard_error))
+      throw InputError(
+          fmt::format("onsets: standard error {} at span {}; it must be positive", one.standard_error, one.span));
+    StateGroup group;
+    group.name = fmt::format("span {:g}, measured elsewhere", one.span);
+    group.span = one.span;
+    const double half = kNormal95 * one.standard_error;
+    group.onset = {one.value, one.standard_error, one.value - half, one.value + half};
+    const auto after = std::ranges::upper_bound(out.groups, one.span, {}, &StateGroup::span);
+    const auto at = 2 + (after - out.groups.begin());  // behind ln K and n
+    out.groups.insert(after, std::move(group));
+    for (std::size_t r = 0; r < out.replicates.size(); ++r) {
+      RandomStream random(seed, RandomPurpose::bootstrap, kFirstStream + k * out.replicates.size() + r);
+      out.replicates[r].insert(out.replicates[r].begin() + at,
+                               one.value + one.standard_error * random.normal() / widen);
+    }
+  }
+  return out;
 }
 
 OnsetExtrapolation extrapolate_onset(const StateFit& fit, double span, const OnsetOptions& options) {

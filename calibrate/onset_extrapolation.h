@@ -53,6 +53,19 @@ struct OnsetOptions {
   double refused_below = 0.01;      ///< probability below which a form is not used
 };
 
+/// phi_J of a span that was measured elsewhere.
+struct KnownOnset {
+  double span = 1.0;
+  double value = 0.0;
+  double standard_error = 0.0;
+};
+
+/// `fit` with these onsets as groups without samples, for extrapolate_onset(). Their replicates are normal, independent
+/// of those of the fit, and of the width of `standard_error` as extrapolate_onset() draws them. Throws InputError for a
+/// fit that is not usable or has no errors, a span that is not finite or below 1, a value outside of 0 to 1 and an
+/// error that is not positive.
+StateFit with_known_onsets(const StateFit& fit, const std::vector<KnownOnset>& known, std::uint64_t seed);
+
 /// Fits all forms to the onsets of the groups, each with the weight of its error, and to every replicate of the fit.
 /// Replicates are drawn away from the estimate by Student's over the normal 97.5 % quantile, as intervals of the fit
 /// are. A form needs as many groups of different span as it has parameters, and is refused where its chi^2 is too

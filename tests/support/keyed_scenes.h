@@ -62,6 +62,10 @@ mu = 0.5
 inline std::string material_loadings() {
   return std::string(kMaterialHead) + R"([equation]
 spans = [3.0]
+[[equation.onset]]
+span = 5.0
+value = 0.65
+standard_error = 0.01
 [[variant]]
 name = "a"
 [[variant]]

@@ -92,6 +92,28 @@ TEST(SpanPredictions, EveryLoadingIsPredictedAndMeasuredSpansStandBeside) {
   EXPECT_NE(text.find("beyond the pressures that were fitted"), std::string::npos);
 }
 
+/// The truth at span 60 narrows what is said of 1000, and one that is wrong moves it.
+TEST(SpanPredictions, OnsetsThatWereMeasuredElsewhereTakePart) {
+  const auto inputs = inputs_of({1.5, 2.4, 4.0, 6.0});
+  EquationSettings s{.largest_span = 6.0, .spans = {1000.0}, .replicates = 60};
+  const auto alone = predict_spans(inputs, s, 1);
+  s.onsets = {{60.0, onset_of(60.0), 1e-3}};
+  const auto with = predict_spans(inputs, s, 1);
+  s.onsets.front().value -= 0.01;
+  const auto wrong = predict_spans(inputs, s, 1);
+  const auto at = [](const auto& found) { return find(found, "pressed", 1000.0); };
+  ASSERT_TRUE(at(alone)->usable && at(with)->usable && at(wrong)->usable) << at(with)->message;
+  EXPECT_EQ(at(alone)->largest_fitted, 6.0);
+  EXPECT_EQ(at(with)->largest_fitted, 60.0);
+  const Estimate& wide = *at(alone)->solid_fraction;
+  const Estimate& narrow = *at(with)->solid_fraction;
+  EXPECT_LT(narrow.high - narrow.low, 0.3 * (wide.high - wide.low));
+  const double truth = state_phi(StateForm::porosity, 0.05, 1.8, onset_of(1000.0), kStart);
+  EXPECT_LT(narrow.low, truth);
+  EXPECT_GT(narrow.high, truth);
+  EXPECT_LT(at(wrong)->solid_fraction->value, narrow.value - 0.005);
+}
+
 TEST(SpanPredictions, VariantsAboveTheLargestSpanChangeNothing) {
   auto inputs = inputs_of({1.5, 2.4, 4.0, 6.0, 12.0});
   const auto before = predict_spans(inputs, settings(), 1);

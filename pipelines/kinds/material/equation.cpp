@@ -60,7 +60,8 @@ std::vector<ExtrapolationSummary> extrapolate(const std::string& family, const s
     try {
       if (fit.groups.empty()) fit = fit_family(curves, settings, seed);
       if (fit.usable) s.measured = measured_onset(fit, settings.form, curves, span);
-      const OnsetExtrapolation e = extrapolate_onset(fit, span, {.groups = {}, .exponent = exponent});
+      const OnsetExtrapolation e =
+          extrapolate_onset(with_known_onsets(fit, settings.onsets, seed), span, {.groups = {}, .exponent = exponent});
       s.usable = e.usable;
       s.message = e.message;
       s.largest_fitted = e.largest_span;
@@ -75,6 +76,15 @@ std::vector<ExtrapolationSummary> extrapolate(const std::string& family, const s
   return out;
 }
 
+KnownOnset read_onset(const SceneTable& t) {
+  constexpr Range kBetween{0.0, 1.0, true, true};
+  KnownOnset out;
+  out.span = t.number({"span", "largest over smallest radius"}, Unit::none, kSizeRatios);
+  out.value = t.number({"value", "solid fraction phi_J at which pressure begins"}, Unit::none, kBetween);
+  out.standard_error = t.number({"standard_error", "its standard error"}, Unit::none, kBetween);
+  return out;
+}
+
 }  // namespace
 
 EquationSettings read_equation(const SceneTable& t) {
@@ -85,6 +95,10 @@ EquationSettings read_equation(const SceneTable& t) {
   s.spans = t.numbers({"spans", "spans for which the onset of pressure is extrapolated from the variants", "none"},
                       Unit::none, kSizeRatios, s.spans);
   s.replicates = t.count({"replicates", "bootstrap replicates of the fit"}, 40, 100000, s.replicates);
+  for (const SceneTable& one :
+       t.tables({"onset",
+                 "onset of pressure of a span that was measured elsewhere, for extrapolations beside the variants"}))
+    s.onsets.push_back(read_onset(one));
   return s;
 }
 
@@ -137,6 +151,7 @@ std::optional<EquationResult> equation_of(const std::vector<EquationInput>& vari
     const std::vector<StateCurve> own = curves_of_all(members);
     std::set<double> spans;
     for (const StateCurve& c : own) spans.insert(c.span);
+    for (const KnownOnset& known : settings.onsets) spans.insert(known.span);
     if (spans.size() < 2) continue;
     for (ExtrapolationSummary& e : extrapolate(family, own, members.front().exponent, settings, seed))
       s.extrapolations.push_back(std::move(e));

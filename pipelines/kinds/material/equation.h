@@ -22,6 +22,7 @@ struct EquationSettings {
   double largest_span = 0.0;  ///< largest span that extrapolations use; 0: all
   std::vector<double> spans;  ///< spans to which onsets are extrapolated
   std::int64_t replicates = 400;
+  std::vector<KnownOnset> onsets;  ///< onsets measured elsewhere; extrapolations use them
 };
 
 /// Throws InputError.

@@ -95,8 +95,10 @@ struct FittedTest {
     for (const StateCurve& c : states)
       highest = std::max(highest, *std::max_element(c.pressure.begin(), c.pressure.end()));
     try {
-      fit = fit_equation_of_state(
-          states, {.form = settings.form, .replicates = static_cast<int>(settings.replicates), .seed = seed});
+      fit = with_known_onsets(
+          fit_equation_of_state(
+              states, {.form = settings.form, .replicates = static_cast<int>(settings.replicates), .seed = seed}),
+          settings.onsets, seed);
     } catch (const InputError& e) {
       problem = e.what();
     }
@@ -153,7 +155,7 @@ PredictionSummary predict(const Group& group, const FittedTest& fitted, double s
     if (!fitted.problem.empty()) throw InputError(fitted.problem);
     if (!group.has_part_in(fit))
       throw InputError("no equation of state: these packings are in no test that compresses");
-    const OnsetOptions onset{.largest_span = settings.largest_span, .groups = {}, .exponent = first.exponent};
+    const OnsetOptions onset{.groups = {}, .exponent = first.exponent};  // the fit has no others
     const ResponseOptions options{settings.form, first.start_pressure, seed, onset};
     const ResponsePrediction p = predict_response(fit, group.responses(fit), span, options);
     s.usable = p.usable;
@@ -180,10 +182,13 @@ const FittedTest* fit_behind(const Group& group, const std::vector<FittedTest>& 
   return fitted.empty() ? nullptr : fitted.data();
 }
 
-std::size_t spans_up_to(const Group& group, double largest_span) {
+/// Number of spans to extrapolate from.
+std::size_t spans_known(const Group& group, const EquationSettings& settings) {
   std::vector<double> spans;
   for (const PredictionInput* in : group.inputs)
-    if (largest_span <= 0.0 || in->span <= largest_span) spans.push_back(in->span);
+    if (settings.largest_span <= 0.0 || in->span <= settings.largest_span) spans.push_back(in->span);
+  if (spans.empty()) return 0;
+  for (const KnownOnset& known : settings.onsets) spans.push_back(known.span);
   std::sort(spans.begin(), spans.end());
   return static_cast<std::size_t>(std::unique(spans.begin(), spans.end()) - spans.begin());
 }
@@ -208,7 +213,7 @@ std::vector<PredictionSummary> predict_spans(const std::vector<PredictionInput>&
     for (const bool compressing : {true, false})
       for (const Group& group : tests) {
         const bool compresses = !group.states(settings.largest_span).empty();
-        if (compresses != compressing || spans_up_to(group, settings.largest_span) < 2) continue;
+        if (compresses != compressing || spans_known(group, settings) < 2) continue;
         if (compressing) fitted.emplace_back(group, settings, seed);
         const FittedTest* const by = compressing ? &fitted.back() : fit_behind(group, fitted);
         if (by == nullptr) continue;
