@@ -109,6 +109,21 @@ TEST(MaterialModelsRun, DrawsOfTheCardGiveABand) {
   EXPECT_LE(with["inside"].get<double>(), 1.0);
 }
 
+/// The run ended where it would have written the checkpoint of a model, after the reference was run.
+TEST(MaterialModelsRun, TakesTheLongestNames) {
+  const TemporaryDirectory directory;
+  const auto name = [](char letter) { return "name = \"" + std::string(100, letter) + "\"\n"; };
+  write_text_atomic(directory.file("scene.toml"),
+                    "kind = \"material-models\"\n[packing]\npreparation = \"fast\"\n[test]\nstrain = 0.02\nsteps = 2\n"
+                    "[grains]\ncount = 200\nratio = 3\n[[loading]]\n" +
+                        name('l') + "[[variant]]\n" + name('v') + "[[model]]\n" + name('m') +
+                        "kind = \"coarse\"\nsplit = 0.5\n");
+  const ProgramOutcome outcome =
+      run_the_program("run '" + directory.file("scene.toml") + "' --quiet --out '" + directory.file("out") + "'");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_TRUE(scores_of(directory.file("out")).contains(std::string(100, 'm')));
+}
+
 /// The card is of grains with mu = 0.3; what needs none is run.
 TEST(MaterialModelsRun, RefusesACardOfGrainsWithAnotherFriction) {
   const TemporaryDirectory directory;
