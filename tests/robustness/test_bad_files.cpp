@@ -435,7 +435,7 @@ TEST_F(BadResults, PowdersOfAReport) {
   bad([&](Hdf5Edit& f) { f.resize("sample_0/course", 3); }, {"powder.h5"});
   bad([&](Hdf5Edit& f) { f.set("sample_0/stages", 3, kNan); },
       {"powder.h5: /sample_0/stages: holds a number that is not finite"});
-  bad([&](Hdf5Edit& f) { f.set_attribute("sample_0/system", "time", kNan); }, {"'time' is nan"});
+  bad([&](Hdf5Edit& f) { f.set_attribute("sample_0/system", "time", kNan); }, {"'time' is not finite"});
   bad([&](Hdf5Edit& f) { f.set(system + "bodies/material", 3, 4); }, {"'material' does not fit"});
   bad([&](Hdf5Edit& f) { f.set(system + "bodies/counts", 0, 1e9); }, {"'counts' does not fit"});
   bad([&](Hdf5Edit& f) { f.set_attribute("sample_0/system", "dimension", 3LL); }, {"'dimension' does not fit"});

@@ -98,6 +98,10 @@ TEST(MaterialModelsRun, DrawsOfTheCardGiveABand) {
   EXPECT_NE(unwrapped(few.output).find("7 draws say nothing of a 95 % band"), std::string::npos) << few.output;
   ASSERT_EQ(run("without", "").status, 0);
   const ProgramOutcome outcome = run("with", "bands = 8\n");
+  const ProgramOutcome checked = run_the_program("check '" + directory.file("with.toml") + "'");
+  EXPECT_NE(unwrapped(checked.output).find("model cells: cells, and once more for each of 8 draws of its card"),
+            std::string::npos)
+      << checked.output;
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   const nlohmann::json with = scores_of(directory.file("with"))["cells"];
   const nlohmann::json without = scores_of(directory.file("without"))["cells"];

@@ -10,6 +10,7 @@
 #include "common/core/particles.h"
 #include "macrosim/body_contacts.h"
 #include "pipelines/kinds/material_models/models.h"
+#include "pipelines/kinds/material_models/scene.h"
 
 namespace softgrain {
 namespace {
@@ -232,6 +233,31 @@ TEST(MaterialModels, ErrorsAndCostsAreOfTheSameSamples) {
   const TextTable table = table_of({s});
   EXPECT_EQ(table.header.back(), "remark");
   EXPECT_EQ(table.rows.front().back(), s.remark);
+}
+
+/// What a scene with one model is refused for; empty: it is read.
+std::string complaint_of_model(const std::string& model) {
+  const std::string cards = std::string(SOFTGRAIN_SOURCE_DIR) + "/results/material_law/";
+  std::string text = "kind = \"material-models\"\n[grains]\ncount = 700\n[[model]]\nname = \"m\"\n" + model;
+  for (std::size_t at = 0; (at = text.find("CARDS/")) != std::string::npos;) text.replace(at, 6, cards);
+  try {
+    (void)read_material_models_scene(Scene::parse(text, "s"));
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(MaterialModelsScene, BandsGoWithModelsThatTakeTheNumbersOfACard) {
+  const std::string with = "card = \"CARDS/cell_law_memory.toml\"\nbands = 8\n";
+  for (const char* kind : {"cells", "mean-field"})
+    EXPECT_EQ(complaint_of_model("kind = \"" + std::string(kind) + "\"\n" + with), "");
+  EXPECT_NE(complaint_of_model("kind = \"substitute\"\nmapped = true\n" + with).find("bands = 8: does not go with"),
+            std::string::npos);
+  EXPECT_NE(complaint_of_model("kind = \"coarse\"\nbands = 8\n").find("bands = 8: does not go with"),
+            std::string::npos);
+  const std::string none = complaint_of_model("kind = \"cells\"\ncard = \"CARDS/cell_law.toml\"\nbands = 8\n");
+  EXPECT_NE(none.find("the card has no [correlation]"), std::string::npos) << none;
 }
 
 /// Draws at 1 -+ 0.1 of the model have the deviation 0.1 sqrt(8/7) of eight, and Student's 95 % of seven degrees is
