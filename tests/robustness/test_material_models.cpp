@@ -106,6 +106,13 @@ TEST(MaterialModelsRun, DrawsOfTheCardGiveABand) {
   const nlohmann::json with = scores_of(directory.file("with"))["cells"];
   const nlohmann::json without = scores_of(directory.file("without"))["cells"];
   EXPECT_EQ(with["axial"], without["axial"]);
+  // Columns of the report that say nothing of any model are left out.
+  const auto has_column = [&](const char* name, const char* title) {
+    return read_text(directory.file(name) + "/report.html").find(title) != std::string::npos;
+  };
+  EXPECT_TRUE(has_column("with", ">band, inside<"));
+  EXPECT_FALSE(has_column("without", ">band, inside<"));
+  EXPECT_FALSE(has_column("with", ">q/p at 6 %<"));
   EXPECT_TRUE(without["band"].is_null()) << without["band"];
   EXPECT_GT(with["band"].get<double>(), 0.03);  // K alone is known to 10 %
   EXPECT_LT(with["band"].get<double>(), 1.0);
