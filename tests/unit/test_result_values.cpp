@@ -48,9 +48,11 @@ class ResultValues : public testing::Test {
     return edited("law_table.h5", edit, check_replicates);
   }
   std::string packing(const MacroPacking& written, const Edit& edit) const {
-    h5::AtomicFile file(directory_.file("packing.h5"));
-    write_macro_packing(file.root().create("sample_0"), written);
-    file.commit();
+    {
+      h5::AtomicFile file(directory_.file("packing.h5"));
+      write_macro_packing(file.root().create("sample_0"), written);
+      file.commit();
+    }
     return edited("packing.h5", edit,
                   [](const std::string& path) { (void)read_macro_packing(h5::open_file(path).open("sample_0")); });
   }
