@@ -235,6 +235,18 @@ TEST(MaterialModels, ErrorsAndCostsAreOfTheSameSamples) {
   EXPECT_EQ(table.rows.front().back(), s.remark);
 }
 
+/// A mean field was "- times faster".
+TEST(MaterialModels, CostIsSaidOfModelsThatEvaluateSomething) {
+  ModelScore s;
+  s.samples = 1;
+  s.remark = "a remark";
+  s.evaluations = s.seconds = 8.0;
+  EXPECT_NE(console_summary({s}).find("; 8 times fewer evaluations, 8 times faster; a remark\n"), std::string::npos);
+  s.evaluations = s.seconds = kInfinity;
+  EXPECT_EQ(console_summary({s}).find("times"), std::string::npos) << console_summary({s});
+  EXPECT_NE(console_summary({s}).find("; a remark\n"), std::string::npos);
+}
+
 /// What a scene with one model is refused for; empty: it is read.
 std::string complaint_of_model(const std::string& model) {
   const std::string cards = std::string(SOFTGRAIN_SOURCE_DIR) + "/results/material_law/";

@@ -315,8 +315,9 @@ std::string console_summary(const std::vector<ModelScore>& scores) {
     if (std::isfinite(s.band))
       text += fmt::format("; 95 % band ±{:.0f} % of the axial stress, which holds {:.0f} % of the points",
                           100.0 * s.band, 100.0 * s.inside);
-    text += fmt::format("; {} times fewer evaluations, {} times faster{}\n", times(s.evaluations), times(s.seconds),
-                        s.remark.empty() ? "" : "; " + s.remark);
+    if (std::isfinite(s.evaluations))  // a mean field evaluates nothing
+      text += fmt::format("; {} times fewer evaluations, {} times faster", times(s.evaluations), times(s.seconds));
+    text += (s.remark.empty() ? "" : "; " + s.remark) + "\n";
   }
   return text;
 }
