@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <limits>
 
@@ -152,6 +153,27 @@ CellMemory read_memory(const SceneTable& t) {
   return memory;
 }
 
+/// Whether errors can have these correlations: no eigenvalue below 0 but for rounding. By Cholesky's factors L D L^T,
+/// where a pivot of 0 must have zeros below it: numbers that few samples determine go together exactly.
+bool is_positive(const std::vector<double>& matrix, std::size_t n) {
+  constexpr double kRounding = 1e-9;
+  std::vector<double> l(n * n, 0.0);
+  std::vector<double> d(n, 0.0);
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t i = j; i < n; ++i) {
+      double rest = matrix[i * n + j];
+      for (std::size_t k = 0; k < j; ++k) rest -= l[i * n + k] * l[j * n + k] * d[k];
+      if (i == j) d[j] = rest;
+      if (d[j] < -kRounding) return false;
+      const bool vanishes = d[j] < kRounding;
+      if (vanishes && i > j && std::abs(rest) > std::sqrt(kRounding)) return false;
+      l[i * n + j] = vanishes ? 0.0 : rest / d[j];
+    }
+    d[j] = std::max(d[j], 0.0);
+  }
+  return true;
+}
+
 /// For numbers of the card as it has been read so far.
 CellCorrelation read_correlation(const SceneTable& t, const CellCard& card) {
   CellCorrelation out;
@@ -176,6 +198,8 @@ CellCorrelation read_correlation(const SceneTable& t, const CellCard& card) {
     for (std::size_t j = 0; j < n; ++j)
       if (out.matrix[i * n + j] != (i == j ? 1.0 : out.matrix[j * n + i]))
         t.throw_error("matrix", "must be 1 on its diagonal, and the same across it");
+  if (!is_positive(out.matrix, n))
+    t.throw_error("matrix", "contradicts itself: no errors have these correlations (an eigenvalue is below 0)");
   return out;
 }
 

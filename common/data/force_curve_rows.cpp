@@ -31,6 +31,8 @@ void CurveRows::read() {
     else
       add_normal(row, delta, sample);
   }
+  for (std::size_t k = 0; k < negative_.size(); ++k)
+    if (negative_[k]) refuse_deepest_of_wrong_sign(out_.samples[k], *negative_[k]);
   leave_out_jitter();
   if (before_touch_ > 0)
     out_.remarks.push_back(fmt::format("{}: {} points before touch (negative overlap) are left out of the fit",
@@ -111,9 +113,10 @@ std::size_t CurveRows::sample_of(const CsvRow& row) {
 /// Such readings say where the zero of the force is.
 void CurveRows::add_before_touch(const CsvRow& row, double delta, std::size_t sample) {
   ++before_touch_;
-  if (!out_.samples[sample].normal.empty()) negative_[sample] = Negative{row.line, delta};
-  if (const auto force = file_.number(row, at_.fn, Unit::force))
-    out_.samples[sample].before_touch.push_back(*force - at_.zero_force);
+  const auto said = file_.number(row, at_.fn, Unit::force);
+  const double force = said ? *said - at_.zero_force : std::numeric_limits<double>::quiet_NaN();
+  if (!out_.samples[sample].normal.empty()) negative_[sample] = Negative{row.line, delta, force};
+  if (said) out_.samples[sample].before_touch.push_back(force);
 }
 
 void CurveRows::add_normal(const CsvRow& row, double delta, std::size_t index) {
@@ -158,6 +161,16 @@ void CurveRows::refuse_wrong_sign(const std::string& sample, const Negative& rea
       "{}: sample \"{}\": Delta = {:.6g} stands between {:.6g} and {:.6g}: is the sign wrong? Negative overlaps are "
       "readings before touch",
       file_.where(reading.line), sample, reading.delta, before, after));
+}
+
+/// Such a reading behind all others would be the deepest. Who moves away there measures next to no force.
+void CurveRows::refuse_deepest_of_wrong_sign(const ForceCurve& sample, const Negative& reading) const {
+  const ForcePoint& last = sample.normal.back();
+  if (!(-reading.delta > last.delta && last.force > 0.0 && reading.force > last.force)) return;
+  throw InputError(fmt::format(
+      "{}: sample \"{}\": Delta = {:.6g} has a force of {:.6g} N, more than {:.6g} N at Delta = {:.6g} before: is the "
+      "sign wrong? Negative overlaps are readings before touch",
+      file_.where(reading.line), sample.name, reading.delta, reading.force, last.force, last.delta));
 }
 
 /// Whether a reading belongs to unloading or reloading: as its branch says, else by its overlap.

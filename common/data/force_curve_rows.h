@@ -46,6 +46,7 @@ class CurveRows {
   struct Negative {
     int line = 0;
     double delta = 0.0;
+    double force = 0.0;  ///< [N]; NaN: not said
   };
 
   [[nodiscard]] double required(const CsvRow& row, std::size_t column, Unit unit) const;
@@ -56,6 +57,7 @@ class CurveRows {
   std::size_t sample_of(const CsvRow& row);  ///< index into the samples
   void add_before_touch(const CsvRow& row, double delta, std::size_t sample);
   void refuse_wrong_sign(const std::string& sample, const Negative& reading, double before, double after) const;
+  void refuse_deepest_of_wrong_sign(const ForceCurve& sample, const Negative& reading) const;
   void add_normal(const CsvRow& row, double delta, std::size_t index);
   [[nodiscard]] bool returns(const CsvRow& row, double delta, const ForceCurve& sample) const;
   static void add_returned(const ForcePoint& point, ForceCurve& sample);

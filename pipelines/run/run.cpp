@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "common/dynamics/thread_choice.h"
+#include "common/io/text_file.h"
 #include "common/state/checkpoint.h"
 #include "pipelines/report/report.h"
 #include "pipelines/results/summary.h"
@@ -29,6 +30,15 @@ TaskStore::TaskStore(const RunContext& context, const Scene& scene, std::uint64_
   context.begin(scene, seed, beside);
   std::error_code error;
   if (!context.resume()) std::filesystem::remove_all(directory_, error);
+}
+
+/// Tasks carry several names of a scene: of a model, a variant and a loading. File systems take 255 characters, the
+/// endings ".h5.previous" and ".h5.tmp" among them.
+std::string TaskStore::file(const std::string& task) const {
+  constexpr std::size_t kLongest = 220;
+  if (task.size() <= kLongest) return directory_ + "/" + task + ".h5";
+  const std::string hash = "-" + short_hash(task);
+  return directory_ + "/" + task.substr(0, kLongest - hash.size()) + hash + ".h5";
 }
 
 void TaskStore::save(const std::string& task, const std::function<void(const h5::Group&)>& content) const {

@@ -44,7 +44,8 @@ class TaskStore {
   void clear() const;
 
  private:
-  [[nodiscard]] std::string file(const std::string& task) const { return directory_ + "/" + task + ".h5"; }
+  /// Path of what is saved of a task, no longer than file systems take.
+  [[nodiscard]] std::string file(const std::string& task) const;
 
   const RunContext& context_;
   std::string directory_;

@@ -293,7 +293,7 @@ void tiny_packings(const std::string& path) {
   packing.high = {{1.0, 1.0, 1.0}};
   packing.bodies = {{{{0.3, 0.5, 0.5}}, 0.1, false}, {{{0.7, 0.5, 0.5}}, 0.1, true}};
   h5::AtomicFile file(path);
-  write_macro_packing(file.root().create("sample_0"), packing);
+  for (const char* sample : {"sample_0", "sample_1"}) write_macro_packing(file.root().create(sample), packing);
   file.commit();
 }
 
@@ -301,12 +301,12 @@ TEST_F(BadResults, Packings) {
   tiny_packings(directory_.file("good.h5"));
   const ProgramOutcome good = run_the_program("check '" + directory_.file("good.h5") + "'");
   EXPECT_EQ(good.status, 0) << good.output;
-  EXPECT_NE(good.output.find("packings: 1, with 2 bodies in all"), std::string::npos) << good.output;
+  EXPECT_NE(good.output.find("packings: 2, with 4 bodies in all"), std::string::npos) << good.output;
   const auto bad = [&](const Edit& edit, const std::vector<std::string>& words) {
     expect_refused(tiny_packings, edit, words);
   };
   bad([](Hdf5Edit& f) { f.set("sample_0/bodies", 1, kNan); }, {"'bodies' holds a place that is not finite"});
-  bad([](Hdf5Edit& f) { f.set("sample_0/bodies", 3, 0.0); }, {"a radius that is not above 0"});
+  bad([](Hdf5Edit& f) { f.set("sample_1/bodies", 3, 0.0); }, {"a radius that is not above 0"});
   bad([](Hdf5Edit& f) { f.set("sample_0/box", 4, HUGE_VAL); }, {"'box' holds a number that is not finite"});
   bad([](Hdf5Edit& f) { f.remove("sample_0/bodies"); }, {"/sample_0/bodies: missing or damaged data set"});
 }
@@ -433,6 +433,9 @@ TEST_F(BadResults, PowdersOfAReport) {
   bad([&](Hdf5Edit& f) { f.set("sample_0/course", 2, kNan); },
       {"powder.h5: /sample_0/course: holds a number that is not finite"});
   bad([&](Hdf5Edit& f) { f.resize("sample_0/course", 3); }, {"powder.h5"});
+  bad([&](Hdf5Edit& f) { f.set("sample_0/stages", 3, kNan); },
+      {"powder.h5: /sample_0/stages: holds a number that is not finite"});
+  bad([&](Hdf5Edit& f) { f.set_attribute("sample_0/system", "time", kNan); }, {"'time' is not finite"});
   bad([&](Hdf5Edit& f) { f.set(system + "bodies/material", 3, 4); }, {"'material' does not fit"});
   bad([&](Hdf5Edit& f) { f.set(system + "bodies/counts", 0, 1e9); }, {"'counts' does not fit"});
   bad([&](Hdf5Edit& f) { f.set_attribute("sample_0/system", "dimension", 3LL); }, {"'dimension' does not fit"});

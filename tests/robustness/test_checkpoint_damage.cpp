@@ -206,14 +206,15 @@ TEST(DamagedRun, DoesNotTakeStatesThatAreOlderThanTheirTask) {
   ASSERT_TRUE(interrupted_in_the_middle(
       start, [&] { return !states().empty(); }, runs.out("out")));
   const std::string name = fs::path(states()).filename().string();
-  for (const bool gone : {false, true}) {
-    const std::string out = gone ? "gone" : "flipped";
+  for (const std::string out : {"flipped", "newest-gone", "all-gone"}) {
     fs::copy(runs.out("out"), runs.out(out), fs::copy_options::recursive);
-    const std::string file = runs.out(out) + "/work/" + name.substr(0, name.size() - ending.size());
-    if (gone)
-      fs::remove(file);
-    else
+    const std::string older = runs.out(out) + "/work/" + name;
+    const std::string file = older.substr(0, older.size() - ending.size());
+    if (out == "flipped")
       flip(file, fs::file_size(file) / 2, 4);
+    else
+      fs::remove(file);
+    if (out == "all-gone") fs::remove(older);
     ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments(out, {"--resume"}))), 0));
     EXPECT_NE(log_of(runs.out(out)).find("starts afresh"), std::string::npos) << out;
     expect_same_runs(runs.out("whole"), runs.out(out));

@@ -98,15 +98,41 @@ TEST(MaterialModelsRun, DrawsOfTheCardGiveABand) {
   EXPECT_NE(unwrapped(few.output).find("7 draws say nothing of a 95 % band"), std::string::npos) << few.output;
   ASSERT_EQ(run("without", "").status, 0);
   const ProgramOutcome outcome = run("with", "bands = 8\n");
+  const ProgramOutcome checked = run_the_program("check '" + directory.file("with.toml") + "'");
+  EXPECT_NE(unwrapped(checked.output).find("model cells: cells, and once more for each of 8 draws of its card"),
+            std::string::npos)
+      << checked.output;
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   const nlohmann::json with = scores_of(directory.file("with"))["cells"];
   const nlohmann::json without = scores_of(directory.file("without"))["cells"];
   EXPECT_EQ(with["axial"], without["axial"]);
+  // Columns of the report that say nothing of any model are left out.
+  const auto has_column = [&](const char* name, const char* title) {
+    return read_text(directory.file(name) + "/report.html").find(title) != std::string::npos;
+  };
+  EXPECT_TRUE(has_column("with", ">band, inside<"));
+  EXPECT_FALSE(has_column("without", ">band, inside<"));
+  EXPECT_FALSE(has_column("with", ">q/p at 6 %<"));
   EXPECT_TRUE(without["band"].is_null()) << without["band"];
   EXPECT_GT(with["band"].get<double>(), 0.03);  // K alone is known to 10 %
   EXPECT_LT(with["band"].get<double>(), 1.0);
   EXPECT_GE(with["inside"].get<double>(), 0.0);
   EXPECT_LE(with["inside"].get<double>(), 1.0);
+}
+
+/// The run ended where it would have written the checkpoint of a model, after the reference was run.
+TEST(MaterialModelsRun, TakesTheLongestNames) {
+  const TemporaryDirectory directory;
+  const auto name = [](char letter) { return "name = \"" + std::string(100, letter) + "\"\n"; };
+  write_text_atomic(directory.file("scene.toml"),
+                    "kind = \"material-models\"\n[packing]\npreparation = \"fast\"\n[test]\nstrain = 0.02\nsteps = 2\n"
+                    "[grains]\ncount = 200\nratio = 3\n[[loading]]\n" +
+                        name('l') + "[[variant]]\n" + name('v') + "[[model]]\n" + name('m') +
+                        "kind = \"coarse\"\nsplit = 0.5\n");
+  const ProgramOutcome outcome =
+      run_the_program("run '" + directory.file("scene.toml") + "' --quiet --out '" + directory.file("out") + "'");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_TRUE(scores_of(directory.file("out")).contains(std::string(100, 'm')));
 }
 
 /// The card is of grains with mu = 0.3; what needs none is run.

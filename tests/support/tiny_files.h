@@ -151,6 +151,7 @@ inline void tiny_powder(const std::string& path) {
   PowderState state = start_powder(spec, 1, 0);
   rebuild_neighbours(state.system);
   state.points.resize(2);
+  state.stages.resize(1);
   record_snapshot(state.snapshots, state.system);
   h5::AtomicFile file(path);
   write_powder_spec(file.root().create("spec"), spec);

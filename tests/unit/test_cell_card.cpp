@@ -195,6 +195,30 @@ TEST(CellCardFile, CorrelationsAreThoseOfNumbersOfTheCard) {
   expect_words(two, "[1, 1.5, 1.5, 1]", "matrix");
 }
 
+/// Draws of such a card ended a run after its packings were made, and no message named the card.
+TEST(CellCardFile, CorrelationsThatNoErrorsHaveAreRefused) {
+  const TemporaryDirectory directory;
+  const auto is_read = [&](const std::string& matrix) {
+    write_cell_card(sample_card(), directory.file("card.toml"));
+    write_text_atomic(directory.file("card.toml"),
+                      read_text(directory.file("card.toml")) +
+                          "[correlation]\nnumbers = [\"K\", \"n\", \"e_J\"]\nmatrix = " + matrix + "\n");
+    try {
+      (void)read_cell_card(directory.file("card.toml"));
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find("matrix"), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find("no errors have these correlations"), std::string::npos) << e.what();
+      return false;
+    }
+    return true;
+  };
+  EXPECT_FALSE(is_read("[1, 0.9, 0.9, 0.9, 1, -0.9, 0.9, -0.9, 1]"));
+  EXPECT_FALSE(is_read("[1, 1, 0.5, 1, 1, 0, 0.5, 0, 1]"));  // K and n are one, but go with e_J in two ways
+  EXPECT_TRUE(is_read("[1, 0.5, -0.5, 0.5, 1, 0.4, -0.5, 0.4, 1]"));
+  EXPECT_TRUE(is_read("[1, 1, 0.5, 1, 1, 0.5, 0.5, 0.5, 1]"));
+  EXPECT_TRUE(is_read("[1, 1, -1, 1, 1, -1, -1, -1, 1]"));  // two samples
+}
+
 TEST(CellCardFile, NumbersAreSetByTheirKeysWithinTheirRanges) {
   CellCard card = card_with_memory();
   set_number(card, "n", 0.5);

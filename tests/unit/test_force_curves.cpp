@@ -132,6 +132,23 @@ TEST_F(ForceCurveFile, AnOverlapOfTheWrongSignIsRefused) {
   EXPECT_EQ(jitter.samples[0].normal.size(), 6U);
 }
 
+/// The deepest reading was left out as one before touch.
+TEST_F(ForceCurveFile, TheDeepestOverlapOfTheWrongSignIsRefused) {
+  expect_refused(replaced(kGood, "4.0, 1500", "4.0, 1500\n-4.8, 2200"),
+                 {"data.csv:12", "Delta = -0.3 has a force of 2.2 N, more than 1.5 N at Delta = 0.25"});
+  const ForceCurves away = read(replaced(kGood, "4.0, 1500", "4.0, 1500\n-4.8, 1"));
+  EXPECT_EQ(away.samples[0].before_touch, (std::vector<double>{0.001}));
+  EXPECT_EQ(away.samples[0].normal.size(), 5U);
+}
+
+/// Somebody who goes back to look for the zero of the force goes farther than the next overlap. What is met later does
+/// not make that reading one of the loading.
+TEST_F(ForceCurveFile, AWayBackBeyondTheNextOverlapIsBeforeTouch) {
+  const ForceCurves back = read(replaced(kGood, "1.6, 80\n", "-2.0, 1\n1.6, 80\n"));
+  EXPECT_EQ(back.samples[0].before_touch, (std::vector<double>{0.001}));
+  EXPECT_EQ(back.samples[0].normal.size(), 5U);
+}
+
 TEST_F(ForceCurveFile, SemicolonsTabsAndDecimalCommas) {
   ForceCurveOptions o;
   o.kind = PairKind::soft_solid;

@@ -10,6 +10,7 @@
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/macro_comparison/scene.h"
 #include "pipelines/kinds/material/scene.h"
+#include "tests/support/every_kind.h"
 #include "tests/support/keyed_scenes.h"
 #include "tests/support/refusal.h"
 
@@ -257,6 +258,18 @@ TEST_F(KeysThatCount, FamiliesOfMaterialsDifferInTheSpanAlone) {
   const std::string a = "[[variant]]\nname = \"a\"\n" + normal(1.3, 0.009) + "[[variant]]\nname = \"b\"\n";
   EXPECT_EQ(families(a + normal(1.3, 0.008)), 1U);
   EXPECT_EQ(families(a + normal(1.4, 0.008)), 2U);
+}
+
+TEST_F(KeysThatCount, AFastPlaneIsWarnedOfInInverseScenesToo) {
+  const std::string damped = "relaxation = \"damped\"\n[measure.damped]\nincrement = 0.02\ntolerance = 1e-2\n";
+  const auto approach = [&](const std::string& speed) {
+    const std::string slow = "relaxation = \"slow-dynamics\"\n[measure.least_work]\napproach_speed = ";
+    const auto said = warnings(with_part(starter_scene("inverse"), damped, slow + speed + "\n"));
+    return std::ranges::count_if(
+        said, [](const std::string& one) { return one.find("waves rearrange the grains") != std::string::npos; });
+  };
+  EXPECT_EQ(approach("3.0"), 1);
+  EXPECT_EQ(approach("1.0"), 0);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Models of a material: what needs no run, against closed forms.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -9,6 +10,7 @@
 #include "common/core/particles.h"
 #include "macrosim/body_contacts.h"
 #include "pipelines/kinds/material_models/models.h"
+#include "pipelines/kinds/material_models/scene.h"
 
 namespace softgrain {
 namespace {
@@ -233,35 +235,123 @@ TEST(MaterialModels, ErrorsAndCostsAreOfTheSameSamples) {
   EXPECT_EQ(table.rows.front().back(), s.remark);
 }
 
+/// A mean field was "- times faster".
+TEST(MaterialModels, CostIsSaidOfModelsThatEvaluateSomething) {
+  ModelScore s;
+  s.samples = 1;
+  s.remark = "a remark";
+  s.evaluations = s.seconds = 8.0;
+  EXPECT_NE(console_summary({s}).find("; 8 times fewer evaluations, 8 times faster; a remark\n"), std::string::npos);
+  s.evaluations = s.seconds = kInfinity;
+  EXPECT_EQ(console_summary({s}).find("times"), std::string::npos) << console_summary({s});
+  EXPECT_NE(console_summary({s}).find("; a remark\n"), std::string::npos);
+}
+
+/// What a scene with one model is refused for; empty: it is read.
+std::string complaint_of_model(const std::string& model) {
+  const std::string cards = std::string(SOFTGRAIN_SOURCE_DIR) + "/results/material_law/";
+  std::string text = "kind = \"material-models\"\n[grains]\ncount = 700\n[[model]]\nname = \"m\"\n" + model;
+  for (std::size_t at = 0; (at = text.find("CARDS/")) != std::string::npos;) text.replace(at, 6, cards);
+  try {
+    (void)read_material_models_scene(Scene::parse(text, "s"));
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(MaterialModelsScene, BandsGoWithModelsThatTakeTheNumbersOfACard) {
+  const std::string with = "card = \"CARDS/cell_law_memory.toml\"\nbands = 8\n";
+  for (const char* kind : {"cells", "mean-field"})
+    EXPECT_EQ(complaint_of_model("kind = \"" + std::string(kind) + "\"\n" + with), "");
+  EXPECT_NE(complaint_of_model("kind = \"substitute\"\nmapped = true\n" + with).find("bands = 8: does not go with"),
+            std::string::npos);
+  EXPECT_NE(complaint_of_model("kind = \"coarse\"\nbands = 8\n").find("bands = 8: does not go with"),
+            std::string::npos);
+  const std::string none = complaint_of_model("kind = \"cells\"\ncard = \"CARDS/cell_law.toml\"\nbands = 8\n");
+  EXPECT_NE(none.find("the card has no [correlation]"), std::string::npos) << none;
+}
+
 /// Draws at 1 -+ 0.1 of the model have the deviation 0.1 sqrt(8/7) of eight, and Student's 95 % of seven degrees is
 /// 2.3646. What the truth is off at each sample decides whether it lies within; a draw that broke off has no part.
-TEST(MaterialModels, BandsAreThoseOfTheDrawsSampleBySample) {
-  const CellCard card = card_of(StateForm::porosity);
-  const auto sample = [&](double stress, bool usable = true) {
-    MacroCurve c = exact(card, 0.66, 0.64);
+class BandsOfModels : public testing::Test {
+ protected:
+  BandsOfModels() {
+    truth_.curves = {sample(1.0, false), sample(0.8), sample(1.3)};
+    run_.curves = {sample(1.0), sample(1.0), sample(1.0)};
+    for (int k = 0; k < 8; ++k) {
+      const double off = k % 2 == 0 ? 0.9 : 1.1;
+      run_.drawn.push_back({sample(5.0 * off), sample(off), sample(off)});
+    }
+  }
+  static MacroCurve sample(double stress, bool usable = true) {
+    MacroCurve c = exact(card_of(StateForm::porosity), 0.66, 0.64);
     for (double& s : c.stress_axial) s *= stress;
     c.stages = {StageRecord{}};
     c.stage.assign(c.strain.size(), 0.0);
     c.usable = usable;
     return c;
-  };
-  const MaterialVariant variant{"v", {}};
-  const MaterialModel model{.name = "m", .bands = 9};
-  VariantResult truth{&variant, "", {}, nullptr};
-  truth.curves = {sample(0.8), sample(1.3), sample(1.0, false)};
-  ModelRun run{&model, &truth, {}, "", ""};
-  run.curves = {sample(1.0), sample(1.0), sample(1.0)};
-  for (int k = 0; k < 8; ++k) {
-    const double off = k % 2 == 0 ? 0.9 : 1.1;
-    run.drawn.push_back({sample(off), sample(off), sample(5.0)});
   }
-  run.drawn.push_back({sample(7.0, false), sample(7.0, false), sample(7.0, false)});
-  const ModelScore s = score(run, false);
-  const double half = 2.364624 * 0.1 * std::sqrt(8.0 / 7.0);
-  EXPECT_NEAR(s.band, half * std::sqrt(2.0 / (0.8 * 0.8 + 1.3 * 1.3)), 1e-6);
+  template <class Change>
+  void change_all(const Change& change) {
+    for (auto* curves : {&truth_.curves, &run_.curves})
+      for (MacroCurve& c : *curves) change(c);
+    for (auto& curves : run_.drawn)
+      for (MacroCurve& c : curves) change(c);
+  }
+
+  const double half_ = 2.364624 * 0.1 * std::sqrt(8.0 / 7.0);
+  const MaterialVariant variant_{"v", {}};
+  const MaterialModel model_{.name = "m", .bands = 9};
+  VariantResult truth_{&variant_, "", {}, nullptr};
+  ModelRun run_{&model_, &truth_, {}, "", ""};
+};
+
+TEST_F(BandsOfModels, AreThoseOfTheDrawsSampleBySample) {
+  const ModelScore s = score(run_, false);
+  EXPECT_NEAR(s.band, half_ * std::sqrt(2.0 / (0.8 * 0.8 + 1.3 * 1.3)), 1e-6);
   EXPECT_EQ(s.inside, 0.5);  // 0.2 is within 0.253, 0.3 is not
-  run.drawn.clear();
-  EXPECT_TRUE(std::isnan(score(run, false).band));
+  EXPECT_EQ(s.remark, "");
+  run_.drawn.clear();
+  EXPECT_TRUE(std::isnan(score(run_, false).band));
+}
+
+/// Eight draws were asked for, and the band was that of fewer without a word.
+TEST_F(BandsOfModels, SayHowManyDrawsBrokeOff) {
+  run_.drawn.push_back({sample(7.0), sample(7.0, false), sample(7.0)});
+  run_.drawn.back()[2].stress_axial.pop_back();
+  const ModelScore s = score(run_, false);
+  EXPECT_NEAR(s.band, half_ * std::sqrt(2.0 / (0.8 * 0.8 + 1.3 * 1.3)), 1e-6);
+  EXPECT_EQ(s.remark, "2 of 18 curves of draws of the card break off: the band is without them");
+  run_.drawn.erase(run_.drawn.begin(), run_.drawn.begin() + 8);
+  EXPECT_TRUE(std::isnan(score(run_, false).band));
+  EXPECT_TRUE(std::isnan(score(run_, false).inside));
+}
+
+/// Errors have no part below 1 % strain, and bands none either.
+TEST_F(BandsOfModels, BeginAtOnePerCentStrain) {
+  for (auto& curves : run_.drawn)
+    for (MacroCurve& c : curves) c.stress_axial.front() *= 30.0;
+  truth_.curves[1].stress_axial.front() *= 100.0;
+  const ModelScore s = score(run_, false);
+  EXPECT_NEAR(s.band, half_ * std::sqrt(2.0 / (0.8 * 0.8 + 1.3 * 1.3)), 1e-6);
+  EXPECT_EQ(s.inside, 0.5);
+}
+
+/// What the test imposes both have.
+TEST_F(BandsOfModels, LeaveOutStressesThatTheTestImposes) {
+  change_all([](MacroCurve& c) {
+    c.test = MacroTest::stages;
+    c.stages.assign(2, StageRecord{});
+    c.stages[0].by_stress = std::array<bool, 3>{};
+    c.stages[1].by_stress = std::array<bool, 3>{false, false, true};
+    c.stage = {0.0, 0.0, 1.0};
+  });
+  truth_.curves[1].stress_axial.back() *= 10.0;
+  truth_.curves[2].stress_axial[1] = run_.curves[2].stress_axial[1];
+  const ModelScore s = score(run_, false);
+  EXPECT_NEAR(s.band, half_ * std::sqrt(2.0 / (0.8 * 0.8 + 1.0)), 1e-6);
+  EXPECT_EQ(s.inside, 1.0);
 }
 
 }  // namespace

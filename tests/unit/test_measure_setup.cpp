@@ -77,6 +77,24 @@ TEST(MeasureSetup, CheckNamesWhatWillBeDone) {
   EXPECT_TRUE(found.facts.contains("slow-dynamics soft-solid")) << found.facts.dump();
 }
 
+/// sqrt(E/rho) is 14.14 m/s.
+TEST(MeasureSetup, EachPlaneThatComesFastIsNamed) {
+  const auto warnings = [](const char* least_work, const char* published) {
+    return speed_warnings(read(std::string("relaxation = \"slow-dynamics\"\n[measure.least_work]\napproach_speed = ") +
+                                   least_work + "\n[measure.published]\napproach_speed = " + published,
+                               "[reference]\nrelaxation = \"published\"\n[reference.soft_solid]\ndeltas = [0.1]\n"));
+  };
+  EXPECT_TRUE(speed_warnings(read("")).empty());
+  EXPECT_TRUE(warnings("1.4", "1.4").empty());
+  for (const bool published : {false, true}) {
+    const auto said = published ? warnings("1.0", "2.83") : warnings("2.83", "1.0");
+    ASSERT_EQ(said.size(), 1U);
+    const std::string key = published ? "[measure.published]" : "[measure.least_work]";
+    EXPECT_TRUE(said[0].starts_with(key + " approach_speed = 2.83 m/s is 0.2 of sqrt(E/rho)")) << said[0];
+  }
+  EXPECT_EQ(warnings("2.0", "2.0").size(), 2U);
+}
+
 /// Time is that of a core that does nothing else; where there is none, it says so.
 TEST(Findings, TimeSaysWhatItAssumes) {
   EXPECT_EQ(busy_text(0.4, 1), "");

@@ -187,8 +187,9 @@ MacroCurve mean_field_of(const OneSample& one, std::size_t sample) {
   const MacroCurve& truth = one.truth.curves[sample];
   const double pressure = spec_of(one.truth).start_pressure;
   const CellCard& card = *one.model.card;
-  if (is_shear(truth.test)) throw UnusableResult("the mean field knows no shear");
-  if (truth.test == MacroTest::stages) throw UnusableResult("the mean field knows no way back");
+  if (is_shear(truth.test)) throw UnusableResult("a mean field does not apply to shear");
+  if (truth.test == MacroTest::stages)
+    throw UnusableResult("a mean field does not apply to tests in stages, such as unloading");
   double onset = kNaN;
   if (one.model.start == ModelStart::density) {
     const CoarseAndFine parts =

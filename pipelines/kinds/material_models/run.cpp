@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "common/io/text_file.h"
@@ -52,7 +54,10 @@ Outcome run_material_models(const MaterialModelsScene& scene, const Run& run) {
 void check_models(const MaterialModelsScene& scene, Findings& out) {
   check_variants(scene.material, out);
   if (!scene.models.empty()) out.lines += "  the time of the models is not in what is said below\n";
-  for (const MaterialModel& m : scene.models) out.lines += "  model " + m.name + ": " + to_string(m.kind) + "\n";
+  for (const MaterialModel& m : scene.models)
+    out.lines +=
+        fmt::format("  model {}: {}{}\n", m.name, to_string(m.kind),
+                    m.bands > 0 ? fmt::format(", and once more for each of {} draws of its card", m.bands) : "");
 }
 
 /// As SceneKind::starter.

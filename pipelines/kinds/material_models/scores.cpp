@@ -148,34 +148,41 @@ void add_costs(const Pairs& pairs, ModelScore& s) {
   if (model.contact_evaluations == 0) s.evaluations = s.seconds = s.seconds_all = kInfinity;
 }
 
-/// Half width of the 95 % band of one sample at its points, by Student's t over its draws; empty where fewer than two
-/// draws came through.
-std::vector<double> half_widths(const ModelRun& run, std::size_t sample, std::size_t points) {
-  std::vector<std::vector<double>> values(points);
-  for (const std::vector<MacroCurve>& draw : run.drawn) {
-    const MacroCurve& c = draw[sample];
-    if (!c.usable || c.stress_axial.size() != points) continue;
-    for (std::size_t k = 0; k < points; ++k) values[k].push_back(c.stress_axial[k]);
-  }
+/// The draws of one sample that came through all its points.
+std::vector<const MacroCurve*> whole_draws(const ModelRun& run, std::size_t sample, std::size_t points) {
+  std::vector<const MacroCurve*> out;
+  for (const std::vector<MacroCurve>& draw : run.drawn)
+    if (const MacroCurve& c = draw[sample]; c.usable && c.stress_axial.size() == points) out.push_back(&c);
+  return out;
+}
+
+/// Half width of their 95 % band at every point, by Student's t; empty with fewer than two draws.
+std::vector<double> half_widths(const std::vector<const MacroCurve*>& draws, std::size_t points) {
+  if (draws.size() < 2) return {};
   std::vector<double> out;
-  for (const std::vector<double>& at : values) {
-    if (at.size() < 2) return {};
-    out.push_back(student95(static_cast<double>(at.size() - 1)) * mean_error(at).deviation);
+  for (std::size_t k = 0; k < points; ++k) {
+    std::vector<double> values;
+    for (const MacroCurve* c : draws) values.push_back(c->stress_axial[k]);
+    out.push_back(student95(static_cast<double>(values.size() - 1)) * mean_error(values).deviation);
   }
   return out;
 }
 
-/// Width of the band and share of the points in it; NaN without draws.
+/// Width of the band and share of the points in it; NaN without draws. Draws that break off are counted in the remark:
+/// a band of the others may be too narrow.
 void add_band(const ModelRun& run, const Pairs& pairs, const std::vector<bool>& given, std::size_t first,
               ModelScore& s) {
   double width2 = 0.0;
   double size2 = 0.0;
   double points = 0.0;
   double held = 0.0;
+  std::size_t broke_off = 0;
   for (std::size_t pair = 0; pair < pairs.truth.size(); ++pair) {
     const std::vector<double>& truth = pairs.truth[pair].stress_axial;
     const std::vector<double>& model = pairs.model[pair].stress_axial;
-    const std::vector<double> half = half_widths(run, pairs.sample[pair], model.size());
+    const std::vector<const MacroCurve*> draws = whole_draws(run, pairs.sample[pair], model.size());
+    broke_off += run.drawn.size() - draws.size();
+    const std::vector<double> half = half_widths(draws, model.size());
     for (std::size_t k = first; k < half.size(); ++k) {
       if (k < given.size() && given[k]) continue;
       width2 += half[k] * half[k];
@@ -186,6 +193,9 @@ void add_band(const ModelRun& run, const Pairs& pairs, const std::vector<bool>& 
   }
   s.band = size2 > 0.0 ? std::sqrt(width2 / size2) : kNaN;
   s.inside = points > 0.0 ? held / points : kNaN;
+  if (broke_off > 0)
+    append_part(s.remark, fmt::format("{} of {} curves of draws of the card break off: the band is without them",
+                                      broke_off, run.drawn.size() * pairs.truth.size()));
 }
 
 std::string percent(double x) { return percent_text(x, {1, true, true}, "-"); }
@@ -305,8 +315,9 @@ std::string console_summary(const std::vector<ModelScore>& scores) {
     if (std::isfinite(s.band))
       text += fmt::format("; 95 % band ±{:.0f} % of the axial stress, which holds {:.0f} % of the points",
                           100.0 * s.band, 100.0 * s.inside);
-    text += fmt::format("; {} times fewer evaluations, {} times faster{}\n", times(s.evaluations), times(s.seconds),
-                        s.remark.empty() ? "" : "; " + s.remark);
+    if (std::isfinite(s.evaluations))  // a mean field evaluates nothing
+      text += fmt::format("; {} times fewer evaluations, {} times faster", times(s.evaluations), times(s.seconds));
+    text += (s.remark.empty() ? "" : "; " + s.remark) + "\n";
   }
   return text;
 }

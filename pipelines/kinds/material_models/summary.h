@@ -53,8 +53,8 @@ void fields(auto&& visit, Of<ModelScore> auto& s) {
   visit("truth_error", s.truth_error,
         Means{"standard error of the mean axial stress of the truth at the end, relative", "1"});
   visit("band", s.band,
-        Means{"half width of the 95 % band that the errors of the card give the axial stress, over the curve and over "
-              "the truth as the error is",
+        Means{"half width of the 95 % band of the axial stress by draws of the card, relative to the truth over the "
+              "curve as the error is",
               "1"});
   visit("inside", s.inside, Means{"share of the points beyond 1 % strain, of all samples, within that band", "1"});
   visit("evaluations", s.evaluations, Means{"contact evaluations, or faces of cells, truth over model", "1"});

@@ -329,12 +329,15 @@ Range approach_speeds(const SoftParticleSpec& spec, double fastest) {
 std::vector<std::string> speed_warnings(const MeasureSetup& setup) {
   const double wave_speed = std::sqrt(setup.spec.youngs_modulus / setup.spec.density);
   std::vector<std::string> out;
-  for (const double speed : {setup.least_work.approach_speed, setup.published.approach_speed})
+  const auto add = [&](const char* table, double speed) {
     if (speed > kFastestApproach * wave_speed)
       out.push_back(fmt::format(
-          "approach_speed = {:.3g} m/s is {:.2g} of sqrt(E/rho): above {:g} waves rearrange the grains, and "
-          "forces need not be those of slow loading",
-          speed, speed / wave_speed, kFastestApproach));
+          "[measure.{}] approach_speed = {:.3g} m/s is {:.2g} of sqrt(E/rho): above {:g} waves rearrange the grains, "
+          "and forces need not be those of slow loading",
+          table, speed, speed / wave_speed, kFastestApproach));
+  };
+  add("least_work", setup.least_work.approach_speed);
+  add("published", setup.published.approach_speed);
   return out;
 }
 
