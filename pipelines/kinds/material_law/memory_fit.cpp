@@ -105,7 +105,7 @@ class PathFit {
   LeastSquaresFit run(const std::vector<double>& start) {
     LeastSquaresOptions options;
     options.thorough = false;
-    options.max_iterations = 60;
+    options.max_iterations = 300;
     return fit_least_squares(problem_, {start}, options);
   }
 
