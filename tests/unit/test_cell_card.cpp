@@ -210,7 +210,7 @@ TEST(CellCardFile, NumbersAreSetByTheirKeysWithinTheirRanges) {
 TEST(CellCardFile, SlipThatGivesEnergyBackIsRefused) {
   const TemporaryDirectory directory;
   CellCard card = card_with_memory();
-  card.memory->dilatancy.value = 2.6;  // (1 + c)/c = 2.502
+  card.memory->dilatancy = {2.6, 0.05, 2.5, 2.7};  // (1 + c)/c = 2.502
   write_cell_card(card, directory.file("card.toml"));
   try {
     (void)read_cell_card(directory.file("card.toml"));
@@ -255,6 +255,9 @@ TEST(CellCardFile, NothingWrongIsTaken) {
             std::string::npos);
   EXPECT_NE(
       complaint_of("K = ", R"(K = { value = 1.0, standard_error = 0.1, low = "nan", high = 1.0 })").find("high end"),
+      std::string::npos);
+  EXPECT_NE(
+      complaint_of("K = ", "K = { value = 1.0, standard_error = 0.1, low = 0.0, high = 0.9 }").find("below value"),
       std::string::npos);
   EXPECT_NE(complaint_of("K = ", "K = { value = 1.0, standard_error = -0.1, low = 0.0, high = 1.0 }").find("error"),
             std::string::npos);
