@@ -139,6 +139,17 @@ TEST_F(ParticlesBadInput, StepsThatATangentialSpringMakesUnstable) {
   EXPECT_EQ(facts("step = 1e-4\n")["time_step"], 1e-4) << "without friction the spring bears nothing";
 }
 
+/// They stand in messages, summaries and reports.
+TEST_F(ParticlesBadInput, NamesAreOneLine) {
+  const std::string wall = "shape = \"plane\"";
+  for (const char* name : {R"(a\nb)", R"(a\tb)", R"(a\u001b[31m)", R"(a\u007f)"}) {
+    expect(wall, wall + "\nname = \"" + name + "\"", {"scene.toml:29: name", "must be one line of text"});
+    expect("[material.bare]", std::string("[material.\"") + name + "\"]",
+           {"scene.toml:6: a", "must be one line of text"});
+  }
+  expect(wall, wall + "\nname = \"a\\u001b[31m\"", {"name = \"a [31m\""});
+}
+
 TEST_F(ParticlesBadInput, EmptyScenes) {
   expect_text("kind = \"particles\"\n[time]\nend = 1.0\n", {"scene.toml:1", "no particle"});
   expect_text("kind = \"particle\"\n", {"scene.toml:1: kind", "nearest is \"particles\""});
