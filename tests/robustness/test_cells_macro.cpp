@@ -314,10 +314,10 @@ TEST_F(CellsMacro, BandsSayWhatTheCardDoesNotTell) {
   };
   CellCard card = sample_card();
   card.correlation = {{"K", "n", "xi"}, {1.0, 0.9, -0.9, 0.9, 1.0, 0.9, -0.9, 0.9, 1.0}};
-  refused(card, {"cells.toml: bands: [correlation]", "is not positive"});
+  refused(card, {"cells.toml: [correlation]", "is not positive"});
   card.correlation = {{"K"}, {1.0}};
   card.modulus.high = HUGE_VAL;
-  refused(card, {"cells.toml: bands: the interval of K is not known"});
+  refused(card, {"cells.toml: the interval of K is not known"});
 }
 
 /// At a given density all stresses go with K: a band of K alone is as wide as the interval of K.
