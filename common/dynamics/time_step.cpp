@@ -24,7 +24,7 @@ MultiContactSum<3> crowded(const Law& law, ContactState<3> state) {
   return sum;
 }
 
-struct Stiffness {
+struct ContactStiffness {
   double along = 0.0;   ///< of the normal spring, or more where another one sets a shorter step [N/m]
   double across = 0.0;  ///< of a tangential spring that is stiffer than the normal one, else 0 [N/m]
 };
@@ -32,18 +32,18 @@ struct Stiffness {
 /// The stiffest of a contact, with which it loads or begins to unload. Springs of rolling are set by hand, and may be
 /// as stiff as a scene likes: K_r m/I, I = 2/5 m r^2.
 template <class Law>
-Stiffness stiffness_of(const Law& law, const ContactState<3>& state, double radius) {
+ContactStiffness stiffness_of(const Law& law, const ContactState<3>& state, double radius) {
   const ContactResponse<3> r = steepest_response(law, state);
-  Stiffness out{r.normal_stiffness, 0.0};
+  ContactStiffness out{r.normal_stiffness, 0.0};
   if (has_grip(law) && r.tangential_stiffness > r.normal_stiffness) out.across = r.tangential_stiffness;
   if constexpr (Law::traits.has_rolling && !Law::traits.is_fitted)
     out.along = std::max(out.along, 2.5 * r.rolling_stiffness / (radius * radius));
   return out;
 }
 
-Stiffness stiffness_of(const AnyLaw& any, double radius, double inverse_mass, double overlap_ratio) {
+ContactStiffness stiffness_of(const AnyLaw& any, double radius, double inverse_mass, double overlap_ratio) {
   return std::visit(
-      [&]<class Law>(const Law& law) -> Stiffness {
+      [&]<class Law>(const Law& law) -> ContactStiffness {
         ContactState<3> state;
         state.overlap = radius * (Law::traits.is_fitted ? kSoftOverlap : overlap_ratio);
         state.normal = {{1.0, 0.0, 0.0}};
@@ -86,7 +86,7 @@ template <int D>
 StepLimit step_limit(const System<D>& s, double overlap_ratio) {
   StepLimit limit;
   double smallest = 0.0;
-  for_pairings(s, overlap_ratio, [&](Slot i, std::int32_t law, const Stiffness& k) {
+  for_pairings(s, overlap_ratio, [&](Slot i, std::int32_t law, const ContactStiffness& k) {
     const double t2 = 1.0 / (s.particles.inverse_mass[static_cast<std::size_t>(i)] * k.along);
     if (limit.body >= 0 && t2 >= smallest) return;
     smallest = t2;
@@ -99,7 +99,7 @@ template <int D>
 SlideLimit slide_limit(const System<D>& s, double overlap_ratio) {
   SlideLimit limit;
   const auto& p = s.particles;
-  for_pairings(s, overlap_ratio, [&](Slot i, std::int32_t law, const Stiffness& k) {
+  for_pairings(s, overlap_ratio, [&](Slot i, std::int32_t law, const ContactStiffness& k) {
     const auto u = static_cast<std::size_t>(i);
     const double r = p.sphere[u].r;
     const double step = 1.0 / std::sqrt(k.across * (p.inverse_mass[u] + r * r * p.inverse_inertia[u]));
