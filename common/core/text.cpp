@@ -21,6 +21,19 @@ std::string shell_word(const std::string& word) {
   return out + "'";
 }
 
+namespace {
+
+bool is_control(unsigned char c) { return c < 0x20 || c == 0x7f; }
+
+}  // namespace
+
+bool is_one_line(std::string_view text) { return std::ranges::none_of(text, is_control); }
+
+std::string on_one_line(std::string text) {
+  std::ranges::replace_if(text, is_control, ' ');
+  return text;
+}
+
 std::string without_trailing_zeros(std::string text) {
   if (text.find('.') == std::string::npos) return text;
   text.erase(text.find_last_not_of('0') + 1);

@@ -39,6 +39,12 @@ void append_part(std::string& text, std::string_view part, std::string_view sepa
 /// A word as a shell reads it back: in quotes where it needs them.
 std::string shell_word(const std::string& word);
 
+/// Whether a text has no control characters: line breaks, tabs, what moves the cursor of a terminal.
+bool is_one_line(std::string_view text);
+
+/// The text with spaces in place of its control characters.
+std::string on_one_line(std::string text);
+
 /// "0.25" of "0.250000", "1" of "1.00"; a text without a decimal point stays.
 std::string without_trailing_zeros(std::string text);
 

@@ -100,12 +100,31 @@ double read_real(const SceneTable& table, const std::string& key, const Range& r
   return word == "inf" ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
 }
 
+namespace {
+
+/// An interval holds its value: draws take the distances to its ends for errors. Both ends are 0 where a number was not
+/// fitted.
+void require_interval(const SceneTable& table, const Estimate& e) {
+  constexpr double kRounding = 1e-9;
+  if (e.low == 0.0 && e.high == 0.0) return;
+  if (e.low > e.high) table.throw_error("low", "must not be above the high end");
+  const double slack = kRounding * std::abs(e.value);
+  const auto away = [&](const char* where, const char* unknown) {
+    return fmt::format("must not be {} value = {}; an end that is not known is \"{}\"", where, real(e.value), unknown);
+  };
+  if (e.low > e.value + slack) table.throw_error("low", away("above", "-inf"));
+  if (e.high < e.value - slack) table.throw_error("high", away("below", "inf"));
+}
+
+}  // namespace
+
 Estimate read_estimate_text(const SceneTable& table, const Range& range) {
   Estimate e;
   e.value = table.number("value", Unit::none, range);
   e.standard_error = read_real(table, "standard_error", Range::not_negative());
   e.low = read_real(table, "low", Range::any());
   e.high = read_real(table, "high", Range::any());
+  require_interval(table, e);
   return e;
 }
 

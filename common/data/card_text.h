@@ -33,7 +33,7 @@ std::optional<Extrapolation> read_beyond(const SceneTable& table);
 std::string spec_text(const SoftParticleSpec& spec);
 SoftParticleSpec read_spec_text(const SceneTable& table, bool may_be_unknown);
 
-/// An inline table { value, standard_error, low, high }, and back; the value must be in range.
+/// An inline table { value, standard_error, low, high }, and back; the value must be in range and between the ends.
 std::string estimate_text(const Estimate& estimate);
 Estimate read_estimate_text(const SceneTable& table, const Range& range);
 

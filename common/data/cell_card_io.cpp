@@ -30,14 +30,19 @@ struct CardEntry {
   bool is_drawn = true;
 };
 
+/// Void ratios, and factors on them: grains that jam have less than one part in a hundred of solid nowhere.
+constexpr double kMostPores = 100.0;
+constexpr Range kPores{0.0, kMostPores, true, false};
+
 const std::array<CardEntry<CellCard>, 9>& cell_numbers() {
   using C = CellCard;
   static const std::array<CardEntry<C>, 9> numbers{
       {{"K", &C::modulus, Range::positive(), "p/E = K x^n"},
        {"n", &C::exponent, Range{1.0, kLargestExponent, true, false}, "its exponent", false},
-       {"e_J", &C::void_ratio, Range::positive(), "void ratio of the fines alone where they jam"},
-       {"e_c", &C::excess_alone, Range::positive(), "void ratio of the coarse grains alone where they jam"},
-       {"w_inf", &C::excess_many, Range::not_negative(), "excess pores beside coarse grains among many fines", false},
+       {"e_J", &C::void_ratio, kPores, "void ratio of the fines alone where they jam"},
+       {"e_c", &C::excess_alone, kPores, "void ratio of the coarse grains alone where they jam"},
+       {"w_inf", &C::excess_many, Range::closed(0.0, kMostPores), "excess pores beside coarse grains among many fines",
+        false},
        {"xi", &C::excess_decay, Range::positive(), "ratio of fines over which they fall to that"},
        {"mu_f", &C::friction, Range::not_negative(), "friction of faces"},
        {"chi", &C::stiffness, Range::positive(), "stiffness of their springs"},
@@ -236,7 +241,7 @@ void read_measured(const SceneTable& t, CellCard& card) {
 
 void read_preparations(const SceneTable& root, CellCard& card) {
   for (const SceneTable& t : root.tables("preparation")) {
-    PreparationFactor p{read_words_of(t, "name"), read_estimate(t.table("factor"), Range::positive())};
+    PreparationFactor p{read_words_of(t, "name"), read_estimate(t.table("factor"), kPores)};
     if (void_ratio_factor(card, p.preparation))
       t.throw_error("name",
                     p.preparation == card.preparation ? "is that of [measured], whose factor is 1" : "is used twice");

@@ -38,7 +38,7 @@ Joint<D> joint_of(const Source& source, const Law& law, std::size_t c, const Pai
   if constexpr (Law::traits.needs_particle_pass) source.give_sums(pair, state);
   const ContactResponse<D> r = steepest_response(law, state);
   out.kn = std::max(r.normal_stiffness, 0.0);
-  out.kt = 2.0 * r.tangential_stiffness;
+  out.kt = has_grip(law) ? 2.0 * r.tangential_stiffness : 0.0;
   out.eta = dashpots == Dashpots::count ? std::max(r.elastic_force - r.normal_force, 0.0) : 0.0;
   if constexpr (Law::traits.has_rolling) out.roll = 2.0 * r.rolling_stiffness;
   if constexpr (requires { law.rolling_dashpot(out.eta, state.constants); })

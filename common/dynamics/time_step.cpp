@@ -24,20 +24,26 @@ MultiContactSum<3> crowded(const Law& law, ContactState<3> state) {
   return sum;
 }
 
-/// The stiffest of a contact, with which it loads or begins to unload. Across the normal only springs of rolling are
-/// set by hand, and may be as stiff as a scene likes: K_r m/I, I = 2/5 m r^2.
+struct ContactStiffness {
+  double along = 0.0;   ///< of the normal spring, or more where another one sets a shorter step [N/m]
+  double across = 0.0;  ///< of a tangential spring that is stiffer than the normal one, else 0 [N/m]
+};
+
+/// The stiffest of a contact, with which it loads or begins to unload. Springs of rolling are set by hand, and may be
+/// as stiff as a scene likes: K_r m/I, I = 2/5 m r^2.
 template <class Law>
-double stiffness_of(const Law& law, const ContactState<3>& state, double radius) {
+ContactStiffness stiffness_of(const Law& law, const ContactState<3>& state, double radius) {
   const ContactResponse<3> r = steepest_response(law, state);
+  ContactStiffness out{r.normal_stiffness, 0.0};
+  if (has_grip(law) && r.tangential_stiffness > r.normal_stiffness) out.across = r.tangential_stiffness;
   if constexpr (Law::traits.has_rolling && !Law::traits.is_fitted)
-    return std::max(r.normal_stiffness, 2.5 * r.rolling_stiffness / (radius * radius));
-  else
-    return r.normal_stiffness;
+    out.along = std::max(out.along, 2.5 * r.rolling_stiffness / (radius * radius));
+  return out;
 }
 
-double stiffness_of(const AnyLaw& any, double radius, double inverse_mass, double overlap_ratio) {
+ContactStiffness stiffness_of(const AnyLaw& any, double radius, double inverse_mass, double overlap_ratio) {
   return std::visit(
-      [&]<class Law>(const Law& law) {
+      [&]<class Law>(const Law& law) -> ContactStiffness {
         ContactState<3> state;
         state.overlap = radius * (Law::traits.is_fitted ? kSoftOverlap : overlap_ratio);
         state.normal = {{1.0, 0.0, 0.0}};
@@ -48,7 +54,7 @@ double stiffness_of(const AnyLaw& any, double radius, double inverse_mass, doubl
           state.sum_i = state.sum_j = &sum;
           return stiffness_of(law, state, radius);
         } else if constexpr (Law::traits.acts_at_distance) {
-          return law.stiffest(radius);
+          return {law.stiffest(radius), 0.0};
         } else {
           // Beyond the end of a clamped law the force stays and the way back grows: there it is less steep.
           if constexpr (Law::traits.has_unloading && Law::traits.has_onset)
@@ -59,30 +65,52 @@ double stiffness_of(const AnyLaw& any, double radius, double inverse_mass, doubl
       any);
 }
 
-}  // namespace
-
-template <int D>
-StepLimit step_limit(const System<D>& s, double overlap_ratio) {
-  StepLimit limit;
+/// work(body, law, stiffness) for every body that forces move and every law that its material takes part in.
+template <int D, class Work>
+void for_pairings(const System<D>& s, double overlap_ratio, Work&& work) {
   const auto& p = s.particles;
-  double smallest = 0.0;
   for (Slot i = 0; i < p.grains + p.shells; ++i) {
     const auto u = static_cast<std::size_t>(i);
     if (!(p.inverse_mass[u] > 0.0)) continue;
     for (std::int32_t m = 0; m < s.laws.materials(); ++m) {
       const std::int32_t law = s.laws.index(p.material[u], m);
       if (law == LawSet::kNoContact) continue;
-      const double k = stiffness_of(s.laws.law(law), p.sphere[u].r, p.inverse_mass[u], overlap_ratio);
-      const double t2 = 1.0 / (p.inverse_mass[u] * k);
-      if (limit.body >= 0 && t2 >= smallest) continue;
-      smallest = t2;
-      limit = {std::sqrt(t2), i, law, k};
+      work(i, law, stiffness_of(s.laws.law(law), p.sphere[u].r, p.inverse_mass[u], overlap_ratio));
     }
   }
+}
+
+}  // namespace
+
+template <int D>
+StepLimit step_limit(const System<D>& s, double overlap_ratio) {
+  StepLimit limit;
+  double smallest = 0.0;
+  for_pairings(s, overlap_ratio, [&](Slot i, std::int32_t law, const ContactStiffness& k) {
+    const double t2 = 1.0 / (s.particles.inverse_mass[static_cast<std::size_t>(i)] * k.along);
+    if (limit.body >= 0 && t2 >= smallest) return;
+    smallest = t2;
+    limit = {std::sqrt(t2), i, law, k.along};
+  });
+  return limit;
+}
+
+template <int D>
+SlideLimit slide_limit(const System<D>& s, double overlap_ratio) {
+  SlideLimit limit;
+  const auto& p = s.particles;
+  for_pairings(s, overlap_ratio, [&](Slot i, std::int32_t law, const ContactStiffness& k) {
+    const auto u = static_cast<std::size_t>(i);
+    const double r = p.sphere[u].r;
+    const double step = 1.0 / std::sqrt(k.across * (p.inverse_mass[u] + r * r * p.inverse_inertia[u]));
+    if (step < limit.step) limit = {step, i, law};
+  });
   return limit;
 }
 
 template StepLimit step_limit<2>(const System<2>&, double);
 template StepLimit step_limit<3>(const System<3>&, double);
+template SlideLimit slide_limit<2>(const System<2>&, double);
+template SlideLimit slide_limit<3>(const System<3>&, double);
 
 }  // namespace softgrain

@@ -40,6 +40,28 @@ struct StepLimit {
 template <int D>
 StepLimit step_limit(const System<D>& system, double overlap_ratio = 0.05);
 
+/// Whether the tangential spring of a law ever bears anything; without friction it slides at once.
+template <class Law>
+bool has_grip(const Law& law) {
+  if constexpr (requires { law.friction; })
+    return law.friction > 0.0;
+  else
+    return Law::traits.has_tangential;
+}
+
+/// The tangential spring that bears the shortest step.
+struct SlideLimit {
+  double step = std::numeric_limits<double>::infinity();  ///< largest stable step [s]
+  Slot body = -1;                                         ///< the body that sets it
+  std::int32_t law = -1;                                  ///< the law that sets it
+};
+
+/// Two equal bodies that slide against each other and turn with it: h^2 Kt (1/m + r^2/I) < 1, as Kt counts twice in
+/// stable_step(). Pairings, overlaps and soft contacts as in step_limit(). Springs softer than that along the normal
+/// are left to step_limit(), as are those of cohesive disks, which it takes for stiffnesses like others.
+template <int D>
+SlideLimit slide_limit(const System<D>& system, double overlap_ratio = 0.05);
+
 /// Largest fraction of StepLimit::natural_time that is accepted for a step.
 inline constexpr double kLargestStepFraction = 0.6;
 

@@ -152,6 +152,8 @@ std::optional<CsvFile> CsvFile::find(const std::string& bytes, const std::string
 
 void CsvFile::read_lines(const std::string& bytes) {
   const std::string text = plain_signs(utf8_of(bytes));
+  if (text.find('\0') != std::string::npos)
+    throw InputError(path_ + ": is a binary file, not a table: save it as text (CSV), from a spreadsheet for instance");
   int number = 1;
   for (std::size_t at = 0; at < text.size(); ++number) {
     const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());

@@ -129,6 +129,11 @@ class SceneTable {
   /// A text that must hold more than spaces where it is given: the name of something, or of a file.
   [[nodiscard]] std::string filled_text(const Key& key) const;
   [[nodiscard]] std::string filled_text(const Key& key, const std::string& fallback) const;
+  /// The same without control characters: a name that stands in messages, tables and files.
+  [[nodiscard]] std::string line_text(const Key& key) const;
+  [[nodiscard]] std::string line_text(const Key& key, const std::string& fallback) const;
+  /// What line_text() asks of a name, where the name is that of a table.
+  void require_line(const std::string& key, const std::string& name) const;
   /// One of a list of words; the error names the nearest.
   [[nodiscard]] std::string choice(const Key& key, std::initializer_list<const char*> words) const;
   [[nodiscard]] std::string choice(const Key& key, const std::vector<const char*>& words) const;

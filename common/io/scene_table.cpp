@@ -38,9 +38,7 @@ std::string shown(const toml::node& node) {
   } else {
     node.visit([&](const auto& concrete) { out << concrete; });
   }
-  std::string text = out.str();
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return cut(text);
+  return cut(on_one_line(out.str()));
 }
 
 const toml::node* SceneTable::Impl::find(const std::string& key) {
@@ -82,9 +80,10 @@ std::string SceneTable::Impl::where(const std::string& key, const toml::node& no
 
 SceneError SceneTable::Impl::error_at(const std::string& key, const toml::node* node,
                                       const std::string& problem) const {
-  if (node == nullptr) return {.line = line, .text = place + ": " + key + ": " + problem};
+  const std::string name_of_key = on_one_line(key);
+  if (node == nullptr) return {.line = line, .text = place + ": " + name_of_key + ": " + problem};
   const std::string value = node->is_table() || node->is_array_of_tables() ? "" : " = " + shown(*node);
-  return {.line = line_of(*node), .text = where(key, *node) + ": " + key + value + ": " + problem};
+  return {.line = line_of(*node), .text = where(key, *node) + ": " + name_of_key + value + ": " + problem};
 }
 
 void SceneTable::Impl::throw_error(const std::string& key, const toml::node& node, const std::string& problem) const {
@@ -113,7 +112,7 @@ std::shared_ptr<SceneTable::Impl> SceneTable::Impl::make_child(const std::string
   auto child = std::make_shared<Impl>();
   child->document = document;
   child->content = table;
-  child->name = dotted(key);
+  child->name = on_one_line(dotted(key));
   child->path = path.empty() ? key : path + "." + key;
   child->element = is_element;
   child->place = table == nullptr ? place : where(key, *table);
@@ -167,7 +166,7 @@ void SceneTable::Impl::find_unknown(std::vector<SceneError>& out, const Impl& to
       const std::string help = help_for_unknown(key, node, top);
       const std::string scope = out_of_scope_text(key) + (help.starts_with("nearest") ? "" : setting_beside(node));
       out.push_back({.line = line_of(node),
-                     .text = where(key, node) + ": unknown key '" + key + "' " + location() +
+                     .text = where(key, node) + ": unknown key '" + on_one_line(key) + "' " + location() +
                              (help.empty() ? "" : "; " + help) + (scope.empty() ? "" : "; " + scope)});
     }
   for (const auto& [key, tables] : children)

@@ -273,6 +273,20 @@ std::string SceneTable::filled_text(const Key& key, const std::string& fallback)
   return value;
 }
 
+void SceneTable::require_line(const std::string& key, const std::string& name) const {
+  if (!is_one_line(name)) add_error(key, "must be one line of text, without control characters");
+}
+std::string SceneTable::line_text(const Key& key) const {
+  std::string value = filled_text(key);
+  require_line(key.name, value);
+  return value;
+}
+std::string SceneTable::line_text(const Key& key, const std::string& fallback) const {
+  std::string value = filled_text(key, fallback);
+  require_line(key.name, value);
+  return value;
+}
+
 std::string SceneTable::choice(const Key& key, std::initializer_list<const char*> words) const {
   return read_text(*impl_, key, {words.begin(), words.size()}, nullptr);
 }

@@ -101,6 +101,11 @@ void require_readable_file(const std::string& path) {
   if (!good) throw IoError(path + ": cannot be read: " + reason);
 }
 
+void require_no_pipe(const std::string& path) {
+  std::error_code trouble;
+  if (fs::is_fifo(fs::status(path, trouble))) throw IoError(path + ": is a pipe, not a file");
+}
+
 std::string trimmed(const std::string& text) {
   constexpr const char* kSpace = " \t\r\n";
   const std::size_t first = text.find_first_not_of(kSpace);

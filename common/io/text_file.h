@@ -47,6 +47,9 @@ std::string read_text(const std::string& path);
 /// (which would keep the program waiting for ever), and its first byte comes. Throws IoError naming the path.
 void require_readable_file(const std::string& path);
 
+/// Throws IoError where a pipe stands in place of a file that is to be written: opening it would wait for a reader.
+void require_no_pipe(const std::string& path);
+
 /// Creates the directory (and parents) and proves that a file can be written there. Throws IoError.
 void require_writable_directory(const std::string& path);
 

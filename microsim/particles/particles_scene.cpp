@@ -128,6 +128,18 @@ void require_resolved(const Scene& scene, const System<D>& s) {
   }
 }
 
+/// With a longer reach every disk would be a neighbour of nearly all others.
+template <int D>
+void require_short_reach(const SceneTable& root, const Particles<D>& p) {
+  constexpr double kMostRadii = 10.0;
+  double largest = 0.0;
+  for (Slot i = 0; i < p.grains; ++i) largest = std::max(largest, p.sphere[at(i)].r);
+  for (const SceneTable& t : root.tables("contact"))
+    if (t.text("law") == "cohesive" && t.has("range") && t.number("range", Unit::length) > kMostRadii * largest)
+      t.add_error("range", fmt::format("must be at most {:.6g} m, {:g} radii of the largest particle",
+                                       kMostRadii * largest, kMostRadii));
+}
+
 /// Times that come out as whole numbers of steps, where that makes a difference.
 constexpr double kNotedDifference = 0.01;
 
@@ -195,6 +207,7 @@ void validate_combination(const Scene& scene, const System<D>& s, const SceneLaw
   require_contacts(scene, s);
   require_resolved(scene, s);
   require_partners(scene, s, laws);
+  require_short_reach(root, s.particles);
   require_wide_cell(root, s);
 }
 

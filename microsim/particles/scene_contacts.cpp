@@ -41,6 +41,7 @@ std::vector<Material> read_materials(const SceneTable& root, int dimension) {
   const SceneTable tables =
       root.table_or_empty({"material", "materials of particles and walls, a table with a free name each"});
   for (const std::string& name : tables.keys()) {
+    tables.require_line(name, name);
     if (name == "rigid") tables.add_error(name, "this name is taken by the rigid material that is always there");
     out.push_back(read_material(tables.named({name, "properties of the material of this name"}), name, dimension));
   }
@@ -213,8 +214,11 @@ void read_contact(const SceneTable& t, const std::vector<Material>& materials, i
   if (law == "law-card") soft.read(t, pair);
   const auto laws = static_cast<std::size_t>(out.laws.size());
   out.description.resize(laws, law + " of " + pair.text + " (" + t.where("pair") + ")");
-  out.scopes.resize(laws,
-                    law == "cohesive" && t.number("adhesion", Unit::force) > 0.0 ? LawScope::grains : LawScope::any);
+  const auto attracts = [](const AnyLaw& any) {
+    return std::visit([](const auto& one) { return reach_of(one) > 0.0; }, any);
+  };
+  const bool far = law == "cohesive" && attracts(out.laws.law(out.laws.index(pair.first, pair.second)));
+  out.scopes.resize(laws, far ? LawScope::grains : LawScope::any);
 }
 
 /// Elastic constants of materials whose contacts do not go by them. They describe the material and may stay, but a

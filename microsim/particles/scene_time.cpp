@@ -96,9 +96,9 @@ double shortest_reach(const System<D>& s, double end) {
   return speed > 0.0 ? reach / speed : kForever;
 }
 
-template <int D>
-std::string limit_sentence(const StepLimit& limit, const System<D>& s,
-                           const std::vector<std::string>& law_description) {
+/// Limit: StepLimit or SlideLimit.
+template <int D, class Limit>
+std::string limit_sentence(const Limit& limit, const System<D>& s, const std::vector<std::string>& law_description) {
   const double r = s.particles.sphere[static_cast<std::size_t>(limit.body)].r;
   return "set by particle " + std::to_string(limit.body) + " (radius " + shown(r) + " m) with " +
          law_description[static_cast<std::size_t>(limit.law)];
@@ -140,6 +140,9 @@ template <int D>
 void choose_step(const SceneTable& t, const System<D>& s, double fraction, SceneTime& out) {
   double wanted = kForever;
   limit_to(fraction * out.natural_time, out.stiffest, wanted, out);
+  limit_to(kLargestStableShare * out.slide_step,
+           shown(kLargestStableShare) + " of the largest stable step of a tangential spring, " + out.gripping, wanted,
+           out);
   limit_to(out.contact_time / kStepsPerImpact,
            "set by the shortest impact: 1/" + shown(kStepsPerImpact) + " of " + shown(out.contact_time) + " s", wanted,
            out);
@@ -171,6 +174,10 @@ void take_step(const SceneTable& t, const System<D>& s, double largest, SceneTim
   if (out.step > limit)
     t.throw_error("step",
                   "above the stable limit " + shown(limit) + " s = " + shown(largest) + " sqrt(m/k), " + out.stiffest);
+  const double sliding = kLargestStableShare * out.slide_step;
+  if (out.step > sliding)
+    t.throw_error("step", "above the stable limit " + shown(sliding) + " s = " + shown(kLargestStableShare) +
+                              " of the largest stable step of a tangential spring, " + out.gripping);
   judge_contacts(s, out.step, Dashpots::leave_out, out);
   const double crowded = kLargestStableShare * out.stable_step;
   if (out.step > crowded)
@@ -236,6 +243,9 @@ SceneTime read_time(const SceneTable& t, const System<D>& system, const std::vec
   const StepLimit limit = step_limit(system);
   out.natural_time = limit.body >= 0 ? limit.natural_time : kForever;
   if (limit.body >= 0) out.stiffest = limit_sentence(limit, system, law_description);
+  const SlideLimit slide = slide_limit(system);
+  out.slide_step = slide.step;
+  if (slide.body >= 0) out.gripping = limit_sentence(slide, system, law_description);
   out.contact_time = shortest_impact(system, out.end);
   out.reach_time = shortest_reach(system, out.end);
   out.stable_step = kForever;

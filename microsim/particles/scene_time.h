@@ -22,15 +22,17 @@ struct SceneTime {
   bool is_given = false;           ///< the scene says the step in seconds
   std::string stiffest;            ///< sentence: which body and law set the natural time
   std::string limited_by;          ///< sentence: what the step comes from
-  std::string crowded;             ///< sentence: which body and contacts set the stable step; empty: one contact does
+  double slide_step = 0.0;  ///< largest stable step of tangential springs above normal ones; infinite without [s]
+  std::string gripping;     ///< sentence: which body and law set the slide step
+  std::string crowded;      ///< sentence: which body and contacts set the stable step; empty: one contact does
 };
 
 /// Table [time]: `step` "auto" or seconds, `end` or the number of `steps`, `step_fraction` of the natural time (0.05),
 /// `warm_up_steps` (0). Automatic steps are also at most 1/200 of the shortest impact, 1/10 of the reach time and
-/// kLargestStableShare of the stable step of the contacts that there are at the start, and divide `end`. Throws
-/// InputError for steps above kLargestStepFraction of the natural time, of disks 0.2, or that share of the stable step
-/// of the springs alone. `law_description`: per law, for messages. `valid`: the system is that of the scene; else steps
-/// are not judged.
+/// kLargestStableShare of the slide step and of the stable step of the contacts that there are at the start, and divide
+/// `end`. Throws InputError for steps above kLargestStepFraction of the natural time, of disks 0.2, or that share of
+/// the slide step or of the stable step of the springs alone. `law_description`: per law, for messages. `valid`: the
+/// system is that of the scene; else steps are not judged.
 template <int D>
 SceneTime read_time(const SceneTable& time, const System<D>& system, const std::vector<std::string>& law_description,
                     bool valid);

@@ -90,8 +90,8 @@ std::vector<SceneWall<D>> read_walls(const SceneTable& root, const std::vector<M
     SceneWall<D> wall;
     read_shape(t, wall);
     read_motion(t, wall);
-    wall.name = t.filled_text({"name", "name of the wall", "\"wall-1\", \"wall-2\" and so on"},
-                              "wall-" + std::to_string(walls.size() + 1));
+    wall.name = t.line_text({"name", "name of the wall", "\"wall-1\", \"wall-2\" and so on"},
+                            "wall-" + std::to_string(walls.size() + 1));
     require_new_name(t, walls, wall.name);
     wall.where = t.where("shape");
     t.check([&] { wall.body.material = material_index(materials, t, {"material", "material of the wall"}); });

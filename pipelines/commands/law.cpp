@@ -138,7 +138,7 @@ std::vector<ValueTable> card_tables(const LawOptions& o, const FittedLaw& file, 
     const bool named = std::ranges::find(wanted, kind) != wanted.end();
     if (wanted.empty() ? pair == nullptr || !has_numbers(pair->status) : !named) continue;
     const auto values = [&](const std::vector<double>& at) {
-      return law::card_values(*file.card(), kind, at, o.beyond, deepest);
+      return complaining_of(file, [&] { return law::card_values(*file.card(), kind, at, o.beyond, deepest); });
     };
     if (pair == nullptr) (void)values({});  // says what is wrong
     ValueTable t;
@@ -181,14 +181,19 @@ law::MultiContactQuestion fraction_question(const LawOptions& o) {
   return q;
 }
 
+law::MultiContactAnswer answer_of(const FittedLaw& file, const law::MultiContactQuestion& q,
+                                  const std::vector<double>& deltas) {
+  return complaining_of(file, [&] { return law::multi_contact_values(*file.table(), q, deltas); });
+}
+
 ValueTable table_values(const LawOptions& o, const FittedLaw& file, std::int64_t steps) {
   law::MultiContactQuestion q = fraction_question(o);
   q.arrangement = o.arrangement;
   q.partner = o.partner;
   q.ratio = positive(o, "--ratio", o.ratio, 1e6);
   q.shallow = positive(o, "--shallow", o.shallow, 1.0);
-  const double end = law::multi_contact_values(*file.table(), q, {}).overlap_max;
-  const law::MultiContactAnswer answer = law::multi_contact_values(*file.table(), q, overlaps(o, end, steps));
+  const double end = answer_of(file, q, {}).overlap_max;
+  const law::MultiContactAnswer answer = answer_of(file, q, overlaps(o, end, steps));
   ValueTable t;
   t.law = question_text(q, answer);
   t.status = answer.entry.find(answer.form)->status;
@@ -303,7 +308,7 @@ std::string lammps_file(const LawOptions& o, const FittedLaw& file, const ValueU
                                             units.modulus),
                                 "a soft particle with several neighbours is stiffer than a pair potential can say"};
   if (file.table() != nullptr) {
-    const law::MultiContactAnswer a = law::multi_contact_values(*file.table(), fraction_question(o), {});
+    const law::MultiContactAnswer a = answer_of(file, fraction_question(o), {});
     head.push_back(fmt::format("the {} law at solid fraction {:.4f} of the table{}", to_string(a.form),
                                a.entry.solid_fraction, a.remark.empty() ? "" : " (" + a.remark + ")"));
   }

@@ -43,7 +43,7 @@ LawDraws cell_draws(const CellCard& card, const std::string& name, std::int64_t 
   const CellCorrelation& c = card.correlation;
   if (c.numbers.empty())
     throw InputError(
-        "bands: the card of the cell law has no [correlation] of its numbers: measure it from two samples or more with "
+        "the card of the cell law has no [correlation] of its numbers: measure it from two samples or more with "
         "this version (kind \"material-law\")");
   std::vector<CellCardNumber> drawn;
   std::vector<std::string> held;
@@ -52,6 +52,11 @@ LawDraws cell_draws(const CellCard& card, const std::string& name, std::int64_t 
       if (n.is_drawn) held.push_back(n.key);
       continue;
     }
+    if (!std::isfinite(deviation_of(n)))
+      throw InputError(
+          fmt::format("the interval of {} is not known: give one in the card of the cell law, or take {} out of its "
+                      "[correlation]",
+                      n.key, n.key));
     drawn.push_back(n);
   }
   std::vector<double> mean;
@@ -67,7 +72,11 @@ LawDraws cell_draws(const CellCard& card, const std::string& name, std::int64_t 
   LawDraws out;
   out.law.name = name;
   out.numbers = mean;
-  out.draws = normal_draws(mean, covariance, count, kCellStream);
+  try {
+    out.draws = normal_draws(mean, covariance, count, kCellStream);
+  } catch (const InputError& e) {
+    throw InputError(std::string("[correlation] of the card of the cell law: ") + e.what());
+  }
   out.origin = fmt::format("{} draws from the errors of the card of the cell law", count);
   if (!held.empty()) out.origin += fmt::format(" ({} held: their errors are not known)", join_text(held));
   out.discrepancy_origin = "not known: a card of the cell law has no tests that its fit did not see";

@@ -5,6 +5,7 @@
 #include <string>
 #include <variant>
 
+#include "common/core/error.h"
 #include "common/data/cell_card.h"
 #include "common/data/law_card.h"
 #include "common/data/multi_contact_law.h"
@@ -30,6 +31,17 @@ struct FittedLaw {
   [[nodiscard]] const LawTable* table() const { return std::get_if<LawTable>(&content); }
   [[nodiscard]] const CellCard* cells() const { return std::get_if<CellCard>(&content); }
 };
+
+/// ask(), whose complaint about the law names the file that it is of.
+template <class Ask>
+auto complaining_of(const FittedLaw& law, const Ask& ask) {
+  try {
+    return ask();
+  } catch (const InputError& e) {
+    if (law.path.empty()) throw;
+    throw InputError(law.path + ": " + e.what());
+  }
+}
 
 /// "law card", "law table", "cell law".
 std::string kind_text(const FittedLaw& law);

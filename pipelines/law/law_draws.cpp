@@ -415,7 +415,8 @@ std::int64_t read_draw_count(const SceneTable& table, const Key& key, std::int64
 
 LawDraws law_draws(const LawSources& sources, const NamedLaws& law, const MacroSpec& spec, double contents_fraction,
                    std::int64_t count) {
-  if (sources.cells() != nullptr) return cell_draws(*sources.cells(), law.name, count);
+  if (sources.cells() != nullptr)
+    return complaining_of(sources.laws.front(), [&] { return cell_draws(*sources.cells(), law.name, count); });
   if (const LawCard* card = sources.serving(law.form).card()) return card_draws(*card, sources, law, spec, count);
   return table_draws(sources, law, spec, contents_fraction, count);
 }

@@ -52,12 +52,12 @@ std::optional<PressNumbers> press_numbers_of(const LawTableEntry& entry) {
   return press_numbers(law->a.value, law->b.value, law->delta.value, entry.spec.poisson_ratio);
 }
 
-/// Value and interval of one number from its draws.
+/// Value and interval of one number from its draws. The interval holds the value where draws lean to one side.
 Estimate drawn_estimate(double value, const std::vector<std::vector<double>>& draws, std::size_t k) {
   std::vector<double> column;
   for (const std::vector<double>& d : draws) column.push_back(d[k]);
   const double deviation = mean_error(column).deviation_or_zero();
-  return {value, deviation, quantile(column, 0.025), quantile(column, 0.975)};
+  return {value, deviation, std::min(quantile(column, 0.025), value), std::max(quantile(column, 0.975), value)};
 }
 
 }  // namespace

@@ -464,13 +464,10 @@ LawSources read_scene_law(const SceneTable& root, const std::string& path) {
 
 NamedLaws law_of_form(const LawSources& sources, WantedForm form, const MacroSpec& spec, double contents_fraction) {
   const FittedLaw& file = sources.serving(form);
-  try {
+  return complaining_of(file, [&] {
     return file.card() != nullptr ? pair_law_of(*file.card(), spec, "pair", sources.beyond, sources.card_unloading)
                                   : table_law_of(sources, form, spec, contents_fraction);
-  } catch (const InputError& e) {
-    if (file.path.empty()) throw;
-    throw InputError(file.path + ": " + e.what());
-  }
+  });
 }
 
 NamedLaws scene_law(const LawSources& sources, const MacroSpec& spec, double contents_fraction,

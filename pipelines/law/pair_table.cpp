@@ -71,8 +71,10 @@ PairTable tabulate(const Pair& pair, const PairTableChoice& choice) {
                   wanted, what, end));
 }
 
-Pair card_pair(const LawCard& card, PairKind kind, double ratio, const PairTableChoice& choice) {
-  const SoftContact contact = make_soft_contact(card, kind, choice.modulus, 0.0, 0.0, false, choice.beyond);
+Pair card_pair(const FittedLaw& file, PairKind kind, double ratio, const PairTableChoice& choice) {
+  const LawCard& card = *file.card();
+  const SoftContact contact = complaining_of(
+      file, [&] { return make_soft_contact(card, kind, choice.modulus, 0.0, 0.0, false, choice.beyond); });
   const PairLaw& law = *card.find(kind);
   const double wanted = choice.delta_max.value_or(law.delta_max);
   if (wanted > law.delta_max && contact.range.beyond == Extrapolation::error)
@@ -96,15 +98,16 @@ Pair card_pair(const LawCard& card, PairKind kind, double ratio, const PairTable
   return out;
 }
 
-std::vector<Pair> card_pairs(const LawCard& card, const PairTableChoice& choice) {
+std::vector<Pair> card_pairs(const FittedLaw& file, const PairTableChoice& choice) {
+  const LawCard& card = *file.card();
   std::vector<Pair> out;
   for (const PairLaw& law : card.pairs) {
     const bool named = std::find(choice.kinds.begin(), choice.kinds.end(), law.kind) != choice.kinds.end();
     if (choice.kinds.empty() ? !has_numbers(law.status) : !named) continue;
-    for (const double ratio : choice.ratios) out.push_back(card_pair(card, law.kind, ratio, choice));
+    for (const double ratio : choice.ratios) out.push_back(card_pair(file, law.kind, ratio, choice));
   }
   for (const PairKind kind : choice.kinds)
-    if (card.find(kind) == nullptr) (void)make_soft_contact(card, kind, 1.0, 0.0, 0.0, false);  // says what is wrong
+    if (card.find(kind) == nullptr) (void)card_pair(file, kind, 1.0, choice);  // says what is wrong
   return out;
 }
 
@@ -132,7 +135,7 @@ struct Side {
   }
 };
 
-Pair table_pair(const LawTable& table, PairKind kind, double ratio, const PairTableChoice& choice) {
+Pair table_pair(const FittedLaw& file, PairKind kind, double ratio, const PairTableChoice& choice) {
   MultiContactQuestion q;
   q.form = choice.form;
   q.partner = kind == PairKind::soft_solid ? PartnerKind::solid : PartnerKind::soft;
@@ -140,7 +143,7 @@ Pair table_pair(const LawTable& table, PairKind kind, double ratio, const PairTa
   q.solid_fraction = choice.solid_fraction;
   q.range = choice.range;
   q.beyond = choice.beyond;
-  const MultiContactAnswer answer = multi_contact_values(table, q, {});
+  const MultiContactAnswer answer = complaining_of(file, [&] { return multi_contact_values(*file.table(), q, {}); });
   const Extrapolation beyond = choice.beyond.value_or(answer.entry.beyond);
   const double end = answer.overlap_max;
   const double wanted = choice.delta_max.value_or(end);
@@ -168,20 +171,19 @@ Pair table_pair(const LawTable& table, PairKind kind, double ratio, const PairTa
           }};
 }
 
-std::vector<Pair> table_pairs(const LawTable& table, const PairTableChoice& choice) {
+std::vector<Pair> table_pairs(const FittedLaw& file, const PairTableChoice& choice) {
   std::vector<PairKind> kinds = choice.kinds;
   if (kinds.empty()) kinds = {PairKind::soft_solid, PairKind::soft_soft};
   std::vector<Pair> out;
   for (const PairKind kind : kinds)
-    for (const double ratio : choice.ratios) out.push_back(table_pair(table, kind, ratio, choice));
+    for (const double ratio : choice.ratios) out.push_back(table_pair(file, kind, ratio, choice));
   return out;
 }
 
 }  // namespace
 
 std::vector<PairTable> pair_tables(const FittedLaw& file, const PairTableChoice& choice) {
-  const LawCard* card = file.card();
-  const std::vector<Pair> pairs = card != nullptr ? card_pairs(*card, choice) : table_pairs(*file.table(), choice);
+  const std::vector<Pair> pairs = file.card() != nullptr ? card_pairs(file, choice) : table_pairs(file, choice);
   if (pairs.empty()) throw InputError(file.path + ": the card has no usable law");
   std::vector<PairTable> out;
   for (const Pair& pair : pairs) {

@@ -195,6 +195,7 @@ RunContext::RunContext(const CommonOptions& options, const std::string& command,
   if (threads_ > 1) watch_cores();
   const Provenance build = build_provenance();
   shows_ = !options_.member;
+  require_no_pipe(path("log.txt"));
   try {
     logger_ = make_logger(path("log.txt"), options_);
     // The first line: was_run_directory() knows the directory of a run by it.

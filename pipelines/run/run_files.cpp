@@ -40,6 +40,8 @@ bool is_rewritten(const std::string& name, const std::string& command) {
 
 /// The log begins with the name of the program.
 bool was_run_directory(const fs::path& directory) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(directory / "log.txt", ignored)) return false;
   std::ifstream log(directory / "log.txt");
   std::string line;
   return std::getline(log, line) && line.find(" softgrain ") != std::string::npos;

@@ -94,6 +94,27 @@ TEST(StepLimit, TakesTheSteeperOfLoadingAndUnloading) {
   }
 }
 
+/// Of a contact whose tangential spring is far stiffer than the normal one, the network of two bodies says the same.
+TEST(SlideLimit, IsThatOfTwoBodiesThatTouch) {
+  LinearSpring law;
+  law.normal = 1e3;
+  law.friction = 0.5;
+  for (const double stiffer : {10.0, 1e4}) {
+    law.tangential = stiffer * law.normal;
+    const System3 s = two_spheres(law, 0.01);
+    const SlideLimit limit = slide_limit(s);
+    EXPECT_NEAR(limit.step / std::sqrt(2.0 * kMass / (7.0 * law.tangential)), 1.0, 1e-9);
+    EXPECT_NEAR(limit.step / network_step(s), 1.0, 0.01) << stiffer;
+    EXPECT_EQ(limit.law, 0);
+  }
+  law.friction = 0.0;
+  EXPECT_TRUE(std::isinf(slide_limit(two_spheres(law, 0.01)).step)) << "what slides at once bears nothing";
+  EXPECT_GT(network_step(two_spheres(law, 0.01)), 1.0 * std::sqrt(kMass / law.normal));
+  law.friction = 0.5;
+  law.tangential = law.normal;
+  EXPECT_TRUE(std::isinf(slide_limit(two_spheres(law, 0.01)).step)) << "left to the limit of the normal spring";
+}
+
 template <LawForm kLawForm>
 void expect_steeper_by_unloading() {
   constexpr double kSteeper = 3.5;

@@ -307,6 +307,19 @@ TEST_F(CellsMacro, HaveNoBandsWithoutCorrelationsAndCheckSaysSo) {
   expect(run_the_program(checked + "--set macro.bands=8"), 2, {"no [correlation]"});
 }
 
+TEST_F(CellsMacro, BandsSayWhatTheCardDoesNotTell) {
+  const auto refused = [&](const CellCard& card, const std::vector<std::string>& words) {
+    write_cell_card(card, file("cells.toml"));
+    expect(run("bad", "--bands 8"), 2, words);
+  };
+  CellCard card = sample_card();
+  card.correlation = {{"K", "n", "xi"}, {1.0, 0.9, -0.9, 0.9, 1.0, 0.9, -0.9, 0.9, 1.0}};
+  refused(card, {"cells.toml: [correlation]", "is not positive"});
+  card.correlation = {{"K"}, {1.0}};
+  card.modulus.high = HUGE_VAL;
+  refused(card, {"cells.toml: the interval of K is not known"});
+}
+
 /// At a given density all stresses go with K: a band of K alone is as wide as the interval of K.
 TEST_F(CellsMacro, BandsAreAsWideAsTheErrorsOfTheCard) {
   CellCard card = sample_card();

@@ -124,7 +124,7 @@ TEST_F(LawTableUse, TheUnloadingBranchActsOnContactsThatRetreat) {
   };
   LawTableEntry entry = law_entry(0.70);
   const auto with_unloading = [&](const std::string& name, double unloading) {
-    entry.unloading.value = unloading;
+    entry.unloading = synthetic::near(unloading);
     save_law_table({1, {entry}}, file("law_table.toml"));
     return shear(name, "unloading = true\n");
   };
@@ -267,6 +267,22 @@ TEST_F(LawTableUse, ASolidFractionThatTheTableDoesNotReachIsRefusedWithItsRange)
   expect(macro("out", "solid_fraction = 0.7\n", "--law '" + file("law.toml") + "'"), 2,
          {"solid_fraction", "goes with a law table"});
   expect(run_the_program("law eval '" + file("law_table.toml") + "' --solid-fraction 0.71"), 2, {"0.650 to 0.700"});
+}
+
+TEST_F(LawTableUse, WhatALawCannotAnswerNamesItsFile) {
+  LawTableEntry entry = law_entry(0.70);
+  for (MultiContactLaw& law : entry.laws) law.partners.resize(2);
+  save_law_table({1, {entry}}, file("hard.toml"));
+  const std::string table = "'" + file("hard.toml") + "'";
+  for (const std::string& command : {"law eval " + table, "law export " + table + " --to csv",
+                                     "law export " + table + " --to lammps-table --kind soft-solid"})
+    expect(run_the_program(command), 2, {"hard.toml: law table: the directional law knows no soft neighbours"});
+  LawCard card = synthetic::card();
+  card.pairs.pop_back();
+  save_card(card, file("one.toml"));
+  const std::string kind = card.pairs[0].kind == PairKind::soft_solid ? "soft-soft" : "soft-solid";
+  for (const std::string command : {"law eval", "law export --to lammps-table"})
+    expect(run_the_program(command + " '" + file("one.toml") + "' --kind " + kind), 2, {"one.toml: law card: no "});
 }
 
 TEST_F(LawTableUse, CheckAndLawTakeTheSameEntryAsTheRun) {

@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "common/data/cell_card.h"
 #include "common/data/macro_result.h"
 #include "common/io/text_file.h"
 #include "tests/support/program.h"
@@ -133,6 +135,27 @@ TEST(MaterialModelsRun, TakesTheLongestNames) {
       run_the_program("run '" + directory.file("scene.toml") + "' --quiet --out '" + directory.file("out") + "'");
   EXPECT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_TRUE(scores_of(directory.file("out")).contains(std::string(100, 'm')));
+}
+
+/// The reference ran before the run found out.
+TEST(MaterialModelsRun, BandsThatACardCannotGiveAreRefusedAtOnce) {
+  const TemporaryDirectory directory;
+  CellCard card = read_cell_card(std::string(SOFTGRAIN_SOURCE_DIR) + "/results/material_law/cell_law_memory.toml");
+  card.modulus.high = HUGE_VAL;
+  write_cell_card(card, directory.file("card.toml"));
+  const std::string scene = directory.file("scene.toml");
+  write_text_atomic(scene,
+                    "kind = \"material-models\"\nsamples = 1\n[packing]\npreparation = \"fast\"\n[grains]\ncount = "
+                    "300\nratio = 4\n[[model]]\nname = \"cells\"\nkind = \"cells\"\ncard = \"card.toml\"\nbands = 8\n");
+  for (const std::string& command :
+       {"check '" + scene + "'", "run '" + scene + "' --out '" + directory.file("out") + "'"}) {
+    const ProgramOutcome outcome = run_the_program(command);
+    EXPECT_EQ(outcome.status, 2) << outcome.output;
+    EXPECT_NE(unwrapped(outcome.output).find("scene.toml:12: bands = 8: the interval of K is not known"),
+              std::string::npos)
+        << outcome.output;
+  }
+  EXPECT_FALSE(std::filesystem::exists(directory.file("out")));
 }
 
 /// The card is of grains with mu = 0.3; what needs none is run.

@@ -118,6 +118,38 @@ TEST_F(ParticlesBadInput, CentresOnePeriodApart) {
   expect_text(text, {"position", "has the same centre as particle 0"});
 }
 
+/// A tangential spring far stiffer than the normal one was not seen before bodies touched.
+TEST_F(ParticlesBadInput, StepsThatATangentialSpringMakesUnstable) {
+  const std::string stiff = "law = \"linear-spring\"\nnormal_stiffness = 1e3\ntangential_stiffness = 1e6";
+  std::string text = kGood;
+  text.replace(text.find("law = \"hertz-tsuji\""), 19, stiff);
+  expect_text(text + "step = 1e-4\n", {"step = 0.0001", "above the stable limit", "of a tangential spring",
+                                       "set by particle 0 (radius 0.01 m) with linear-spring of glass and glass"});
+  const auto facts = [&](const std::string& more) {
+    write_text_atomic(directory_.file("scene.toml"), text + more);
+    const auto outcome = run_the_program("check '" + directory_.file("scene.toml") + "' --json");
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return nlohmann::json::parse(outcome.output);
+  };
+  const nlohmann::json automatic = facts("");
+  EXPECT_NE(automatic["limited_by"].dump().find("of a tangential spring"), std::string::npos) << automatic;
+  EXPECT_LT(automatic["time_step"].get<double>(), 5e-5);
+  EXPECT_EQ(facts("step = 4e-5\n")["time_step"], 4e-5);
+  text.replace(text.find("mu = 0.3"), 8, "mu = 0.0");
+  EXPECT_EQ(facts("step = 1e-4\n")["time_step"], 1e-4) << "without friction the spring bears nothing";
+}
+
+/// They stand in messages, summaries and reports.
+TEST_F(ParticlesBadInput, NamesAreOneLine) {
+  const std::string wall = "shape = \"plane\"";
+  for (const char* name : {R"(a\nb)", R"(a\tb)", R"(a\u001b[31m)", R"(a\u007f)"}) {
+    expect(wall, wall + "\nname = \"" + name + "\"", {"scene.toml:29: name", "must be one line of text"});
+    expect("[material.bare]", std::string("[material.\"") + name + "\"]",
+           {"scene.toml:6: a", "must be one line of text"});
+  }
+  expect(wall, wall + "\nname = \"a\\u001b[31m\"", {"name = \"a [31m\""});
+}
+
 TEST_F(ParticlesBadInput, EmptyScenes) {
   expect_text("kind = \"particles\"\n[time]\nend = 1.0\n", {"scene.toml:1", "no particle"});
   expect_text("kind = \"particle\"\n", {"scene.toml:1: kind", "nearest is \"particles\""});

@@ -2,6 +2,7 @@
 // report of a run that was stopped does not look like one of results.
 #include <gtest/gtest.h>
 #include <omp.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <sstream>
@@ -104,6 +105,19 @@ TEST(RunLog, ARunThatBrokeOffSaysStatusAndReason) {
   EXPECT_TRUE(has(done.output, "overlap by")) << done.output;
   EXPECT_TRUE(has(log_of(runs.out("out")), "status: not usable (exit status 3): "));
   EXPECT_FALSE(has(run_the_program(command).output, "status: "));
+}
+
+/// Opening it waited for a reader for ever, deaf to SIGTERM.
+TEST(RunLog, APipeInItsPlaceIsRefused) {
+  const KindRuns runs({"particles", "microsim", tiny_particles("0.2"), 0});
+  fs::create_directory(runs.out("out"));
+  ASSERT_EQ(::mkfifo((runs.out("out") + "/log.txt").c_str(), 0600), 0);
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--resume"}}) {
+    const std::string errors = runs.out("errors.txt");
+    const pid_t child = start_program(runs.arguments("out", more), errors_to(errors));
+    EXPECT_TRUE(ended_with(signal_after(child, 60.0, SIGKILL), 4));
+    EXPECT_TRUE(has(read_text(errors), "log.txt: is a pipe, not a file")) << read_text(errors);
+  }
 }
 
 TEST(RunLog, LogsLieWithinEachOther) {

@@ -63,6 +63,15 @@ inline LawTableEntry library_entry(const LibraryPoint& p, double noise, std::uin
   const auto replicates = law.replicates;
   law = with_numbers(law, numbers);
   law.replicates = replicates;
+  const auto hold = [](Estimate& number) {
+    number.low = std::min(number.low, number.value);
+    number.high = std::max(number.high, number.value);
+  };
+  for (const MultiContactParameterName& number : kMultiContactParameters) hold(law.*number.estimate);
+  for (PartnerRow& row : law.partners) {
+    hold(row.weight);
+    hold(row.exponent);
+  }
   e.laws = {law};
   e.best = LawForm::isotropic;
   return e;

@@ -164,6 +164,7 @@ TEST(CellCardFile, FactorsOfPreparationsAreOneEachAndAboveNone) {
   expect_words(factor_of("slow", 0.97) + factor_of("slow", 0.96), "is used twice");
   expect_words(factor_of("fast", 0.97), "whose factor is 1");
   expect_words(factor_of("slow", 0.0), "value = ");
+  expect_words(factor_of("slow", 1e30), "at most 100");
   expect_words(factor_of("", 0.97), "must not be empty");
   expect_words(factor_of("slow", 0.97, "mu = 0.3\n"), "unknown key 'mu'");
   expect_words("[[preparation]]\nname = \"slow\"\n", "factor");
@@ -234,7 +235,7 @@ TEST(CellCardFile, NumbersAreSetByTheirKeysWithinTheirRanges) {
 TEST(CellCardFile, SlipThatGivesEnergyBackIsRefused) {
   const TemporaryDirectory directory;
   CellCard card = card_with_memory();
-  card.memory->dilatancy.value = 2.6;  // (1 + c)/c = 2.502
+  card.memory->dilatancy = {2.6, 0.05, 2.5, 2.7};  // (1 + c)/c = 2.502
   write_cell_card(card, directory.file("card.toml"));
   try {
     (void)read_cell_card(directory.file("card.toml"));
@@ -267,9 +268,10 @@ TEST(CellCardFile, NothingWrongIsTaken) {
   const auto estimate = [](double v) {
     return fmt::format("{{ value = {}, standard_error = 0.1, low = 0.0, high = 9.0 }}", v);
   };
-  const std::vector<std::pair<std::string, double>> wrong{{"K", 0.0},     {"K", -1.0},   {"n", 1.0},      {"n", 51.0},
-                                                          {"e_J", 0.0},   {"e_c", -0.1}, {"w_inf", -0.1}, {"xi", 0.0},
-                                                          {"mu_f", -0.1}, {"chi", 0.0},  {"K0", 0.0},     {"K0", 1.1}};
+  const std::vector<std::pair<std::string, double>> wrong{
+      {"K", 0.0},       {"K", -1.0},     {"n", 1.0},   {"n", 51.0},  {"e_J", 0.0},
+      {"e_c", -0.1},    {"w_inf", -0.1}, {"xi", 0.0},  {"e_J", 1e9}, {"e_c", 101.0},
+      {"w_inf", 101.0}, {"mu_f", -0.1},  {"chi", 0.0}, {"K0", 0.0},  {"K0", 1.1}};
   for (const auto& [key, value] : wrong) {
     const std::string text = complaint_of(key + " = {", key + " = " + estimate(value));
     EXPECT_NE(text.find(":"), std::string::npos) << key << " " << value;
@@ -279,6 +281,9 @@ TEST(CellCardFile, NothingWrongIsTaken) {
             std::string::npos);
   EXPECT_NE(
       complaint_of("K = ", R"(K = { value = 1.0, standard_error = 0.1, low = "nan", high = 1.0 })").find("high end"),
+      std::string::npos);
+  EXPECT_NE(
+      complaint_of("K = ", "K = { value = 1.0, standard_error = 0.1, low = 0.0, high = 0.9 }").find("below value"),
       std::string::npos);
   EXPECT_NE(complaint_of("K = ", "K = { value = 1.0, standard_error = -0.1, low = 0.0, high = 1.0 }").find("error"),
             std::string::npos);

@@ -64,6 +64,18 @@ TEST(CsvFile, ErrorsOfASpreadsheetAreMissingCells) {
   EXPECT_THROW((void)csv.number(csv.rows()[2], 1, Unit::none), InputError);
 }
 
+/// A workbook, an archive or HDF5 under the name of a table was told of cells in line 4.
+TEST(CsvFile, BinaryFilesAreSaidToBeSuch) {
+  for (const std::string& bytes :
+       {std::string("\x89HDF\r\n\x1a\n\0\0\0\0a,b\n1,2\n", 20), std::string("PK\3\4\24\0\0\0\10\0", 10)})
+    try {
+      (void)CsvFile::parse(bytes, "t.csv");
+      ADD_FAILURE() << "accepted";
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find("t.csv: is a binary file, not a table"), std::string::npos) << e.what();
+    }
+}
+
 TEST(CsvFile, PercentsAreHundredths) {
   const CsvFile csv = CsvFile::parse("a [%],b,c\n60,60%,0.6\n100.0 ,100 %,1\n", "t");
   for (std::size_t k = 0; k < 3; ++k) {

@@ -200,6 +200,14 @@ TEST_F(MultiContactLawIo, NumbersOfNoContactAreRefused) {
   expect_refused("[[entry]]", "overlap_max = 0.28", "overlap_max = 28.0", {"overlap_max = 28:", "from 0 to 2"});
 }
 
+/// Draws took the distance to an end on the wrong side for a negative error.
+TEST_F(MultiContactLawIo, AnIntervalThatDoesNotHoldItsValueIsRefused) {
+  expect_refused("[[entry.law]]", "low = 0.6", "low = 0.7", {"low = 0.73", "must not be above value = 0.7", "-inf"});
+  expect_refused("[[entry.law]]", "high = 0.7", "high = 0.6", {"high = 0.67", "must not be below value = 0.7", "inf"});
+  expect_refused("[[entry.law]]", "low = 0.6", "low = 9.6", {"low = 9.63", "must not be above the high end"});
+  expect_refused("kt_ratio", "low = 0.", "low = 0.9", {"low = 0.9", "must not be above"});
+}
+
 /// Refits of another table are none of this one; after an edit they are not used, and the table says so.
 TEST_F(MultiContactLawIo, TheFileOfAnotherTableIsRefused) {
   LawTable table{1, {law_entry(0.7)}};
@@ -213,7 +221,7 @@ TEST_F(MultiContactLawIo, TheFileOfAnotherTableIsRefused) {
 
   const std::string own = read_text(path());
   std::string text = own;
-  text.replace(text.find("a = { value = 0.7"), 17, "a = { value = 0.8");
+  text.replace(text.find("a = { value = 0.7"), 17, "a = { value = 0.75");
   write_text_atomic(path(), text);
   LawTable edited = load_law_table(path());
   read_replicates(edited, path());

@@ -290,6 +290,7 @@ TEST(ParticlesDisks, WhatCannotBeCombinedIsRefused) {
   refused(good, "adhesion = 1.0", "adhesion = 0.0", {"range", "without adhesion"});
   refused(good, "adhesion = 1.0\n", "", {"adhesion"});
   refused(good, "range = 0.001", "range = 0.0", {"range"});
+  refused(good, "range = 0.001", "range = 1e29", {"scene.toml:", "range = 1e+29", "at most 5 m, 10 radii"});
   refused(good, "density = " + number(4.0 / std::numbers::pi), "density = \"2500 kg/m^3\"", {"density", "kg/m^2"});
   refused(head(0.0, false) + rest, "mu = 0.5", "mu = 0.0", {"tangential_stiffness", "friction"});
   refused(

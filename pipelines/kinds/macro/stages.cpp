@@ -89,12 +89,7 @@ class StageReader {
     return StageKind::oedometric;
   }
 
-  static std::string given_name(const SceneTable& t, const char* usual) {
-    const std::string name = t.filled_text(kNameKey, usual);
-    if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < ' '; }))
-      t.add_error("name", "must be one line of text");
-    return name;
-  }
+  static std::string given_name(const SceneTable& t, const char* usual) { return t.line_text(kNameKey, usual); }
 
   /// Results of stages are known by their names.
   [[nodiscard]] bool is_taken(const std::string& name) const {

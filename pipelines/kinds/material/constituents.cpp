@@ -44,9 +44,7 @@ double read_mass(const SceneTable& t) {
 Constituent read_constituent(const SceneTable& t, const MacroSpec& common) {
   Constituent c;
   t.section([&] {
-    c.name = t.filled_text({"name", "name of the constituent"});
-    if (std::any_of(c.name.begin(), c.name.end(), [](unsigned char letter) { return letter < ' '; }))
-      t.add_error("name", "must be one line of text");
+    c.name = t.line_text({"name", "name of the constituent"});
     c.mass_share = read_mass(t);
     read_own_material(t, common, c);
     c.sizes = read_sizes(t, {"sizes", "its size distribution, such as a sieve curve"}, {});

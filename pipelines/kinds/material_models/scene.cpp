@@ -60,10 +60,12 @@ void read_bands(const SceneTable& t, MaterialModel& m) {
                              "cells, mean fields: number of draws of the card, whose numbers vary within their errors, "
                              "for error bands, 8 or more; each runs the model once more; 0: no bands"},
                             1000, m.bands);
-  if (m.bands > 0 && m.card && m.card->correlation.numbers.empty())
-    t.add_error("bands",
-                "the card has no [correlation] of its numbers: measure it from two samples or more (kind "
-                "\"material-law\")");
+  if (m.bands == 0 || !m.card) return;
+  try {
+    (void)cell_draws(*m.card, m.name, m.bands);  // what the card does not tell, before anything runs
+  } catch (const InputError& e) {
+    t.add_error("bands", e.what());
+  }
 }
 
 MaterialModel read_model(const Scene& scene, const SceneTable& t, MaterialModelsScene& out) {

@@ -159,6 +159,9 @@ void check_particles(const ParticlesSceneOf<D>& scene, Findings& out) {
   if (limit.body >= 0)
     out.add("step_limit", limit.natural_time,
             fmt::format("sqrt(m/k) of the fastest contact: {:.4g} s (grain {})", limit.natural_time, limit.body));
+  if (std::isfinite(scene.time.slide_step))
+    out.add("slide_step", scene.time.slide_step,
+            fmt::format("the stiffest tangential spring is stable to steps of {:.4g} s", scene.time.slide_step));
   if (std::isfinite(scene.time.stable_step))
     out.add("stable_step", scene.time.stable_step,
             fmt::format("the contacts of the start are stable to steps of at least {:.4g} s", scene.time.stable_step));
