@@ -1,11 +1,12 @@
 // A card of the cell law as text: written for people, read strictly.
 #include <fmt/format.h>
+#include <gsl/gsl_eigen.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <iterator>
 #include <limits>
+#include <memory>
 
 #include "common/core/error.h"
 #include "common/data/card_text.h"
@@ -158,25 +159,17 @@ CellMemory read_memory(const SceneTable& t) {
   return memory;
 }
 
-/// Whether errors can have these correlations: no eigenvalue below 0 but for rounding. By Cholesky's factors L D L^T,
-/// where a pivot of 0 must have zeros below it: numbers that few samples determine go together exactly.
-bool is_positive(const std::vector<double>& matrix, std::size_t n) {
+/// Whether errors can have these correlations: no eigenvalue below 0 but for rounding. It may be 0: numbers that few
+/// samples determine go together exactly.
+bool is_positive(std::vector<double> matrix, std::size_t n) {
   constexpr double kRounding = 1e-9;
-  std::vector<double> l(n * n, 0.0);
-  std::vector<double> d(n, 0.0);
-  for (std::size_t j = 0; j < n; ++j) {
-    for (std::size_t i = j; i < n; ++i) {
-      double rest = matrix[i * n + j];
-      for (std::size_t k = 0; k < j; ++k) rest -= l[i * n + k] * l[j * n + k] * d[k];
-      if (i == j) d[j] = rest;
-      if (d[j] < -kRounding) return false;
-      const bool vanishes = d[j] < kRounding;
-      if (vanishes && i > j && std::abs(rest) > std::sqrt(kRounding)) return false;
-      l[i * n + j] = vanishes ? 0.0 : rest / d[j];
-    }
-    d[j] = std::max(d[j], 0.0);
-  }
-  return true;
+  std::vector<double> values(n);
+  const std::unique_ptr<gsl_eigen_symm_workspace, decltype(&gsl_eigen_symm_free)> space(gsl_eigen_symm_alloc(n),
+                                                                                        &gsl_eigen_symm_free);
+  gsl_matrix_view m = gsl_matrix_view_array(matrix.data(), n, n);
+  gsl_vector_view v = gsl_vector_view_array(values.data(), n);
+  gsl_eigen_symm(&m.matrix, &v.vector, space.get());
+  return *std::ranges::min_element(values) >= -kRounding;
 }
 
 /// For numbers of the card as it has been read so far.
