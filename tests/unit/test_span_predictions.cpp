@@ -114,6 +114,21 @@ TEST(SpanPredictions, OnsetsThatWereMeasuredElsewhereTakePart) {
   EXPECT_LT(at(wrong)->solid_fraction->value, narrow.value - 0.005);
 }
 
+TEST(SpanPredictions, OnsetsThatWereMeasuredElsewhereAreSaid) {
+  std::vector<EquationInput> inputs;
+  for (const PredictionInput& in : inputs_of({1.5, 2.4, 6.0}))
+    if (in.loading == "pressed") inputs.push_back({in.material, in.span, in.family, in.curves, 0.0});
+  EquationSettings s = quick_settings();
+  s.onsets = {{60.0, onset_of(60.0), 1e-3}};
+  const std::optional<EquationResult> found = equation_of(inputs, s, 1);
+  ASSERT_TRUE(found && found->summary.usable);
+  EXPECT_EQ(found->summary.onsets.size(), 3U);
+  ASSERT_EQ(found->summary.known.size(), 1U);
+  EXPECT_EQ(found->summary.known.front().span, 60.0);
+  ASSERT_EQ(found->summary.extrapolations.size(), 1U);
+  EXPECT_EQ(found->summary.extrapolations.front().largest_fitted, 60.0);
+}
+
 TEST(SpanPredictions, VariantsAboveTheLargestSpanChangeNothing) {
   auto inputs = inputs_of({1.5, 2.4, 4.0, 6.0, 12.0});
   const auto before = predict_spans(inputs, settings(), 1);

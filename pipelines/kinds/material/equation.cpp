@@ -144,6 +144,7 @@ std::optional<EquationResult> equation_of(const std::vector<EquationInput>& vari
   s.modulus_scatter = fit.modulus_scatter;
   s.collapse_probability = fit.collapse_probability;
   for (const StateGroup& g : fit.groups) s.onsets.push_back({g.name, g.span, g.samples, g.onset, g.own_modulus});
+  s.known = settings.onsets;
   if (!fit.usable) return out;
   std::map<std::string, std::vector<EquationInput>> families;
   for (const EquationInput& v : variants) families[v.family].push_back(v);

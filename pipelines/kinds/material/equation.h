@@ -22,7 +22,7 @@ struct EquationSettings {
   double largest_span = 0.0;  ///< largest span that extrapolations use; 0: all
   std::vector<double> spans;  ///< spans to which onsets are extrapolated
   std::int64_t replicates = 400;
-  std::vector<KnownOnset> onsets;  ///< onsets measured elsewhere; extrapolations use them
+  std::vector<KnownOnset> onsets = {};  ///< onsets measured elsewhere; extrapolations use them
 };
 
 /// Throws InputError.
@@ -58,6 +58,12 @@ void fields(auto&& visit, Of<OnsetSummary> auto& s) {
   visit("samples", s.samples, Means{"number of samples", "1"});
   visit("onset", s.onset, Means{"solid fraction phi_J at which pressure begins", "1"});
   visit("own_K", s.own_modulus, Means{"K of this variant alone, n being that of all", "1"});
+}
+
+void fields(auto&& visit, Of<KnownOnset> auto& s) {
+  visit("span", s.span, Means{"largest over smallest radius", "1"});
+  visit("value", s.value, Means{"solid fraction phi_J at which pressure begins", "1"});
+  visit("standard_error", s.standard_error, Means{"its standard error", "1"});
 }
 
 /// What one form of extrapolation says.
@@ -111,6 +117,7 @@ struct EquationSummary {
   double modulus_scatter = 0.0;
   double collapse_probability = 0.0;
   std::vector<OnsetSummary> onsets;
+  std::vector<KnownOnset> known;  ///< onsets that the scene gives
   std::vector<ExtrapolationSummary> extrapolations;
 };
 
@@ -125,6 +132,7 @@ void fields(auto&& visit, Of<EquationSummary> auto& s) {
   visit("K_scatter", s.modulus_scatter, Means{"relative scatter of K between variants", "1"});
   visit("collapse_probability", s.collapse_probability, Means{"probability of a larger scatter of K by chance", "1"});
   visit("onsets", s.onsets, Means{"phi_J of each variant"});
+  visit("onsets_measured_elsewhere", s.known, kLeftOut, Means{"phi_J of other spans that the scene gives"});
   visit("extrapolations", s.extrapolations, kLeftOut, Means{"phi_J at spans that were asked for"});
 }
 

@@ -311,6 +311,8 @@ std::string equation_text(const EquationSummary& s) {
   if (s.message != "fitted") text += "  " + s.message + "\n";
   for (const OnsetSummary& o : s.onsets)
     text += fmt::format("  {}: phi_J = {}, K by itself {:.4g}\n", o.name, interval_text(o.onset), o.own_modulus);
+  for (const KnownOnset& k : s.known)
+    text += fmt::format("  span {:g}, measured elsewhere: phi_J = {}\n", k.span, with_error(k.value, k.standard_error));
   if (s.onsets.size() > 1)
     text +=
         fmt::format("  K of variants scatters by {:.2g} %; as much or more with a probability of {:.2g} if it is one\n",
