@@ -269,7 +269,7 @@ TEST(MaterialModelsScene, BandsGoWithModelsThatTakeTheNumbersOfACard) {
   EXPECT_NE(complaint_of_model("kind = \"coarse\"\nbands = 8\n").find("bands = 8: does not go with"),
             std::string::npos);
   const std::string none = complaint_of_model("kind = \"cells\"\ncard = \"CARDS/cell_law.toml\"\nbands = 8\n");
-  EXPECT_NE(none.find("the card has no [correlation]"), std::string::npos) << none;
+  EXPECT_NE(none.find("the card of the cell law has no [correlation]"), std::string::npos) << none;
 }
 
 /// Draws at 1 -+ 0.1 of the model have the deviation 0.1 sqrt(8/7) of eight, and Student's 95 % of seven degrees is
