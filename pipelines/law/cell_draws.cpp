@@ -72,11 +72,7 @@ LawDraws cell_draws(const CellCard& card, const std::string& name, std::int64_t 
   LawDraws out;
   out.law.name = name;
   out.numbers = mean;
-  try {
-    out.draws = normal_draws(mean, covariance, count, kCellStream);
-  } catch (const InputError& e) {
-    throw InputError(std::string("[correlation] of the card of the cell law: ") + e.what());
-  }
+  out.draws = normal_draws(mean, covariance, count, kCellStream);
   out.origin = fmt::format("{} draws from the errors of the card of the cell law", count);
   if (!held.empty()) out.origin += fmt::format(" ({} held: their errors are not known)", join_text(held));
   out.discrepancy_origin = "not known: a card of the cell law has no tests that its fit did not see";

@@ -314,7 +314,7 @@ TEST_F(CellsMacro, BandsSayWhatTheCardDoesNotTell) {
   };
   CellCard card = sample_card();
   card.correlation = {{"K", "n", "xi"}, {1.0, 0.9, -0.9, 0.9, 1.0, 0.9, -0.9, 0.9, 1.0}};
-  refused(card, {"cells.toml: [correlation]", "is not positive"});
+  refused(card, {"cells.toml:33: matrix = ", "contradicts itself"});
   card.correlation = {{"K"}, {1.0}};
   card.modulus.high = HUGE_VAL;
   refused(card, {"cells.toml: the interval of K is not known"});
