@@ -249,7 +249,7 @@ std::string equation_part(const std::vector<Variant>& variants, const RunData& r
     onsets.row({o.name, format_number(o.span, 3), std::to_string(o.samples), interval(o.onset),
                 format_number(o.own_modulus, 3)});
   for (const KnownOnset& k : s.known)
-    onsets.row({"measured elsewhere", format_number(k.span, 3), "–", with_error(k.value, k.standard_error), "–"});
+    onsets.row({"measured elsewhere", format_number(k.span, 3), "–", format_with_error(k.value, k.standard_error), "–"});
   out += onsets.html();
   if (s.onsets.size() > 1)
     out += paragraph(fmt::format(
