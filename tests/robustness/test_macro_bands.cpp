@@ -9,7 +9,6 @@
 #include "common/core/statistics.h"
 #include "common/data/macro_band.h"
 #include "common/io/text_file.h"
-#include "pipelines/compare/compare.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
 
@@ -153,41 +152,6 @@ TEST_F(MacroBands, WhatCannotBeDrawnIsRefusedBeforeAnyWork) {
   // A table beside which there is no .h5.
   write_text_atomic(directory_.file("alone.toml"), read_text(kTable));
   refused("--bands 16 --law '" + directory_.file("alone.toml") + "'", "keeps no refits");
-}
-
-/// 40 twins of other seeds, sizes, shares and tests than those of results/macro_vs_resolved: what of them lies in the
-/// error bars of the shipped table.
-TEST(SlowCoverage, ErrorBarsHoldOverTwinsThatNoLawHasSeen) {
-  const TemporaryDirectory directory;
-  const std::string out = directory.file("coverage");
-  const auto done = run_the_program("run '" + std::string(SOFTGRAIN_SOURCE_DIR) +
-                                    "/tests/robustness/coverage.toml' --quiet --out '" + out + "'");
-  ASSERT_EQ(done.status, 0) << done.output;
-  const auto told = nlohmann::json::parse(read_text(out + "/comparison.json"));
-  for (const LawForm form : {LawForm::isotropic, LawForm::directional}) {
-    double ends = 0.0;
-    double inside = 0.0;
-    std::size_t twins = 0;
-    for (const auto& scene : told["scenes"]) {
-      const std::string file = out + "/macro_" + scene["name"].get<std::string>() + ".h5";
-      const auto curves = load_macro(file);
-      for (const MacroCurve& twin : curves_of(curves, "shelled"))
-        for (const MacroCurve& law : curves_of(curves, to_string(form)))
-          if (law.sample == twin.sample) {
-            ends += share_in_band(law, twin, true);
-            inside += share_in_band(law, twin, false);
-            ++twins;
-          }
-    }
-    ASSERT_EQ(twins, 40U);
-    RecordProperty(to_string(form) + "_ends", std::to_string(ends / 40.0));
-    RecordProperty(to_string(form) + "_points", std::to_string(inside / 40.0));
-    // Measured: bag, the form that the table takes, 98 % of points and of ends; directional 89 and 95 %
-    // (results/macro_vs_resolved).
-    const double least = form == LawForm::isotropic ? 0.92 : 0.85;
-    EXPECT_GE(ends / 40.0, least) << to_string(form);
-    EXPECT_GE(inside / 40.0, least) << to_string(form);
-  }
 }
 
 }  // namespace
