@@ -27,7 +27,8 @@ struct Coverage {
 Coverage coverage_of(const std::string& run, LawForm form) {
   Coverage out;
   double logarithm = 0.0;
-  for (const auto& scene : nlohmann::json::parse(read_text(run + "/comparison.json"))["scenes"]) {
+  const auto told = nlohmann::json::parse(read_text(run + "/comparison.json"));
+  for (const auto& scene : told["scenes"]) {
     const auto curves = load_macro(run + "/macro_" + scene["name"].get<std::string>() + ".h5");
     for (const MacroCurve& twin : curves_of(curves, "shelled"))
       for (const MacroCurve& law : curves_of(curves, to_string(form)))

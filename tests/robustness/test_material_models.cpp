@@ -122,6 +122,22 @@ TEST(MaterialModelsRun, DrawsOfTheCardGiveABand) {
   EXPECT_LE(with["inside"].get<double>(), 1.0);
 }
 
+/// A mean field does not apply to shear, so nothing is compared.
+TEST(MaterialModelsRun, WithoutACurveOfAnyModelIsNotUsable) {
+  const TemporaryDirectory directory;
+  write_text_atomic(directory.file("scene.toml"),
+                    "kind = \"material-models\"\n[packing]\npreparation = \"fast\"\n[test]\ntest = \"shear\"\nstrain = "
+                    "0.02\nsteps = 2\n[grains]\ncount = 300\nratio = 4\n[[model]]\nname = \"mean\"\nkind = "
+                    "\"mean-field\"\ncard = \"" +
+                        std::string(SOFTGRAIN_SOURCE_DIR) + "/results/material_law/cell_law.toml\"\n");
+  const ProgramOutcome outcome =
+      run_the_program("run '" + directory.file("scene.toml") + "' --quiet --out '" + directory.file("out") + "'");
+  EXPECT_EQ(outcome.status, 3) << outcome.output;
+  EXPECT_NE(unwrapped(outcome.output).find("no model has a curve: a mean field does not apply to shear"),
+            std::string::npos)
+      << outcome.output;
+}
+
 /// The run ended where it would have written the checkpoint of a model, after the reference was run.
 TEST(MaterialModelsRun, TakesTheLongestNames) {
   const TemporaryDirectory directory;

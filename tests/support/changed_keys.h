@@ -91,7 +91,8 @@ inline std::vector<std::string> other_words(const AskedKey& k, const std::set<st
   if (k.form == KeyForm::texts) {
     if (k.texts.size() > 1) {
       out.push_back(quoted_list({k.texts.begin(), k.texts.end() - 1}));
-      out.push_back(quoted_list({k.texts.rbegin(), k.texts.rend()}));
+      const std::vector<std::string> reversed{k.texts.rbegin(), k.texts.rend()};
+      if (reversed != k.texts) out.push_back(quoted_list(reversed));
     }
     for (const std::string& w : texts)
       if (k.texts != std::vector{w}) out.push_back(quoted_list({w}));

@@ -34,6 +34,12 @@ std::vector<ModelScore> run_models(const MaterialModelsScene& scene, const std::
   return scores;
 }
 
+/// A run whose models all fail compares nothing.
+void reject_models_without_curves(const std::vector<ModelScore>& scores, SummaryHead& head) {
+  if (scores.empty() || std::ranges::any_of(scores, [](const ModelScore& s) { return s.samples > 0; })) return;
+  head.mark_unusable("no model has a curve: " + scores.front().remark);
+}
+
 RunInputs inputs_of(const MaterialModelsScene& scene) {
   return {scene.material.seed, scene.files, scene.text + sizes_text(scene.material)};
 }
@@ -46,6 +52,7 @@ Outcome run_material_models(const MaterialModelsScene& scene, const Run& run) {
   write_text_atomic(run.path("material.csv"), as_csv(points_of(truths)));
   MaterialModelsSummary summary{std::move(measured.summary), {}};
   run.guard([&] { summary.scores = run_models(scene, truths, run); });
+  reject_models_without_curves(summary.scores, summary.material.head);
   write_text_atomic(run.path("models.csv"), as_csv(table_of(summary.scores)));
   summary.material.head.files["models"] = run.path("models.csv");
   return {json_of(summary), console_summary(summary.material) + console_summary(summary.scores)};
