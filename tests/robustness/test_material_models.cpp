@@ -104,6 +104,8 @@ TEST(MaterialModelsRun, DrawsOfTheCardGiveABand) {
   EXPECT_NE(unwrapped(checked.output).find("model cells: cells, and once more for each of 8 draws of its card"),
             std::string::npos)
       << checked.output;
+  EXPECT_NE(unwrapped(checked.output).find("the card is of fines of ratio 2, these have 1.33"), std::string::npos)
+      << checked.output;
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   const nlohmann::json with = scores_of(directory.file("with"))["cells"];
   const nlohmann::json without = scores_of(directory.file("without"))["cells"];

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "common/io/text_file.h"
 #include "pipelines/kinds/material/run.h"
@@ -61,10 +62,16 @@ Outcome run_material_models(const MaterialModelsScene& scene, const Run& run) {
 void check_models(const MaterialModelsScene& scene, Findings& out) {
   check_variants(scene.material, out);
   if (!scene.models.empty()) out.lines += "  the time of the models is not in what is said below\n";
-  for (const MaterialModel& m : scene.models)
+  for (const MaterialModel& m : scene.models) {
     out.lines +=
         fmt::format("  model {}: {}{}\n", m.name, to_string(m.kind),
                     m.bands > 0 ? fmt::format(", and once more for each of {} draws of its card", m.bands) : "");
+    std::set<std::string> others;
+    for (const MaterialVariant& v : scene.material.variants)
+      if (m.variants.empty() || among(m.variants, v)) others.insert(other_fines(m, v.setup.spec));
+    for (const std::string& text : others)
+      if (!text.empty()) out.lines += "    " + text + "\n";
+  }
 }
 
 /// As SceneKind::starter.
