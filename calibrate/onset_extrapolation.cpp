@@ -166,8 +166,7 @@ OnsetFormFit fit_form(const OnsetModel& model, const Onsets& at, const std::vect
 }
 
 bool wanted(const StateGroup& g, const OnsetOptions& options) {
-  const bool named = options.groups.empty() || std::ranges::find(options.groups, g.name) != options.groups.end();
-  return named && (options.largest_span <= 0.0 || g.span <= options.largest_span);
+  return options.groups.empty() || std::ranges::find(options.groups, g.name) != options.groups.end();
 }
 
 void require_fit(const StateFit& fit) {

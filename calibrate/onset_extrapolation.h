@@ -47,7 +47,6 @@ struct OnsetExtrapolation {
 };
 
 struct OnsetOptions {
-  double largest_span = 0.0;        ///< groups above are left out; 0: none. For a check on spans that are known.
   std::vector<std::string> groups;  ///< groups that are used (one preparation); empty: all
   double exponent = 0.0;            ///< b of the power law P(r) ~ r^-b that all groups have; 0: none, and no rods
   double refused_below = 0.01;      ///< probability below which a form is not used

@@ -23,11 +23,9 @@ struct Group {
   std::vector<const ResponseCurve*> samples;
 };
 
-std::vector<Group> groups_of(const StateFit& fit, const std::vector<ResponseCurve>& curves,
-                             const ResponseOptions& options) {
+std::vector<Group> groups_of(const StateFit& fit, const std::vector<ResponseCurve>& curves) {
   std::vector<Group> groups;
   for (std::size_t g = 0; g < fit.groups.size(); ++g) {
-    if (options.onset.largest_span > 0.0 && fit.groups[g].span > options.onset.largest_span) continue;
     Group group{g, {}};
     for (const ResponseCurve& c : curves)
       if (c.group == fit.groups[g].name) group.samples.push_back(&c);
@@ -125,7 +123,7 @@ Estimate over(const std::vector<Collected>& all, auto&& column) {
 class Predictor {
  public:
   Predictor(const StateFit& fit, const std::vector<ResponseCurve>& curves, const ResponseOptions& options)
-      : fit_(fit), options_(options), groups_(groups_of(fit, curves, options)), volume_(curves.front().volume) {}
+      : fit_(fit), options_(options), groups_(groups_of(fit, curves)), volume_(curves.front().volume) {}
 
   /// Adds what replicate r says, for onsets by every form.
   void add(std::size_t r, const std::vector<std::vector<double>>& onsets, std::vector<Collected>& out) const {

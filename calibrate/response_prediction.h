@@ -21,7 +21,7 @@ struct ResponseOptions {
   StateForm form = StateForm::porosity;
   double start_pressure = 1e-4;  ///< pressure at the start, over E
   std::uint64_t seed = 1;
-  OnsetOptions onset;  ///< spans above its largest take no part
+  OnsetOptions onset;
 };
 
 struct ResponsePrediction {

@@ -208,7 +208,7 @@ TEST(DamagedRun, DoesNotTakeStatesThatAreOlderThanTheirTask) {
   const std::string name = fs::path(states()).filename().string();
   for (const std::string out : {"flipped", "newest-gone", "all-gone"}) {
     fs::copy(runs.out("out"), runs.out(out), fs::copy_options::recursive);
-    const std::string older = runs.out(out) + "/work/" + name;
+    const std::string older = (fs::path(runs.out(out)) / "work" / name).string();
     const std::string file = older.substr(0, older.size() - ending.size());
     if (out == "flipped")
       flip(file, fs::file_size(file) / 2, 4);

@@ -353,13 +353,10 @@ INSTANTIATE_TEST_SUITE_P(Truths, OnsetGrowth,
 
 TEST(OnsetExtrapolation, ExactOnsetsGiveTheTrueFormAllItsDigits) {
   Truth t;
-  t.spans = {1.5, 2.4, 4.0, 6.0, 12.0};
-  t.samples = {3, 3, 3, 3, 3};
+  t.spans = {1.5, 2.4, 4.0, 6.0};
   t.scatter = 1e-6;
   const StateFit fit = fitted(t, 2);
-  OnsetOptions options;
-  options.largest_span = 6.0;
-  const OnsetExtrapolation found = extrapolate_onset(fit, 30.0, options);
+  const OnsetExtrapolation found = extrapolate_onset(fit, 30.0);
   ASSERT_TRUE(found.usable) << found.message;
   EXPECT_EQ(found.largest_span, 6.0);
   EXPECT_FALSE(found.forms[0].usable);  // the void power, refused
@@ -371,13 +368,11 @@ TEST(OnsetExtrapolation, ExactOnsetsGiveTheTrueFormAllItsDigits) {
 
 TEST(OnsetExtrapolation, FormsThatBeginAsFastAsTheyGoOnAreRefusedByMixturesThatDoNot) {
   Truth t;
-  t.spans = {1.5, 2.4, 4.0, 6.0, 12.0};
-  t.samples = {3, 3, 3, 3, 3};
+  t.spans = {1.5, 2.4, 4.0, 6.0};
   t.scatter = 1e-5;
   for (const OnsetForm growth : {OnsetForm::void_ratio, OnsetForm::rods}) {
     t.growth = growth;
     OnsetOptions options;
-    options.largest_span = 6.0;
     options.exponent = kExponent;
     const OnsetExtrapolation found = extrapolate_onset(fitted(t, 3), 1e3, options);
     ASSERT_TRUE(found.usable) << found.message;

@@ -125,23 +125,6 @@ TEST(ResponsePrediction, IntervalsHoldTheTruthOfScatteredSamples) {
   EXPECT_LT(width, 0.4);
 }
 
-TEST(ResponsePrediction, LargerSpansTakeNoPartInTheirPrediction) {
-  Truth t;
-  t.scatter = 1e-4;
-  Made made = make(t, 3);
-  const StateFit fit = fitted(made, 3);
-  ResponseOptions options;
-  options.onset.largest_span = 4.0;
-  const ResponsePrediction before = predict_response(fit, made.responses, 6.0, options);
-  for (ResponseCurve& r : made.responses)
-    if (r.group == std::to_string(6.0))
-      for (double& p : r.pressure) p *= 2.0;
-  const ResponsePrediction after = predict_response(fit, made.responses, 6.0, options);
-  ASSERT_TRUE(before.usable && after.usable) << before.message;
-  EXPECT_EQ(before.axial[5].value, after.axial[5].value);
-  EXPECT_EQ(before.axial[5].high, after.axial[5].high);
-}
-
 TEST(ResponsePrediction, RefusesCurvesOfOtherPointsAndUnknownGroups) {
   const Made made = make({.scatter = 1e-4}, 1);
   const StateFit fit = fitted(made, 1);
