@@ -185,6 +185,11 @@ TEST_F(MacroPackings, PartsOfAPreparationThatHaveNoEffectAreRefused) {
 TEST_F(MacroPackings, CheckSaysHowBodiesArePrepared) {
   const ProgramOutcome said = run_the_program("check '" + file("scene.toml") + "' --set macro.preparation=fast");
   expect(said, 0, {"preparation fast", "inertial number 0.1", "mu = "});
+  EXPECT_EQ(said.output.find("of what a body bears"), std::string::npos) << said.output;
+  const std::string own = test::unwrapped(
+      run_the_program("check '" + file("scene.toml") + "' --set macro.preparation=fast --set macro.balance=own-load")
+          .output);
+  EXPECT_NE(own.find("of what a body bears itself"), std::string::npos) << own;
 }
 
 /// The solid fractions that a message says are reached.

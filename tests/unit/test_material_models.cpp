@@ -235,6 +235,56 @@ TEST(MaterialModels, ErrorsAndCostsAreOfTheSameSamples) {
   EXPECT_EQ(table.rows.front().back(), s.remark);
 }
 
+/// 2 % isotropic, then a triaxial stage whose q/p at the k-th per cent of its own strain is k times `ratio`.
+MacroCurve preloaded_triaxial(double ratio, double lateral_strain) {
+  MacroCurve c;
+  c.stages = {StageRecord{.name = "load", .kind = StageKind::isotropic, .way = StageKind::isotropic},
+              StageRecord{.name = "shear", .kind = StageKind::triaxial, .way = StageKind::triaxial}};
+  for (const double e : {0.0, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08, 0.09}) {
+    const double sheared = std::max(0.0, e - 0.02);
+    const double q = 100.0 * ratio * sheared * 3.0;  // p is 3 throughout
+    c.strain.push_back(e);
+    c.strain_z.push_back(e);
+    for (auto* column : {&c.strain_x, &c.strain_y}) column->push_back(std::min(e, 0.02) - lateral_strain * sheared);
+    c.stress_axial.push_back(3.0 + 2.0 * q / 3.0);
+    for (auto* column : {&c.stress_lateral, &c.stress_x, &c.stress_y}) column->push_back(3.0 - q / 3.0);
+    c.stage.push_back(e > 0.02 ? 1.0 : 0.0);
+  }
+  c.cost.contact_evaluations = 1;
+  return c;
+}
+
+/// q/p at 2 % was that at the end of the preload, and was compared in tests without stages alone.
+TEST(MaterialModels, ShearIsComparedFromTheBeginOfItsStage) {
+  const MaterialVariant variant{"v", {}};
+  const MaterialModel model{.name = "m"};
+  VariantResult truth{&variant, "", {}, nullptr};
+  ModelRun run{&model, &truth, {}, "", ""};
+  truth.curves = {preloaded_triaxial(0.01, 0.3)};
+  run.curves = {preloaded_triaxial(0.012, 0.1)};
+  for (MacroCurve* c : {&truth.curves.front(), &run.curves.front()})
+    for (std::size_t k = 0; k < c->strain.size(); ++k)  // the model is right at the beginning of the stage
+      if (c->strain[k] < 0.035) {
+        const MacroCurve right = preloaded_triaxial(0.01, 0.3);
+        c->stress_axial[k] = right.stress_axial[k];
+        c->stress_x[k] = c->stress_y[k] = right.stress_x[k];
+      }
+  const ModelScore s = score(run, false);
+  EXPECT_NEAR(s.ratio_at_2, 0.2, 1e-12);
+  EXPECT_NEAR(s.ratio_at_6, 0.2, 1e-12);
+  const auto lost = [](double lateral) {
+    const double side = (0.98 + 0.07 * lateral) / 0.98;
+    return 1.0 - side * side * 0.91 / 0.98;
+  };
+  EXPECT_NEAR(s.volume, lost(0.1) - lost(0.3), 1e-12);
+  EXPECT_NE(console_summary({s}).find(", volume lost +2.6"), std::string::npos) << console_summary({s});
+
+  run.curves.front().strain_x.clear();
+  EXPECT_TRUE(std::isnan(score(run, false).volume));
+  for (MacroCurve* c : {&truth.curves.front(), &run.curves.front()}) c->stages[1].kind = StageKind::oedometric;
+  EXPECT_TRUE(std::isnan(score(run, false).ratio_at_6));
+}
+
 /// A mean field was "- times faster".
 TEST(MaterialModels, CostIsSaidOfModelsThatEvaluateSomething) {
   ModelScore s;

@@ -295,8 +295,10 @@ void tell_preparation(const MacroSetup& setup, Findings& out) {
     how +=
         fmt::format("the box shrinks at inertial number {:g} (restitution {:g}), ", p.inertial_number, p.restitution);
   how += fmt::format(
-      "all relax with mu = {:g} under {:g} E{}, to {:g} of the mean contact force", p.friction, spec.start_pressure,
-      p.first_pressure > 1.0 ? fmt::format(" (from {:g} times that)", p.first_pressure) : "", p.tolerance);
+      "all relax with mu = {:g} under {:g} E{}, to {:g} of {}", p.friction, spec.start_pressure,
+      p.first_pressure > 1.0 ? fmt::format(" (from {:g} times that)", p.first_pressure) : "", p.tolerance,
+      spec.balance == Balance::own_load ? "the mean contact force, or of what a body bears itself where that is more"
+                                        : "the mean contact force");
   out.add("preparation", to_string(spec.preparation), how);
   if (!setup.density) return;
   const DensityTarget& target = *setup.density;

@@ -38,7 +38,7 @@ struct ScoreColumn {
   std::string (*text)(const ModelScore&);
 };
 
-constexpr std::array<ScoreColumn, 13> kScoreColumns{
+constexpr std::array<ScoreColumn, 14> kScoreColumns{
     {{"bodies", [](const ModelScore& s) { return format_count(s.bodies); }},
      {"axial", [](const ModelScore& s) { return percent(s.axial, s.axial_error); }},
      {"lateral", [](const ModelScore& s) { return percent(s.lateral, s.lateral_error); }},
@@ -46,6 +46,7 @@ constexpr std::array<ScoreColumn, 13> kScoreColumns{
      {"at the end", [](const ModelScore& s) { return percent(s.axial_at_end); }},
      {"q/p at 2 %", [](const ModelScore& s) { return percent(s.ratio_at_2); }},
      {"q/p at 6 %", [](const ModelScore& s) { return percent(s.ratio_at_6); }},
+     {"volume, triaxial", [](const ModelScore& s) { return std::isfinite(s.volume) ? volume_text(s) : kNothing; }},
      {"unloading modulus", [](const ModelScore& s) { return percent(s.unloading); }},
      {"truth ±", [](const ModelScore& s) { return percent(s.truth_error); }},
      {"band, inside", band_text},

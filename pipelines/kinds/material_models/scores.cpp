@@ -130,6 +130,59 @@ double error_at(const std::vector<MacroCurve>& curves, std::size_t k) {
   return m.error / m.mean;
 }
 
+/// Whether a stage raises q by straining z: those that q/p and volume are compared in.
+bool shears(StageKind kind) {
+  return kind == StageKind::shear || kind == StageKind::undrained || kind == StageKind::triaxial;
+}
+
+/// Points of the first stage that shears, with the one at which it begins; empty without any.
+std::vector<std::size_t> sheared_points(const MacroCurve& c) {
+  std::vector<std::size_t> out;
+  const auto stage = std::ranges::find_if(c.stages, [](const StageRecord& s) { return shears(s.kind); });
+  const auto wanted = static_cast<double>(stage - c.stages.begin());
+  for (std::size_t k = 1; stage != c.stages.end() && k < c.stage.size(); ++k) {
+    if (c.stage[k] != wanted) continue;
+    if (out.empty()) out.push_back(k - 1);
+    out.push_back(k);
+  }
+  return out;
+}
+
+/// Nominal strain of z since the first of these points.
+std::vector<double> strain_since(const std::vector<double>& strain, const std::vector<std::size_t>& points) {
+  std::vector<double> out;
+  for (const std::size_t k : points) out.push_back(1.0 - (1.0 - strain[k]) / (1.0 - strain[points.front()]));
+  return out;
+}
+
+/// Mean loss of volume between two points over the volume at the first.
+double volume_lost(const std::vector<MacroCurve>& curves, std::size_t from, std::size_t to) {
+  double sum = 0.0;
+  for (const MacroCurve& c : curves) {
+    if (std::min({c.strain_x.size(), c.strain_y.size(), c.strain_z.size()}) <= to) return kNaN;
+    const auto volume = [&](std::size_t k) {
+      return (1.0 - c.strain_x[k]) * (1.0 - c.strain_y[k]) * (1.0 - c.strain_z[k]);
+    };
+    sum += 1.0 - volume(to) / volume(from);
+  }
+  return sum / static_cast<double>(curves.size());
+}
+
+/// q/p and volume in the first stage that shears.
+void add_shear(const Pairs& pairs, const std::vector<double>& strain, ModelScore& s) {
+  const std::vector<std::size_t> points = sheared_points(pairs.truth.front());
+  if (points.empty() || points.back() >= strain.size()) return;
+  const std::vector<double> since = strain_since(strain, points);
+  const auto q_truth = values_at(mean_of(pairs.truth, ratio_of), points);
+  const auto q_model = values_at(mean_of(pairs.model, ratio_of), points);
+  s.ratio_at_2 = excess(q_model, q_truth, point_at(since, 0.02));
+  s.ratio_at_6 = excess(q_model, q_truth, point_at(since, 0.06));
+  if (pairs.truth.front().stages[static_cast<std::size_t>(pairs.truth.front().stage[points.back()])].kind ==
+      StageKind::triaxial)
+    s.volume = volume_lost(pairs.model, points.front(), points.back()) -
+               volume_lost(pairs.truth, points.front(), points.back());
+}
+
 Cost total(const std::vector<MacroCurve>& curves, Cost MacroCurve::*part) {
   Cost sum;
   for (const MacroCurve& c : curves) sum += c.*part;
@@ -203,6 +256,10 @@ std::string times(double x) { return rounded_text(x, {3}, "-"); }
 
 }  // namespace
 
+std::string volume_text(const ModelScore& s) {
+  return std::isfinite(s.volume) ? fmt::format("{:+.2f} %", 100.0 * s.volume) : "";
+}
+
 double relative_difference(const std::vector<double>& model, const std::vector<double>& truth, std::size_t first) {
   double difference = 0.0;
   double size = 0.0;
@@ -219,9 +276,9 @@ ModelScore score(const ModelRun& run, bool blind) {
                .kind = run.model->kind,
                .blind = blind,
                .remark = run.refusal};
-  for (double* value :
-       {&s.axial, &s.axial_error, &s.lateral, &s.lateral_error, &s.axial_at_2, &s.axial_at_end, &s.ratio_at_2,
-        &s.ratio_at_6, &s.unloading, &s.truth_error, &s.band, &s.inside, &s.evaluations, &s.seconds, &s.seconds_all})
+  for (double* value : {&s.axial, &s.axial_error, &s.lateral, &s.lateral_error, &s.axial_at_2, &s.axial_at_end,
+                        &s.ratio_at_2, &s.ratio_at_6, &s.volume, &s.unloading, &s.truth_error, &s.band, &s.inside,
+                        &s.evaluations, &s.seconds, &s.seconds_all})
     *value = kNaN;
   const Pairs pairs = pairs_of(run, s.remark);
   if (pairs.truth.empty()) return s;
@@ -245,12 +302,7 @@ ModelScore score(const ModelRun& run, bool blind) {
   s.axial_at_2 = free(two) ? excess(m, t, two) : kNaN;
   s.axial_at_end = free(end) ? excess(m, t, end) : kNaN;
   s.truth_error = error_at(truth, end);
-  if (is_shear(run.truth->variant->setup.spec.test)) {
-    const auto q_truth = mean_of(truth, ratio_of);
-    const auto q_model = mean_of(pairs.model, ratio_of);
-    s.ratio_at_2 = excess(q_model, q_truth, two);
-    s.ratio_at_6 = excess(q_model, q_truth, point_at(strain, 0.06));
-  }
+  add_shear(pairs, strain, s);
   s.unloading = unloading_of(pairs.model) / unloading_of(truth) - 1.0;
   add_band(run, pairs, axial, first, s);
   add_costs(pairs, s);
@@ -273,6 +325,7 @@ TextTable table_of(const std::vector<ModelScore>& scores) {
                  "axial at the end",
                  "q/p at 2 %",
                  "q/p at 6 %",
+                 "volume",
                  "unloading modulus",
                  "standard error of the truth",
                  "band",
@@ -291,7 +344,7 @@ TextTable table_of(const std::vector<ModelScore>& scores) {
                                  std::to_string(s.bodies)};
     for (const double x :
          {s.axial, s.axial_error, s.lateral, s.lateral_error, s.axial_at_2, s.axial_at_end, s.ratio_at_2, s.ratio_at_6,
-          s.unloading, s.truth_error, s.band, s.inside, s.evaluations, s.seconds, s.seconds_all})
+          s.volume, s.unloading, s.truth_error, s.band, s.inside, s.evaluations, s.seconds, s.seconds_all})
       row.push_back(std::isfinite(x) ? fmt::format("{:.4g}", x) : "");
     row.push_back(s.remark);
     out.rows.push_back(std::move(row));
@@ -311,6 +364,7 @@ std::string console_summary(const std::vector<ModelScore>& scores) {
                         percent(s.axial_at_2), percent(s.axial_at_end));
     if (std::isfinite(s.ratio_at_6))
       text += fmt::format(", q/p at 2 and 6 % {} and {}", percent(s.ratio_at_2), percent(s.ratio_at_6));
+    if (std::isfinite(s.volume)) text += ", volume lost " + volume_text(s) + " of the volume";
     if (std::isfinite(s.unloading)) text += ", unloading modulus " + percent(s.unloading);
     if (std::isfinite(s.band))
       text += fmt::format("; 95 % band ±{:.0f} % of the axial stress, which holds {:.0f} % of the points",

@@ -21,8 +21,9 @@ struct ModelScore {
   double lateral_error = 0.0;
   double axial_at_2 = 0.0;  ///< model/truth - 1 at 2 % strain
   double axial_at_end = 0.0;
-  double ratio_at_2 = 0.0;
+  double ratio_at_2 = 0.0;  ///< model/truth - 1 at 2 % strain of the first stage that shears
   double ratio_at_6 = 0.0;
+  double volume = 0.0;  ///< loss of volume in that stage where it is triaxial, model - truth
   double unloading = 0.0;
   double truth_error = 0.0;
   double band = 0.0;
@@ -31,6 +32,9 @@ struct ModelScore {
   double seconds = 0.0;      ///< truth over model, tests alone
   double seconds_all = 0.0;  ///< truth over model, preparations included
 };
+
+/// ModelScore::volume in percent of the volume; empty where it is not defined.
+std::string volume_text(const ModelScore& s);
 
 void fields(auto&& visit, Of<ModelScore> auto& s) {
   visit("variant", s.variant, Means{"name of the variant"});
@@ -47,8 +51,12 @@ void fields(auto&& visit, Of<ModelScore> auto& s) {
   visit("lateral_standard_error", s.lateral_error, Means{"standard error of it", "1"});
   visit("axial_at_2", s.axial_at_2, Means{"axial stress at 2 % strain, model/truth - 1", "1"});
   visit("axial_at_end", s.axial_at_end, Means{"axial stress at the end of the first stage, model/truth - 1", "1"});
-  visit("q_over_p_at_2", s.ratio_at_2, Means{"q/p at 2 % strain, model/truth - 1", "1"});
-  visit("q_over_p_at_6", s.ratio_at_6, Means{"q/p at 6 % strain, model/truth - 1", "1"});
+  visit("q_over_p_at_2", s.ratio_at_2,
+        Means{"q/p at 2 % strain of the first stage that shears (shear, undrained, triaxial), model/truth - 1", "1"});
+  visit("q_over_p_at_6", s.ratio_at_6, Means{"q/p at 6 % strain of that stage, model/truth - 1", "1"});
+  visit(
+      "volume", s.volume,
+      Means{"loss of volume over the volume at its beginning, in that stage where it is triaxial, model - truth", "1"});
   visit("unloading", s.unloading, Means{"secant modulus of the first unloading, model/truth - 1", "1"});
   visit("truth_error", s.truth_error,
         Means{"standard error of the mean axial stress of the truth at the end, relative", "1"});
