@@ -251,6 +251,7 @@ inline std::vector<std::string> not_determined(const StageMeans& s) {
   const auto add = [&](const char* name, const std::optional<MeanError>& m) {
     if (m && !is_told_from_zero(m->n, m->mean, m->error)) out.emplace_back(name);
   };
+  add("modulus_secant", s.modulus);
   add("modulus_begin", s.modulus_begin);
   add("modulus_end", s.modulus_end);
   add("poisson_begin", s.poisson_begin);
