@@ -371,10 +371,28 @@ namespace {
 /// Keys that are defaults of stages.
 constexpr std::array kOfStages{"steps", "increments_per_step", "tolerance", "modulus_stress"};
 
+/// Under a stress above E nothing is left of grains: E or the stress misses its unit.
+void require_below_modulus(const SceneTable& t, const MacroStage& stage, double modulus) {
+  for (std::size_t k = 0; k < stage.axis.size(); ++k) {
+    const AxisDrive& drive = stage.axis[k];
+    if (!drive.to_stress() || drive.value <= modulus) continue;
+    std::string key = stage.record.way == StageKind::axes ? std::string("stress_") + "xyz"[k] : "stress";
+    if (k < 2 && t.has("lateral_stress")) key = "lateral_stress";
+    if (k == 2 && t.has("normal_stress")) key = "normal_stress";
+    t.add_error(key, fmt::format("is {:.3g} times E = {} of the grains; at most E is allowed: is a unit missing, such "
+                                 "as E = \"70 GPa\"?",
+                                 drive.value / modulus, pressure_text(modulus)));
+  }
+}
+
 void take_stages(const std::vector<SceneTable>& tables, MacroSpec& spec) {
   std::vector<MacroStage> stages;
   StageReader reader(spec, stages);
-  for (const SceneTable& t : tables) t.section([&] { reader.read(t); });
+  for (const SceneTable& t : tables)
+    t.section([&] {
+      reader.read(t);
+      if (!stages.empty()) require_below_modulus(t, stages.back(), spec.youngs_modulus);
+    });
   spec.test = MacroTest::stages;
   spec.stages = std::move(stages);
 }
