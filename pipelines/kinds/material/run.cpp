@@ -381,6 +381,8 @@ MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantR
   if (s.equation)
     for (const std::string& remark : prediction_remarks(inputs, s.predictions, scene.equation))
       s.head.remarks.push_back(remark);
+  if (s.equation)
+    for (std::string& warning : extrapolation_warnings(*s.equation)) s.head.warnings.push_back(std::move(warning));
   if (s.equation && !s.equation->usable)
     s.head.remarks.push_back("the equation of state is not usable: " + s.equation->message);
   else if (s.equation && s.equation->message != "fitted")
