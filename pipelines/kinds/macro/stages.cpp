@@ -385,13 +385,15 @@ void require_below_modulus(const SceneTable& t, const MacroStage& stage, double 
   }
 }
 
-void take_stages(const std::vector<SceneTable>& tables, MacroSpec& spec) {
+/// `holder`: where E may have been refused, with which stresses then cannot be compared.
+void take_stages(const SceneTable& holder, const std::vector<SceneTable>& tables, MacroSpec& spec) {
+  const bool modulus_is_known = !holder.has_errors();
   std::vector<MacroStage> stages;
   StageReader reader(spec, stages);
   for (const SceneTable& t : tables)
     t.section([&] {
       reader.read(t);
-      if (!stages.empty()) require_below_modulus(t, stages.back(), spec.youngs_modulus);
+      if (modulus_is_known && !stages.empty()) require_below_modulus(t, stages.back(), spec.youngs_modulus);
     });
   spec.test = MacroTest::stages;
   spec.stages = std::move(stages);
@@ -414,7 +416,7 @@ void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& s
        "one loading of a test, in this order; such tables replace `test`, `strain`, `preload` and `preload_steps`"});
   if (tables.empty()) return;
   macro.refuse({"test", "strain", "preload", "preload_steps"}, "goes without [[stage]], which says the whole test");
-  take_stages(tables, spec);
+  take_stages(holder, tables, spec);
 }
 
 void read_part_stages(const SceneTable& common, const SceneTable& t, MacroSpec& spec) {
@@ -426,7 +428,7 @@ void read_part_stages(const SceneTable& common, const SceneTable& t, MacroSpec& 
       t.add_error(key,
                   "belongs to a test, and the common [[stage]] say what is tested: give test too, which takes their "
                   "place, or [[stage]] of its own");
-  take_stages(stages, spec);
+  take_stages(common, stages, spec);
 }
 
 void refuse_idle_test_keys(const SceneTable& t, const SceneTable& stages, const std::vector<const MacroSpec*>& tests) {

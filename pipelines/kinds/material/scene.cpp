@@ -120,7 +120,7 @@ void read_material_tables(const SceneTable& root, MacroSetup& setup, std::vector
   spec.protocol = protocol_of(spec.preparation, spec.friction);
   const SceneTable packing = root.table_or_empty({"packing", "preparation of the packings"});
   constexpr double kAnyPressure = 1e13;  // [Pa]: where E was refused no pressure of this world is out of range
-  if (root.has_errors()) spec.youngs_modulus = kAnyPressure;
+  if (root.has_errors() && packing.is_text("start_pressure")) spec.youngs_modulus = kAnyPressure;
   read_finer_preparation(packing, setup);
   require_own_preparation(packing, spec);
   read_test(root.table_or_empty({"test", "test of the prepared packings"}), spec);
