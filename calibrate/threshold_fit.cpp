@@ -52,6 +52,22 @@ std::vector<double> clear_deltas(const CurveMeans& means, const std::vector<doub
   return out;
 }
 
+/// Why clear_deltas() finds nothing up to `end`: forces that are too small, or samples that differ too much.
+std::string nothing_clear_text(const CurveMeans& means, const std::vector<double>& single, double noise_floor,
+                               double end) {
+  const auto k = static_cast<std::size_t>(std::ranges::max_element(means.mean) - means.mean.begin());
+  if (!(means.mean[k] > noise_floor))
+    return fmt::format(
+        "no mean force above the noise floor {:.1e} E Rs^2 up to Delta = {:.4g} (largest mean {:.1e} E Rs^2)",
+        noise_floor, end, means.mean[k]);
+  const double count = std::max(means.count[k], 1.0);
+  return fmt::format(
+      "no mean force stays above two standard errors up to Delta = {:.4g} (largest mean {:.1e} +- {:.1e} E Rs^2, of "
+      "{:g} "
+      "values)",
+      end, means.mean[k], single[k] / std::sqrt(count), count);
+}
+
 /// The force of one curve does not fall again: a point above two standard errors with points below behind it is noise.
 std::vector<double> without_early_noise(const std::vector<double>& clear, const CurveMeans& means) {
   std::size_t first = means.delta.size();
@@ -242,11 +258,9 @@ FitReport fit_pair_law(const Measurements& data, PairKind kind, const FitOptions
     return report;
   }
   if (w.clear[0].empty()) {
-    const double largest = *std::max_element(w.means[0].mean.begin(), w.means[0].mean.end());
     conclude(report.law, LawStatus::no_threshold_crossing,
-             {fmt::format(
-                 "no mean force clearly above the noise floor {:.1e} E Rs^2 up to Delta = {:.4g} (largest mean {:.1e})",
-                 options.noise_floor, report.law.delta_max, largest)});
+             {nothing_clear_text(w.means[0], options.experiment ? w.sigma[0] : w.means[0].deviation,
+                                 options.noise_floor, report.law.delta_max)});
     return report;
   }
   prepare(w);

@@ -76,7 +76,11 @@ namespace {
 
 const MultiContactLaw& usable(const LawTableEntry& entry, LawForm form) {
   const MultiContactLaw* law = entry.find(form);
-  if (law == nullptr) throw InputError("law table: no law of the form \"" + to_string(form) + "\"");
+  if (law == nullptr) {
+    std::string there;
+    for (const MultiContactLaw& l : entry.laws) there += (there.empty() ? "" : ", ") + to_string(l.form);
+    throw InputError("law table: no law of the form \"" + to_string(form) + "\"; there is " + there);
+  }
   if (law->status == LawStatus::no_threshold_crossing)
     throw InputError("law table: the " + to_string(form) + " law is not usable: " + to_string(law->status) + " (" +
                      law->reason + ")");

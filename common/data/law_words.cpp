@@ -67,6 +67,15 @@ std::string form_label(const LawTableEntry& entry, const MultiContactLaw& law) {
   return to_string(law.form) + (better ? " (chosen)" : " (best)");
 }
 
+std::string unseen_error_text(const LawTableEntry& entry, const MultiContactLaw& law) {
+  if (std::isfinite(law.error_cross))
+    return fmt::format("off by {:.1f} % leaving one loading of planes out", 100.0 * law.error_cross);
+  if (entry.source != TableSource::measured && std::isfinite(law.error_held_out))
+    return fmt::format("from a library of laws, which are off by {:.1f} % on loadings that their fits did not see",
+                       100.0 * law.error_held_out);
+  return "fitted to one loading of planes, so that nothing could be left out";
+}
+
 std::string slides_text(const LawTableEntry& entry) {
   std::string text;
   for (const auto& [name, slide] : {std::pair{"against planes", &entry.slide_plane},

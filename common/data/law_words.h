@@ -59,6 +59,10 @@ std::string form_label(const LawTableEntry& entry, const MultiContactLaw& law);
 
 // What a reader of fitted laws should know.
 
+/// How far off a law of a table is on loadings of planes that it did not see: of one that was fitted to packings
+/// leaving one out, of one that comes from a library of laws as its materials were.
+std::string unseen_error_text(const LawTableEntry& entry, const MultiContactLaw& law);
+
 /// "friction limit and kt/kn: 0.22, 0.21 against planes; not measured against solid spheres (0.22, 0.21 stand in);
 /// ...".
 std::string slides_text(const LawTableEntry& entry);

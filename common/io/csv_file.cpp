@@ -131,13 +131,13 @@ bool is_percent(const std::string& unit) { return unit == "%" || csv::lower(unit
 
 CsvFile CsvFile::read(const std::string& path) { return parse(read_text(path), path); }
 
-CsvFile CsvFile::parse(const std::string& bytes, const std::string& path) {
+CsvFile CsvFile::parse(const std::string& bytes, const std::string& path, const std::string& header) {
   CsvFile file;
   file.path_ = path;
+  file.example_ = header;
   file.read_lines(bytes);
   if (file.columns_.empty())
-    throw InputError(path +
-                     ":1: no header: the first line that is no comment names columns and units, e.g. hn [mm], Fn [N]");
+    throw InputError(path + ":1: no header: the first line that is no comment names columns and units, e.g. " + header);
   return file;
 }
 
@@ -192,9 +192,8 @@ void CsvFile::read_header(const std::string& line, int number) {
     columns_.push_back(csv::column_of(title));
     const std::string& name = columns_.back().name;
     if (!name.empty() && name.find_first_not_of("0123456789.+-e") == std::string::npos)
-      throw InputError(
-          where(number) + ": no header: \"" + title +
-          "\" is a number; the first line that is no comment names columns and units, e.g. hn [mm], Fn [N]");
+      throw InputError(where(number) + ": no header: \"" + title +
+                       "\" is a number; the first line that is no comment names columns and units, e.g. " + example_);
     for (std::size_t k = 0; k + 1 < columns_.size(); ++k)
       if (columns_[k].name == name)
         throw InputError(where(number) + ": header: column \"" + title + "\" is there twice");
@@ -251,7 +250,10 @@ void CsvFile::read_row(const std::string& line, int number) {
   while (row.cells.size() > columns_.size() && row.cells.back().empty()) row.cells.pop_back();
   if (row.cells.size() != columns_.size())
     throw InputError(where(number) + ": " + std::to_string(row.cells.size()) + " cells, the header (line " +
-                     std::to_string(header_line_) + ") has " + std::to_string(columns_.size()) + " columns");
+                     std::to_string(header_line_) + ") has " + std::to_string(columns_.size()) + " columns" +
+                     (separator_ == ',' && row.cells.size() > columns_.size()
+                          ? "; where numbers have decimal commas, separate columns by ; or tab"
+                          : ""));
   rows_.push_back(std::move(row));
 }
 
@@ -313,6 +315,9 @@ void CsvFile::take_units_behind_names(const std::function<std::optional<Unit>(co
 std::optional<double> CsvFile::number(const CsvRow& row, std::size_t column, Unit unit) const {
   std::string cell = row.cells[column];
   if (csv::is_missing(cell)) return std::nullopt;
+  if (cell.find(',') != std::string::npos && cell.find('.') != std::string::npos)
+    throw InputError(where(row.line) + ": column \"" + columns_[column].title + "\": \"" + cell +
+                     "\" has a comma and a point: write numbers without a sign between thousands, e.g. 1234.5");
   if (separator_ != ',') std::replace(cell.begin(), cell.end(), ',', '.');
   const CsvColumn& c = columns_[column];
   const bool percent_sign = unit == Unit::none && cell.back() == '%';

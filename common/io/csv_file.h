@@ -47,8 +47,10 @@ class CsvFile {
   /// number is its decimal mark. Cells may stand in double quotes. Empty cells at the end of a line and empty lines
   /// count for nothing. Throws InputError (no header, a row of another length), IoError.
   static CsvFile read(const std::string& path);
-  /// Reads a table from a text in the same way; `path` stands for the file in messages.
-  static CsvFile parse(const std::string& bytes, const std::string& path);
+  /// Reads a table from a text in the same way; `path` stands for the file in messages, `header` for what its first
+  /// line may look like.
+  static CsvFile parse(const std::string& bytes, const std::string& path,
+                       const std::string& header = "hn [mm], Fn [N]");
   /// Reads a table as laboratories write it; none when no line is a header. Lines above the header are titles; a line
   /// of words right below it goes on with the titles of the columns ("mm; g; %"); columns may have no title, or one
   /// that is there twice; rows may be short. A double quote within a cell is a character (3/8"). Throws InputError for
@@ -108,6 +110,7 @@ class CsvFile {
   [[nodiscard]] std::vector<double> values_of(const CsvSetting& setting, Unit unit, std::size_t count) const;
 
   std::string path_;
+  std::string example_;  ///< of a header, for messages
   char separator_ = ',';
   bool separator_said_ = false;
   CsvIsHeader is_header_{};  ///< of a laboratory's table

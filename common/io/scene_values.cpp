@@ -23,6 +23,14 @@ constexpr double kMost = 1e30;
 /// Squares and cubes of a number without a unit stay finite below this.
 constexpr double kMostPlain = 1e100;
 
+/// An end of a range. What only allows for rounding beside it is left out, so that a share is "from 0 to 1".
+std::string plain_end(double end) {
+  constexpr double kSlack = 1e-8;
+  if (end < 0.0 && end > -kSlack) return "0";
+  const double rounded = std::stod(rounded_text(end, {6}));
+  return plain(std::abs(end) > kSlack && std::abs(rounded - end) < kSlack ? rounded : end);
+}
+
 /// "must be above 1", "must be from 0 to 0.5", "must be at least 0 and below 1".
 std::string describe(const Range& range) { return "must be " + range_text(range); }
 
@@ -229,11 +237,11 @@ std::string range_text(const Range& range) {
   const bool low = std::isfinite(range.low);
   const bool high = std::isfinite(range.high);
   if (low && high && !range.low_open && !range.high_open)
-    return "from " + plain(range.low) + " to " + plain(range.high);
+    return "from " + plain_end(range.low) + " to " + plain_end(range.high);
   std::string text;
-  if (low) text += (range.low_open ? "above " : "at least ") + plain(range.low);
+  if (low) text += (range.low_open ? "above " : "at least ") + plain_end(range.low);
   if (low && high) text += " and ";
-  if (high) text += (range.high_open ? "below " : "at most ") + plain(range.high);
+  if (high) text += (range.high_open ? "below " : "at most ") + plain_end(range.high);
   return text;
 }
 

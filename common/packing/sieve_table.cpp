@@ -377,7 +377,7 @@ SieveCurve read_sieve_file(const std::string& path, const SieveOptions& options,
   try {
     const std::string bytes = read_text(path);
     const std::optional<CsvFile> csv = laboratory_table(bytes, path);
-    return SieveReader(csv ? *csv : CsvFile::parse(bytes, path), options).read(dimension);
+    return SieveReader(csv ? *csv : CsvFile::parse(bytes, path, "opening [mm], passing [%]"), options).read(dimension);
   } catch (const InputError& e) {
     const std::string what = e.what();
     throw InputError(what.starts_with(path) ? what : path + ": " + what);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/core/text.h"
+#include "common/data/law_words.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
 #include "pipelines/commands/law_options.h"
@@ -164,10 +165,7 @@ std::string question_text(const law::MultiContactQuestion& q, const law::MultiCo
 
 /// What a colleague would add to numbers of a table: how far off the law is, and where it was not measured.
 std::string table_remark(const law::MultiContactAnswer& a) {
-  const MultiContactLaw& form = *a.entry.find(a.form);
-  std::string text = std::isnan(form.error_cross)
-                         ? std::string("fitted to one loading of planes, so that nothing could be left out")
-                         : fmt::format("off by {:.1f} % leaving one loading of planes out", 100.0 * form.error_cross);
+  const std::string text = unseen_error_text(a.entry, *a.entry.find(a.form));
   return a.remark.empty() ? text : text + "; " + a.remark;
 }
 

@@ -6,7 +6,9 @@
 #include <cstdio>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/io/progress.h"
+#include "common/io/text_file.h"
 #include "pipelines/kinds/kinds.h"
 #include "pipelines/run/run_context.h"
 #include "pipelines/runs/run_set.h"
@@ -39,10 +41,23 @@ ExitStatus run_kind(const SceneKind& kind, const Scene& scene, const CommonOptio
   }
 }
 
+/// Who gives a table of measurements or sizes in place of a scene is told so.
+Scene load_scene(const CommonOptions& options) {
+  const std::string& path = options.inputs.front();
+  try {
+    return Scene::load(path, options.overrides);
+  } catch (const InputError& e) {
+    const auto form = file_form(path);
+    if (!form || form == FileForm::toml) throw;
+    throw InputError(std::string(e.what()) + "; a scene is a TOML file: softgrain check " + shell_word(path) +
+                     " says what this file is for");
+  }
+}
+
 ExitStatus run_scene(const CommonOptions& options, const std::string& command) {
   if (options.inputs.size() != 1)
     throw InputError(command + ": one scene is needed (softgrain " + command + " SCENE.toml)");
-  const Scene scene = Scene::load(options.inputs.front(), options.overrides);
+  const Scene scene = load_scene(options);
   const SceneKind& kind = kind_of(scene, command);
   refuse_idle_options(kind, options);
   warn_of_cores(options);

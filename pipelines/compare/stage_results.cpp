@@ -279,6 +279,11 @@ double compression_index(const std::vector<double>& void_ratio, const std::vecto
   return (at_place(void_ratio, first) - at_place(void_ratio, second)) / std::log10(ratio);
 }
 
+std::string mean_modulus_text(const MeanError& m) {
+  if (is_told_from_zero(m.n, m.mean, m.error)) return pressure_text(m);
+  return fmt::format("not determined ({}, {} samples)", pressure_text(m), m.n);
+}
+
 std::string modulus_text(const StageMeans& s) {
   const Modulus modulus = s.record.kind == StageKind::hold ? Modulus::none : modulus_of(s.record.way);
   if (modulus == Modulus::none) return "";
@@ -286,7 +291,7 @@ std::string modulus_text(const StageMeans& s) {
     return fmt::format("{} modulus not determined: the {} does not go through its interval ({})", to_string(modulus),
                        stress_of(modulus), modulus_interval(s));
   std::string text =
-      fmt::format("{} modulus {} from {} to {} of {}", to_string(modulus), pressure_text(*s.modulus),
+      fmt::format("{} modulus {} from {} to {} of {}", to_string(modulus), mean_modulus_text(*s.modulus),
                   pressure_text(s.modulus_from->mean, 3), pressure_text(s.modulus_to->mean, 3), stress_of(modulus));
   if (!(s.record.modulus_stress[1] > 0.0)) text += " (" + modulus_interval(s) + ")";
   if (s.axial_end && s.modulus->n < s.axial_end->n)

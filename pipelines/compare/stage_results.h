@@ -142,6 +142,10 @@ void stage_numbers(auto&& visit) {
 /// MPa", "upper half of the stress", "first half of the largest stress", "whole stage".
 std::string modulus_interval(const StageMeans& stage);
 
+/// A modulus, mean over samples: "650 +- 20 MPa", or "not determined (468 +- 45 MPa, 2 samples)" where they do not tell
+/// it from 0.
+std::string mean_modulus_text(const MeanError& modulus);
+
 /// "constrained modulus 650 +- 20 MPa from 2.5 MPa to 5 MPa of axial stress (upper half of the stress)", or
 /// why it is not determined; empty where the stage has none.
 std::string modulus_text(const StageMeans& stage);

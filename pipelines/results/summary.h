@@ -133,7 +133,7 @@ void fields(auto&& visit, Of<AnySummary> auto& s) {
         Means{"what may make the result wrong for its purpose, with what to do about it; the most important first"});
   visit("remarks", s.remarks, Means{"notes; of a run that is not usable, why"});
   visit("files", s.files, Means{"files that were written"});
-  visit("seconds", s.seconds, Means{"duration of the run", "s"});
+  visit("seconds", s.seconds, Means{"duration of the run; of a resumed one since it was resumed", "s"});
   visit("provenance", s.provenance, Means{"where the result comes from"});
   visit("engine", s.engine, Means{"program that moved the bodies, when it was another"});
   visit("sizes", s.sizes, Means{"sizes of the grains where a distribution was asked for"});
@@ -251,6 +251,7 @@ inline std::vector<std::string> not_determined(const StageMeans& s) {
   const auto add = [&](const char* name, const std::optional<MeanError>& m) {
     if (m && !is_told_from_zero(m->n, m->mean, m->error)) out.emplace_back(name);
   };
+  add("modulus_secant", s.modulus);
   add("modulus_begin", s.modulus_begin);
   add("modulus_end", s.modulus_end);
   add("poisson_begin", s.poisson_begin);

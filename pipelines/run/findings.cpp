@@ -55,6 +55,16 @@ void Findings::warn_of_metres(const std::string& key, double radius) {
     warn(fmt::format("{} is {:g} m: numbers without a unit are metres; was \"{:g} mm\" meant?", key, radius, radius));
 }
 
+void Findings::warn_of_grains(double modulus, double density) {
+  constexpr double kSoftest = 1e3;    // [Pa]
+  constexpr double kLightest = 15.0;  // [kg/m^3]; beads of foam
+  if (modulus < kSoftest)
+    warn(fmt::format("E is {:g} Pa: numbers without a unit are pascals; was \"{:g} GPa\" meant?", modulus, modulus));
+  if (density < kLightest)
+    warn(fmt::format("density is {:g} kg/m^3: numbers without a unit are kg/m^3; was \"{:g} g/cm^3\" meant?", density,
+                     density));
+}
+
 void Findings::spend(const std::string& part, double core_seconds) {
   const auto known = std::ranges::find_if(times_, [&](const auto& t) { return t.first == part; });
   if (known == times_.end())

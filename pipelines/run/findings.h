@@ -24,6 +24,8 @@ class Findings {
   void warn(const std::string& text);
   /// Where a radius [m] is so large that its unit was probably forgotten; `key`: what it is called.
   void warn_of_metres(const std::string& key, double radius);
+  /// The same of E [Pa] and density [kg/m^3] of grains that are too small.
+  void warn_of_grains(double modulus, double density);
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
   /// Adds to the time that the run will take [s of one core] what a part of it ("measuring", "twins") takes.
   void spend(const std::string& part, double core_seconds);

@@ -245,6 +245,12 @@ TEST(CommandLine, BadSceneIsNamedWithFileAndLine) {
   write_text_atomic(scene, "a = 1\nb = = 2\n");
   expect("run " + scene + " --out " + (directory / "out").string(), 2, "scene.toml:2: not valid TOML");
   expect("run " + scene + " --set =3 --out " + (directory / "out").string(), 2, "scene.toml:2");
+  const std::string table = (directory / "table.csv").string();
+  write_text_atomic(table, "opening [mm],passing [%]\n4,100\n2,0\n");
+  expect("run " + table + " --out " + (directory / "out").string(), 2, "a scene is a TOML file: softgrain check");
+  // A folder of scenes is no run, whatever they are called.
+  write_text_atomic((directory / "law_table.toml").string(), "kind = \"law-table\"\n");
+  expect("check " + directory.string(), 2, "no run directory: neither summary.json nor a file of results is in it");
   write_text_atomic(scene, "a = 1\n");
   expect("run " + scene + " --set novalue --out " + (directory / "out").string(), 2,
          "--set novalue: must be of the form key=value");

@@ -109,5 +109,21 @@ TEST(FormLabel, SaysWhetherErrorsOrASceneChose) {
   EXPECT_EQ(form_label(entry, entry.laws[1]), "isotropic (best)");
 }
 
+/// A law of a library was not fitted to loadings, so none could be left out of it.
+TEST(UnseenError, IsThatOfTheFitOrOfTheLibrary) {
+  LawTableEntry entry;
+  MultiContactLaw law = law_of(LawForm::isotropic, 0.178);
+  law.error_held_out = kNaN;
+  EXPECT_EQ(unseen_error_text(entry, law), "off by 17.8 % leaving one loading of planes out");
+  law.error_cross = kNaN;
+  EXPECT_EQ(unseen_error_text(entry, law), "fitted to one loading of planes, so that nothing could be left out");
+  law.error_held_out = 0.207;
+  for (const TableSource source : {TableSource::library, TableSource::press_test}) {
+    entry.source = source;
+    EXPECT_EQ(unseen_error_text(entry, law),
+              "from a library of laws, which are off by 20.7 % on loadings that their fits did not see");
+  }
+}
+
 }  // namespace
 }  // namespace softgrain

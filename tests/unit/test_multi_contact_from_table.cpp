@@ -109,7 +109,7 @@ TEST(MultiContactFromTable, WhatIsNotUsableIsRefused) {
   LawTableEntry entry = law_entry();
   LawTableEntry two = entry;
   two.laws.pop_back();
-  refused(two, LawForm::directional, "no law of the form \"directional\"");
+  refused(two, LawForm::directional, "no law of the form \"directional\"; there is pair, isotropic");
   entry.laws[1].status = LawStatus::no_threshold_crossing;
   entry.laws[1].reason = "the threshold lies beyond";
   refused(entry, LawForm::isotropic, "the threshold lies beyond");

@@ -102,7 +102,7 @@ TEST(RecipeScene, PackingsAreCountedInProgress) {
   EXPECT_EQ(packing_title(all, all[kSheared]), "packing 1" + of + all[kSheared].name);
   EXPECT_EQ(packing_title(all, all.back()), "packing " + std::to_string(all.size() - 1) + of + all.back().name);
   const std::vector<MaterialVariant> alone{all.front()};
-  EXPECT_EQ(packing_title(alone, alone.front()), "");
+  EXPECT_EQ(packing_title(alone, alone.front()), alone.front().name);
 }
 
 TEST(RecipeLaw, WhatIsMissingWithoutACellLawIsSaidWithWhatToDo) {

@@ -9,9 +9,12 @@
 #include <string>
 
 #include "common/core/error.h"
+#include "common/io/text_file.h"
 #include "common/packing/grading_indices.h"
 #include "common/packing/grading_scene.h"
 #include "common/packing/sieve_size.h"
+#include "common/packing/sieve_table.h"
+#include "tests/support/temporary_directory.h"
 
 namespace {
 
@@ -107,6 +110,20 @@ TEST(SieveFiles, AreReadOrRefusedAsTheTableSays) {
     }
     EXPECT_EQ(complaint.empty(), std::string(s.refused).empty()) << s.file << " " << s.keys << "\n" << complaint;
     EXPECT_NE(complaint.find(s.refused), std::string::npos) << s.file << " " << s.keys << "\n" << complaint;
+  }
+}
+
+TEST(SieveFiles, WithoutAHeaderAreToldOneOfTheirOwn) {
+  const test::TemporaryDirectory directory;
+  for (const char* text : {"", "4.0;100\n2.0;50\n"}) {
+    write_text_atomic(directory.file("empty.csv"), text);
+    std::string message;
+    try {
+      (void)read_sieve_file(directory.file("empty.csv"), {}, 3);
+    } catch (const InputError& e) {
+      message = e.what();
+    }
+    EXPECT_NE(message.find("e.g. opening [mm], passing [%]"), std::string::npos) << message;
   }
 }
 

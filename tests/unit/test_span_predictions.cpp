@@ -129,6 +129,22 @@ TEST(SpanPredictions, OnsetsThatWereMeasuredElsewhereAreSaid) {
   EXPECT_EQ(found->summary.extrapolations.front().largest_fitted, 60.0);
 }
 
+/// Who asks for a span and gets nothing is warned, once for all spans with one reason.
+TEST(SpanPredictions, WhatIsNotExtrapolatedIsAWarning) {
+  EquationSummary s;
+  const Estimate found{0.7, 0.01, 0.68, 0.72};
+  s.extrapolations = {{"fast", 12.0, 6.0, true, "rods", found, {}, {}},
+                      {"fast", 50.0, 6.0, false, "all forms are refused by the data", {}, {}, {}},
+                      {"fast", 200.0, 6.0, false, "all forms are refused by the data", {}, {}, {}}};
+  const std::vector<std::string> said = extrapolation_warnings(s);
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_EQ(said.front(), "phi_J of fast is not extrapolated to span 50, 200: all forms are refused by the data");
+  s.known = {{60.0, 0.9, 1e-4}};
+  EXPECT_NE(extrapolation_warnings(s).at(0).find("[[equation.onset]]"), std::string::npos);
+  for (ExtrapolationSummary& e : s.extrapolations) e.usable = true;
+  EXPECT_TRUE(extrapolation_warnings(s).empty());
+}
+
 TEST(SpanPredictions, VariantsAboveTheLargestSpanChangeNothing) {
   auto inputs = inputs_of({1.5, 2.4, 4.0, 6.0, 12.0});
   const auto before = predict_spans(inputs, settings(), 1);

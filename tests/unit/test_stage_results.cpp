@@ -413,6 +413,22 @@ TEST(StageResults, IntervalsAreSaidAndWhereThereIsNoModulus) {
       "constrained modulus not determined: the axial stress does not go through its interval (10 kPa to 200 kPa)");
 }
 
+/// The terminal, the summary and the report say the same of them.
+TEST(StageResults, SecantsThatSamplesDoNotTellFromZeroAreNotDetermined) {
+  StageMeans s;
+  s.record = {"loading", StageKind::oedometric, StageKind::oedometric};
+  s.modulus = MeanError{2, 468e6, 64e6, 45e6};  // Student's t of one degree: +- 572 MPa
+  s.modulus_from = MeanError{2, 2.5e6, 0.0, 0.0};
+  s.modulus_to = MeanError{2, 5e6, 0.0, 0.0};
+  EXPECT_EQ(modulus_text(s),
+            "constrained modulus not determined (468 +- 45 MPa, 2 samples) from 2.5 MPa to 5 MPa of axial stress "
+            "(upper half of the stress)");
+  EXPECT_EQ(json_of(s).at("not_determined"), nlohmann::json::array({"modulus_secant"}));
+  s.modulus->error = 20e6;  // +- 254 MPa
+  EXPECT_EQ(modulus_text(s).find("constrained modulus 468 +- 20 MPa from 2.5 MPa to 5 MPa"), 0U) << modulus_text(s);
+  EXPECT_EQ(json_of(s).value("not_determined", nlohmann::json::array()).size(), 0U);
+}
+
 /// E50 of triaxial stages: up to half of the strength, whatever comes after the peak.
 TEST(StageResults, YoungsModulusIsTakenToHalfOfTheStrength) {
   MacroCurve c;

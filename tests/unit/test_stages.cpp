@@ -235,6 +235,28 @@ TEST(Stages, NamesAreUnlike) {
   EXPECT_EQ(names(load + "name = \"oedometric 3\"\n" + load + load), numbered);
 }
 
+/// "5 MPa" on grains with E = "70", whose GPa is missing.
+TEST(Stages, StressesAboveEAreRefused) {
+  const auto refusal = [](const std::string& keys) -> std::string {
+    try {
+      (void)one(keys);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const double modulus = MacroSpec{}.youngs_modulus;
+  const auto in_moduli = [&](double factor) { return std::to_string(factor * modulus); };
+  EXPECT_EQ(refusal("kind = \"oedometric\"\nstress = " + in_moduli(1.0)), "");
+  const std::string high = refusal("kind = \"oedometric\"\nstress = " + in_moduli(3.0));
+  EXPECT_NE(high.find("is 3 times E = "), std::string::npos) << high;
+  EXPECT_NE(high.find("is a unit missing"), std::string::npos) << high;
+  const std::string sides = "kind = \"triaxial\"\nstrain = 0.1\nlateral_stress = ";
+  EXPECT_EQ(refusal(sides + in_moduli(0.5)), "");
+  EXPECT_NE(refusal(sides + in_moduli(2.0)).find("lateral_stress"), std::string::npos);
+  EXPECT_NE(refusal("kind = \"axes\"\nstress_y = " + in_moduli(2.0)).find("stress_y"), std::string::npos);
+}
+
 /// Where a stage begins is known only in the run if the one before it goes by strain.
 TEST(Stages, AnUnloadingThatLoadsIsNotUsable) {
   const auto curve_of = [](const std::string& back, double ends) {

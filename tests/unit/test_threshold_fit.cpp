@@ -162,8 +162,19 @@ TEST(ThresholdFit, NoCrossing) {
   o.normal.delta = 0.3;
   const auto law = fit_pair_law(synthetic(o), PairKind::soft_solid, few_replicates()).law;
   EXPECT_EQ(law.status, LawStatus::no_threshold_crossing);
-  EXPECT_FALSE(law.reason.empty());
+  EXPECT_TRUE(mentions(law, "no mean force above the noise floor 1.0e-06 E Rs^2 up to Delta = ")) << law.reason;
   EXPECT_EQ(law.normal.a.value, 0.0);
+}
+
+/// Forces far above the noise floor, of one packing alone.
+TEST(ThresholdFit, ScatterIsSaidWhereItHidesTheForces) {
+  auto data = synthetic({});
+  for (auto& run : data.runs)
+    for (auto& p : run.normal) p.force = run.packing == 3 ? 10.0 * p.delta : 0.0;
+  const auto law = fit_pair_law(data, PairKind::soft_solid, few_replicates()).law;
+  EXPECT_EQ(law.status, LawStatus::no_threshold_crossing);
+  EXPECT_TRUE(mentions(law, "no mean force stays above two standard errors")) << law.reason;
+  EXPECT_FALSE(mentions(law, "noise floor")) << law.reason;
 }
 
 TEST(ThresholdFit, ForcesLostInScatterAreNoCrossing) {

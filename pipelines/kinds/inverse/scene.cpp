@@ -290,6 +290,7 @@ void check_inverse(const InverseSetup& setup, Findings& out) {
                   setup.target.delta.back(), *std::max_element(setup.target.force.begin(), setup.target.force.end()));
   const SoftParticleSpec& spec = setup.measure.spec;
   out.warn_of_metres("shell_radius", spec.shell_radius);
+  out.warn_of_grains(spec.youngs_modulus, spec.density);
   for (const std::string& one :
        implausible_forces(setup.target.delta, setup.target.force, spec.shell_radius, spec.youngs_modulus))
     out.warn(one);

@@ -312,6 +312,7 @@ void tell_preparation(const MacroSetup& setup, Findings& out) {
 void warn_of_scene(const MacroSetup& setup, const BodyCounts& count, Findings& out) {
   if (count.soft < count.all) out.warn_of_metres("the largest solid grain", setup.spec.solid_radius_max);
   if (count.soft > 0.0) out.warn_of_metres("the largest soft particle", setup.spec.soft_radius_max);
+  out.warn_of_grains(setup.spec.youngs_modulus, setup.spec.density);
   constexpr double kFew = 50.0;
   if (count.all < kFew)
     out.warn(fmt::format("{:.0f} bodies are few: most touch a wall, and samples will differ widely", count.all));

@@ -6,7 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include "common/core/few_samples.h"
 #include "common/core/text.h"
 #include "common/data/law_words.h"
 #include "pipelines/kinds/macro/bands.h"
@@ -26,18 +25,12 @@ std::string lateral_ratio(const MacroCurve& c) {
   return fmt::format("{:.3f}", c.stress_lateral.back() / c.stress_axial.back());
 }
 
-/// A slope whose error is as large as itself is none.
-std::string modulus_text(const MeanError& m) {
-  if (is_told_from_zero(m.n, m.mean, m.error)) return pressure_text(m);
-  return fmt::format("not determined ({}, {} samples)", pressure_text(m), m.n);
-}
-
 /// Moduli and strength of one stage of one engine.
 std::string stage_line(const std::string& engine, const StageMeans& s) {
   std::string line = fmt::format("{}, stage {}:", engine, s.record.name);
   if (const std::string modulus = modulus_text(s); !modulus.empty()) line += " " + modulus + ",";
   if (s.modulus_begin && s.record.kind != StageKind::hold)
-    line += fmt::format(" tangent at its beginning {},", modulus_text(*s.modulus_begin));
+    line += fmt::format(" tangent at its beginning {},", mean_modulus_text(*s.modulus_begin));
   if (s.axial_end) line += fmt::format(" axial stress {},", pressure_text(*s.axial_end));
   if (s.lateral_ratio) line += fmt::format(" K0 {},", with_error(*s.lateral_ratio, {.value = {3}}));
   if (s.ratio_peak) line += fmt::format(" q/p {} at most,", with_error(*s.ratio_peak));

@@ -371,10 +371,30 @@ namespace {
 /// Keys that are defaults of stages.
 constexpr std::array kOfStages{"steps", "increments_per_step", "tolerance", "modulus_stress"};
 
-void take_stages(const std::vector<SceneTable>& tables, MacroSpec& spec) {
+/// Under a stress above E nothing is left of grains: E or the stress misses its unit.
+void require_below_modulus(const SceneTable& t, const MacroStage& stage, double modulus) {
+  for (std::size_t k = 0; k < stage.axis.size(); ++k) {
+    const AxisDrive& drive = stage.axis[k];
+    if (!drive.to_stress() || drive.value <= modulus) continue;
+    std::string key = stage.record.way == StageKind::axes ? std::string("stress_") + "xyz"[k] : "stress";
+    if (k < 2 && t.has("lateral_stress")) key = "lateral_stress";
+    if (k == 2 && t.has("normal_stress")) key = "normal_stress";
+    t.add_error(key, fmt::format("is {:.3g} times E = {} of the grains; at most E is allowed: is a unit missing, such "
+                                 "as E = \"70 GPa\"?",
+                                 drive.value / modulus, pressure_text(modulus)));
+  }
+}
+
+/// `holder`: where E may have been refused, with which stresses then cannot be compared.
+void take_stages(const SceneTable& holder, const std::vector<SceneTable>& tables, MacroSpec& spec) {
+  const bool modulus_is_known = !holder.has_errors();
   std::vector<MacroStage> stages;
   StageReader reader(spec, stages);
-  for (const SceneTable& t : tables) t.section([&] { reader.read(t); });
+  for (const SceneTable& t : tables)
+    t.section([&] {
+      reader.read(t);
+      if (modulus_is_known && !stages.empty()) require_below_modulus(t, stages.back(), spec.youngs_modulus);
+    });
   spec.test = MacroTest::stages;
   spec.stages = std::move(stages);
 }
@@ -396,7 +416,7 @@ void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& s
        "one loading of a test, in this order; such tables replace `test`, `strain`, `preload` and `preload_steps`"});
   if (tables.empty()) return;
   macro.refuse({"test", "strain", "preload", "preload_steps"}, "goes without [[stage]], which says the whole test");
-  take_stages(tables, spec);
+  take_stages(holder, tables, spec);
 }
 
 void read_part_stages(const SceneTable& common, const SceneTable& t, MacroSpec& spec) {
@@ -408,7 +428,7 @@ void read_part_stages(const SceneTable& common, const SceneTable& t, MacroSpec& 
       t.add_error(key,
                   "belongs to a test, and the common [[stage]] say what is tested: give test too, which takes their "
                   "place, or [[stage]] of its own");
-  take_stages(stages, spec);
+  take_stages(common, stages, spec);
 }
 
 void refuse_idle_test_keys(const SceneTable& t, const SceneTable& stages, const std::vector<const MacroSpec*>& tests) {

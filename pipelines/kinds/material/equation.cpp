@@ -5,11 +5,13 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "calibrate/response_prediction.h"
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 #include "macrosim/body_contacts.h"
 #include "pipelines/kinds/material/scene.h"
 
@@ -119,6 +121,18 @@ StateCurve state_curve(const MacroCurve& c, const std::string& group, double spa
 bool takes_part(const MacroCurve& c) {
   constexpr std::size_t kLeast = 4;
   return c.usable && state_curve(c, "", 1.0).phi.size() >= kLeast;
+}
+
+std::vector<std::string> extrapolation_warnings(const EquationSummary& s) {
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> spans;  // by family and reason
+  for (const ExtrapolationSummary& e : s.extrapolations)
+    if (!e.usable) spans[{e.family, e.message}].push_back(fmt::format("{:g}", e.span));
+  std::vector<std::string> out;
+  for (const auto& [of, missing] : spans)
+    out.push_back(
+        fmt::format("phi_J of {} is not extrapolated to span {}: {}{}", of.first, join_text(missing), of.second,
+                    s.known.empty() ? "" : "; are the onsets in [[equation.onset]] of this material and preparation?"));
+  return out;
 }
 
 std::optional<EquationResult> equation_of(const std::vector<EquationInput>& variants, const EquationSettings& settings,

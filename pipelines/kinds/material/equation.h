@@ -147,6 +147,9 @@ struct EquationResult {
 std::optional<EquationResult> equation_of(const std::vector<EquationInput>& variants, const EquationSettings& settings,
                                           std::uint64_t seed);
 
+/// What was asked for and could not be extrapolated: a warning for each family.
+std::vector<std::string> extrapolation_warnings(const EquationSummary& summary);
+
 /// Whether a sample is usable and compressed over at least four points.
 bool takes_part(const MacroCurve& curve);
 

@@ -48,9 +48,8 @@ using Packings = std::shared_ptr<const std::vector<MacroPacking>>;
 Packings packings_of(const MaterialVariant& v, const std::string& title, const Run& run) {
   const std::string file = file_of(packings_name(v), "material_initial");
   try {
-    auto packings = std::make_shared<const std::vector<MacroPacking>>(
-        title.empty() ? prepare_packings(v.setup, run, file)
-                      : prepare_packings(v.setup, run, file, title + ": preparing"));
+    auto packings =
+        std::make_shared<const std::vector<MacroPacking>>(prepare_packings(v.setup, run, file, title + ": preparing"));
     if (v.setup.spec.preparation != Preparation::lammps) save_packings(*packings, run, file);
     return packings;
   } catch (const DensityNotReached&) {  // says what to do
@@ -109,7 +108,7 @@ VariantResult run_variant(const MaterialScene& scene, const MaterialVariant& v,
                           const std::vector<MacroPacking>& packings) {
   VariantResult r{&v, file_of(v.name, "material"), {}, nullptr};
   const std::string title = packing_title(scene.variants, v);
-  const MacroRuns runs{v.setup, packings, {}, run.seed, v.name, title.empty() ? "" : title + ": testing"};
+  const MacroRuns runs{v.setup, packings, {}, run.seed, v.name, title + ": testing"};
   const std::string states = file_of(v.name, "states_material");
   r.curves = lammps ? run_engines(runs, {}, run, states, outcomes_of_lammps(scene, v, *lammps, run, packings))
                     : kept_tests(runs, run, [&] { return run_engines(runs, {no_soft_laws()}, run, states); });
@@ -184,7 +183,7 @@ std::string tests_of(const std::vector<MaterialVariant>& variants, const Materia
 std::string packing_title(const std::vector<MaterialVariant>& variants, const MaterialVariant& of) {
   const auto own = [](const MaterialVariant& v) { return !v.same_packings; };
   const std::int64_t all = std::ranges::count_if(variants, own);
-  if (variants.size() < 2) return "";
+  if (variants.size() < 2) return of.name;
   const std::int64_t number = std::count_if(variants.data(), &of + 1, own);
   return fmt::format("packing {} of {}, {}", number, all, of.name);
 }
@@ -382,6 +381,8 @@ MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantR
   if (s.equation)
     for (const std::string& remark : prediction_remarks(inputs, s.predictions, scene.equation))
       s.head.remarks.push_back(remark);
+  if (s.equation)
+    for (std::string& warning : extrapolation_warnings(*s.equation)) s.head.warnings.push_back(std::move(warning));
   if (s.equation && !s.equation->usable)
     s.head.remarks.push_back("the equation of state is not usable: " + s.equation->message);
   else if (s.equation && s.equation->message != "fitted")

@@ -44,7 +44,7 @@ struct VariantRuns {
   std::vector<VariantFailure> failures;
 };
 
-/// Which packing a variant has, as progress says it: "packing 7 of 26, NAME"; empty where there is one alone.
+/// Which packing a variant has, as progress says it: "packing 7 of 26, NAME"; of one alone its name.
 std::string packing_title(const std::vector<MaterialVariant>& variants, const MaterialVariant& of);
 
 /// Prepares and tests all samples of all variants; writes material_NAME.h5, material_initial_NAME.h5 and kept states.

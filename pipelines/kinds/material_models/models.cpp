@@ -36,7 +36,7 @@ struct OneSample {
   const VariantResult& truth;
   const Run& run;
   SubstituteRuns& substitutes;
-  std::string draw{};  ///< of the card, in the names of its files; empty: the card itself
+  std::string draw{};  ///< of the card, in the names of its files and in progress; empty: the card itself
 
   /// Bodies in places of their own, which no loading moves.
   [[nodiscard]] MacroPacking own_packing(const std::string& key, const std::function<MacroPacking()>& make) const {
@@ -57,7 +57,9 @@ struct OneSample {
     const std::vector<MacroPacking> packings{packing};
     std::vector<NamedLaws> laws;
     if (law != nullptr) laws.push_back(*law);
-    MacroCurve c = std::move(run_engines({setup, packings, {}, run.seed, name}, laws, run, "").front());
+    const std::string progress = fmt::format("model {} of {}, sample {}{}", model.name, truth.variant->name, sample,
+                                             draw.empty() ? "" : ", " + draw);
+    MacroCurve c = std::move(run_engines({setup, packings, {}, run.seed, name, progress}, laws, run, "").front());
     c.sample = static_cast<std::int64_t>(sample);
     c.engine = model.name;
     return c;

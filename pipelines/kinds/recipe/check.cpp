@@ -8,6 +8,7 @@
 #include "macrosim/test_protocol.h"
 #include "pipelines/kinds/material/run.h"
 #include "pipelines/kinds/material_law/fines_in_cells.h"
+#include "pipelines/kinds/recipe/law.h"
 #include "pipelines/kinds/recipe/run.h"
 #include "pipelines/kinds/recipe/stages.h"
 
@@ -67,6 +68,7 @@ void judge_mixtures(const RecipeScene& recipe, Findings& out) {
 
 void check_recipe(const RecipeScene& recipe, Findings& out) {
   out.warn_of_metres("the largest grain", recipe.sizes.largest());
+  out.warn_of_grains(recipe.youngs_modulus, grain_density(recipe));
   for (const Constituent& c : recipe.constituents)
     out.lines += fmt::format("  {}: {:.3g} % of the mass, {:.3g} % of the solid volume\n", c.name, 100.0 * c.mass_share,
                              100.0 * c.volume_share);

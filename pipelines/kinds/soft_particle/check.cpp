@@ -210,6 +210,7 @@ double expected_grain_overlap(PairKind kind, double delta) {
 
 void warn_of_soft_particle(const SoftParticleSpec& spec, Findings& out) {
   out.warn_of_metres("shell_radius", spec.shell_radius);
+  out.warn_of_grains(spec.youngs_modulus, spec.density);
   constexpr double kSolid = 0.5;
   if (spec.rmax_over_shell > kSolid)
     out.warn(
