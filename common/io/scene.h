@@ -53,6 +53,10 @@ struct Range {
   static Range above(double low) { return {low, std::numeric_limits<double>::infinity(), true, false}; }
   /// Of coefficients of friction: with a thousand no contact slides that bears anything, and more is a wrong unit.
   static Range friction() { return closed(0.0, 1000.0); }
+
+  [[nodiscard]] bool contains(double value) const {
+    return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+  }
 };
 
 /// "above 0", "from 0 to 0.5", "at least 0 and below 1"; empty when all numbers are allowed.
