@@ -226,12 +226,6 @@ void read_range(const SceneTable& t, CellCard& card) {
   card.mixture_high = t.number("mixture_max", Unit::none, kAnyScale);
 }
 
-std::string read_words_of(const SceneTable& t, const char* key) {
-  std::string text = t.text(key);
-  if (text.empty()) t.throw_error(key, "must not be empty");
-  return text;
-}
-
 void read_measured(const SceneTable& t, CellCard& card) {
   if (t.has("E")) card.youngs_modulus = t.number("E", Unit::pressure, Range::positive());
   if (t.has("density")) card.density = t.number("density", Unit::density, Range::positive());
@@ -241,17 +235,17 @@ void read_measured(const SceneTable& t, CellCard& card) {
     card.grain_rolling.friction = t.number("mu_r", Unit::none, Range{0.0, 1000.0, true, false});
     card.grain_rolling.stiffness = t.number("kr_ratio", Unit::none, Range{0.0, 1000.0, true, false});
   }
-  card.preparation = read_words_of(t, "preparation");
+  card.preparation = t.line_text("preparation");
   card.start_pressure = t.number("start_pressure", Unit::none, kOverModulus);
   card.split = t.number("split", Unit::none, Range{0.0, 1.0, true, true});
   card.fines_ratio = t.number("fines_ratio", Unit::none, Range::closed(1.0, 1e9));
-  card.fines_sizes = read_words_of(t, "fines_sizes");
+  card.fines_sizes = t.filled_text("fines_sizes");
   card.samples = t.count("samples", 1, std::numeric_limits<int>::max());
 }
 
 void read_preparations(const SceneTable& root, CellCard& card) {
   for (const SceneTable& t : root.tables("preparation")) {
-    PreparationFactor p{read_words_of(t, "name"), read_estimate(t, "factor", kFactor)};
+    PreparationFactor p{t.line_text("name"), read_estimate(t, "factor", kFactor)};
     if (void_ratio_factor(card, p.preparation))
       t.throw_error("name",
                     p.preparation == card.preparation ? "is that of [measured], whose factor is 1" : "is used twice");

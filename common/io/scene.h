@@ -138,6 +138,8 @@ class SceneTable {
   [[nodiscard]] std::string line_text(const Key& key, const std::string& fallback) const;
   /// What line_text() asks of a name, where the name is that of a table.
   void require_line(const std::string& key, const std::string& name) const;
+  /// Key `title`, one line like line_text(); empty where the scene has none.
+  [[nodiscard]] std::string title() const;
   /// One of a list of words; the error names the nearest.
   [[nodiscard]] std::string choice(const Key& key, std::initializer_list<const char*> words) const;
   [[nodiscard]] std::string choice(const Key& key, const std::vector<const char*>& words) const;

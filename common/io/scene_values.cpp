@@ -282,6 +282,12 @@ std::string SceneTable::line_text(const Key& key, const std::string& fallback) c
   return value;
 }
 
+std::string SceneTable::title() const {
+  std::string value = text(kTitleKey, "");
+  require_line(kTitleKey.name, value);
+  return value;
+}
+
 std::string SceneTable::choice(const Key& key, std::initializer_list<const char*> words) const {
   return read_text(*impl_, key, {words.begin(), words.size()}, nullptr);
 }

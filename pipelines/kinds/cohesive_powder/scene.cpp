@@ -256,7 +256,7 @@ PowderSetup read_powder(const Scene& scene) {
   return scene.read([&](const SceneTable& root) {
     (void)root.choice(kKindKey, {"cohesive-powder"});
     PowderSetup setup;
-    setup.title = root.text(kTitleKey, "");
+    setup.title = root.title();
     setup.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
     setup.samples = root.count({"samples", "number of packings"}, 1, 10000, 1);
     read_disks(root.table_or_empty({"disks", "disks of a packing; a is the largest diameter"}), setup.spec);

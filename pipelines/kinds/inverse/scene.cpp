@@ -229,7 +229,7 @@ InverseSetup read_inverse(const Scene& scene) {
   return scene.read([&](const SceneTable& root) {
     (void)root.choice(kKindKey, {"inverse"});
     InverseSetup s;
-    s.title = root.text(kTitleKey, "");
+    s.title = root.title();
     s.measure = read_measure_protocols(root, s.relaxation, s.plan);
     s.packings = root.table_or_empty("packing").count({"count", "number of packings of each evaluation"}, 2, 100000, 8);
     const SceneTable search = root.table(

@@ -56,8 +56,7 @@ LawTableSetup read_law_table(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     (void)root.choice(kKindKey, {"law-table"});
     const SceneTable calibrate = root.table_or_empty({"calibrate", "fit of the laws to the measurements"});
-    LawTableSetup out{
-        root.text(kTitleKey, ""), read_multi_contact_setup(root), {}, read_multi_contact_fit(calibrate), {}};
+    LawTableSetup out{root.title(), read_multi_contact_setup(root), {}, read_multi_contact_fit(calibrate), {}};
     read_plan(root, out.multi_contact);
     const SceneTable multi_contact = root.table_or_empty("multi_contact");
     const bool valid = !multi_contact.has_errors() && !root.table_or_empty("packing").has_errors();

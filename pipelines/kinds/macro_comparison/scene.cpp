@@ -73,7 +73,7 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
   return scene.read([&](const SceneTable& root) {
     (void)root.choice(kKindKey, {"macro-comparison"});
     MacroComparisonSetup setup;
-    setup.title = root.text(kTitleKey, "");
+    setup.title = root.title();
     setup.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
     setup.spec = read_soft_particle(root);
     setup.contents = root.table_or_empty("packing").count(
