@@ -49,7 +49,6 @@ constexpr std::size_t kSampledRuns = 20;  ///< runs of a design in the terminal
 /// Rows with a name in the first column; where they would be broken at the end of the line, each name stands above its
 /// values.
 std::string named_rows(Rows rows, std::size_t indent) {
-  constexpr std::size_t kWidest = 98;  // the terminal breaks longer lines (kLineWidth in run_context.cpp)
   const auto lines_of = [](const std::string& text) {
     std::vector<std::string> lines;
     std::istringstream stream(text);
@@ -57,7 +56,7 @@ std::string named_rows(Rows rows, std::size_t indent) {
     return lines;
   };
   const std::string beside = law::aligned(rows, indent);
-  if (std::ranges::max(lines_of(beside), {}, &std::string::size).size() <= kWidest) return beside;
+  if (std::ranges::max(lines_of(beside), {}, &std::string::size).size() <= law::kTerminalColumns) return beside;
   std::vector<std::string> names;
   for (std::vector<std::string>& row : rows) names.push_back(std::exchange(row.front(), ""));
   std::string text;
