@@ -149,9 +149,9 @@ std::string console_text(std::string result, const nlohmann::json& summary) {
   for (std::size_t k = 0; k < std::min(warnings.size(), kMostWarnings); ++k)
     text += wrapped("warning: " + warnings[k], 4, kTerminalColumns);
   const std::size_t further = warnings.size() - std::min(warnings.size(), kMostWarnings);
-  if (further > 0) text += fmt::format("{} more warning{} at the end of log.txt\n", further, further == 1 ? "" : "s");
+  if (further > 0) text += counted(further, "more warning") + " at the end of log.txt\n";
   const std::size_t notes = notes_of(all).size();
-  if (notes > 0) text += fmt::format("{} note{} at the end of log.txt\n", notes, notes == 1 ? "" : "s");
+  if (notes > 0) text += counted(notes, "note") + " at the end of log.txt\n";
   return text;
 }
 
@@ -199,8 +199,8 @@ RunContext::RunContext(const CommonOptions& options, const std::string& command,
   try {
     logger_ = make_logger(path("log.txt"), options_);
     // The first line: was_run_directory() knows the directory of a run by it.
-    log_to(*logger_->sinks().front(), fmt::format("softgrain {} ({}), {} threads: {}", build.version, build.commit,
-                                                  threads_, options_.command_line));
+    log_to(*logger_->sinks().front(), fmt::format("softgrain {} ({}), {}: {}", build.version, build.commit,
+                                                  counted(threads_, "thread"), options_.command_line));
   } catch (const spdlog::spdlog_ex& e) {
     throw IoError(path("log.txt") + ": " + e.what());
   }

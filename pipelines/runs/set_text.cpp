@@ -94,8 +94,10 @@ std::string runs_down(const SetSummary& summary, const std::vector<RunValue>& nu
     rows.push_back({run.name, to_string(run.status)});
     for (std::size_t k = 0; k < shown; ++k) rows.back().push_back(cell_of(run, numbers[k].name));
   }
-  if (summary.runs.size() > runs) text += fmt::format("  {} more runs in table.csv\n", summary.runs.size() - runs);
-  if (numbers.size() > shown) text += fmt::format("  {} more numbers in summary and report\n", numbers.size() - shown);
+  if (summary.runs.size() > runs)
+    text += fmt::format("  {} in table.csv\n", counted(summary.runs.size() - runs, "more run"));
+  if (numbers.size() > shown)
+    text += fmt::format("  {} in summary and report\n", counted(numbers.size() - shown, "more number"));
   return text + law::aligned(rows, 2, 2);
 }
 
@@ -120,8 +122,7 @@ std::string number_text(double value, double error) {
 std::string varied_text(const SetSummary& summary) {
   std::string text = summary.over.empty() ? "" : "sweep over " + join_text(summary.over, ", ", &SweptKey::key);
   if (summary.design) append_part(text, "sample " + summary.design->sample);
-  if (!summary.seeds.empty())
-    append_part(text, fmt::format("{} seed{}", summary.seeds.size(), summary.seeds.size() == 1 ? "" : "s"));
+  if (!summary.seeds.empty()) append_part(text, counted(summary.seeds.size(), "seed"));
   return text;
 }
 
@@ -140,7 +141,7 @@ std::string differences_text(const SetSummary& summary) {
       append_part(values, fmt::format("{} {}", letter(k), one.values[k]), ", ");
     text += fmt::format("differs: {}: {}\n", one.key, values);
   }
-  if (shown > kShown) text += fmt::format("differs: {} more keys\n", shown - kShown);
+  if (shown > kShown) text += fmt::format("differs: {}\n", counted(shown - kShown, "more key"));
   return text;
 }
 

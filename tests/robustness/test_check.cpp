@@ -169,8 +169,8 @@ relaxation = "damped"
 [measure.soft_solid]
 deltas = [0.05, 0.1, 0.2]
 )");
-  EXPECT_TRUE(warned(poor, "3 packings are few")) << poor["warnings"];
-  EXPECT_TRUE(warned(poor, "1 overlaps lie above Delta = 0.1"));
+  EXPECT_TRUE(warned(poor, "only 3 packings; laws differ")) << poor["warnings"];
+  EXPECT_TRUE(warned(poor, "only 1 overlap above Delta = 0.1"));
   EXPECT_TRUE(warned(poor, "nothing is rotated"));
   EXPECT_TRUE(warned(poor, "loose"));
   EXPECT_GT(poor["bytes"].get<double>(), 0.0);
@@ -245,7 +245,8 @@ TEST_F(Check, OptionsOfTheCommandLineAreThoseOfTheRunOrRefused) {
   const auto said = [&](const std::string& more) {
     return run_the_program("check '" + directory_.file("scene.toml") + "' " + more);
   };
-  EXPECT_NE(said("--threads 1").output.find("with 1 threads"), std::string::npos) << said("--threads 1").output;
+  EXPECT_NE(said("--threads 1").output.find("with 1 thread"), std::string::npos) << said("--threads 1").output;
+  EXPECT_EQ(said("--threads 1").output.find("with 1 threads"), std::string::npos);
   for (const char* option : {"--law law.toml", "--bands 50"}) {
     const test::ProgramOutcome refused = said(option);
     EXPECT_EQ(refused.status, 2) << refused.output;

@@ -214,7 +214,7 @@ TEST_F(ForceCurveFile, WrongFilesAreNamedWithTheirLine) {
   expect_refused(replaced(kGood, "hn [mm]", "overlapp [mm]"), {"data.csv:6", "overlapp", "\"overlap\" is near"});
   expect_refused(replaced(kGood, "1.6, 80", "1.6, "), {"data.csv:8", "Fn [mN]", "missing"});
   expect_refused(replaced(kGood, "1.6, 80", "1.6, eighty"), {"data.csv:8", "Fn [mN]", "eighty"});
-  expect_refused(replaced(kGood, "1.6, 80", "1.6"), {"data.csv:8", "1 cells", "2 columns"});
+  expect_refused(replaced(kGood, "1.6, 80", "1.6"), {"data.csv:8", "1 cell,", "2 columns"});
   expect_refused(replaced(kGood, "2.4, 300", "1.2, 300"), {"data.csv:9", "does not rise", "unloading=drop"});
   expect_refused(replaced(kGood, "4.0, 1500\n", ""), {"too few points", "4", "at least 5"});
   expect_refused(replaced(kGood, "4.0, 1500", "40, 1500"), {"data.csv:11", "2.5 Rs", "check unit and radius"});

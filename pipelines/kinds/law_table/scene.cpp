@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "common/core/text.h"
 #include "common/data/soft_particle_schema.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
 #include "pipelines/kinds/soft_particle/scene.h"
@@ -83,9 +84,9 @@ void check_law_table(const LawTableSetup& setup, Findings& out) {
     const MultiContactSetup of_variant = setup_of(v, setup.multi_contact);
     spend_on_packings(of_variant, trial, 1.0, out);
     spend_on_multi_contact(of_variant, trial, 1.0, "variants", out);
-    out.lines += fmt::format("  the same on {} with beta = {}, {} trials per grain\n",
-                             v.packings ? fmt::format("{} packings", *v.packings) : "as many packings", v.spec.beta,
-                             v.spec.trials);
+    out.lines +=
+        fmt::format("  the same on {} with beta = {}, {} trials per grain\n",
+                    v.packings ? counted(*v.packings, "packing") : "as many packings", v.spec.beta, v.spec.trials);
   }
   if (setup.variants.empty())
     out.warn(

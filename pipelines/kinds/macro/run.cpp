@@ -29,7 +29,7 @@ std::string lateral_ratio(const MacroCurve& c) {
 /// A slope whose error is as large as itself is none.
 std::string modulus_text(const MeanError& m) {
   if (is_told_from_zero(m.n, m.mean, m.error)) return pressure_text(m);
-  return fmt::format("not determined ({}, {} samples)", pressure_text(m), m.n);
+  return fmt::format("not determined ({}, {})", pressure_text(m), counted(m.n, "sample"));
 }
 
 /// Moduli and strength of one stage of one engine.
