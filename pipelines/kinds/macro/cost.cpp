@@ -106,6 +106,9 @@ class TrialScale {
   /// Whether the trial has a smaller span.
   [[nodiscard]] bool narrowed() const { return wider_ > 1.0; }
 
+  /// Core seconds for the packing of the trial: the grains of a narrowed one are many.
+  [[nodiscard]] double budget() const { return narrowed() ? 6.0 : 3.0; }
+
   /// By bodies alone.
   [[nodiscard]] double bodies() const { return larger_; }
 
@@ -163,9 +166,9 @@ struct PreparationTrial {
   std::optional<MacroPacking> packing{};
 };
 
-PreparationTrial try_preparation(const MacroSpec& spec, std::uint64_t seed) {
-  constexpr double kBudget = 3.0;
-  constexpr double kPatience = 10.0;  // budgets without any progress
+/// `budget`: core seconds after which it is left.
+PreparationTrial try_preparation(const MacroSpec& spec, std::uint64_t seed, double budget) {
+  constexpr double kPatience = 30.0;  // core seconds without any progress
   PreparationTrial out;
   double share = 0.0;
   const double start = thread_seconds();
@@ -174,8 +177,8 @@ PreparationTrial try_preparation(const MacroSpec& spec, std::uint64_t seed) {
       const auto watch = [&](double done) {
         share = done;
         const double spent = thread_seconds() - start;
-        if (spent > kBudget && done > 0.0) throw TrialOver{};
-        if (spent > kPatience * kBudget) throw UnusableResult(fmt::format("no progress in {:.0f} s", spent));
+        if (spent > budget && done > 0.0) throw TrialOver{};
+        if (spent > std::max(kPatience, budget)) throw UnusableResult(fmt::format("no progress in {:.0f} s", spent));
       };
       out.packing = make_packing(spec, seed, 0, {watch});
     } catch (const TrialOver&) {
@@ -187,12 +190,12 @@ PreparationTrial try_preparation(const MacroSpec& spec, std::uint64_t seed) {
 
 /// Core seconds of the preparations of a search for a density, and whether the bodies of the trial reach it.
 double spend_on_density(const MacroSetup& setup, MacroSpec spec, std::uint64_t seed, const PreparationTrial& loose,
-                        bool narrowed, Findings& out) {
+                        const TrialScale& scale, Findings& out) {
   constexpr double kMargin = 0.01;  // of samples with a few hundred bodies
   const DensityTarget& target = *setup.density;
   spec.protocol.friction = 0.0;
-  const PreparationTrial dense = try_preparation(spec, seed);
-  if (loose.packing && dense.packing && !narrowed) {  // grains of another span have other densities
+  const PreparationTrial dense = try_preparation(spec, seed, scale.budget());
+  if (loose.packing && dense.packing && !scale.narrowed()) {  // grains of another span have other densities
     const double fraction = target.solid_fraction(spec.density);
     const double low = loose.packing->solid_fraction();
     const double high = dense.packing->solid_fraction();
@@ -269,16 +272,15 @@ void spend_on_macro(const MacroSetup& setup, const MacroContent& content, const 
   const auto runs = static_cast<double>(setup.samples + std::min(setup.samples, setup.noise_samples));
   try {
     PreparationTrial trial;
+    if (!setup.given) spec = trial_spec(spec);
+    const TrialScale scale(setup.spec, spec);
     if (setup.given)
       trial.packing = setup.given;
-    else {
-      spec = trial_spec(spec);
-      trial = try_preparation(spec, seed);
-    }
-    const TrialScale scale(setup.spec, spec);
+    else
+      trial = try_preparation(spec, seed, scale.budget());
     const bool counted = !setup.given && !content.prepared;
     const double preparing =
-        counted && setup.density ? spend_on_density(setup, spec, seed, trial, scale.narrowed(), out) : trial.seconds;
+        counted && setup.density ? spend_on_density(setup, spec, seed, trial, scale, out) : trial.seconds;
     if (counted) out.spend("preparation", samples * scale.preparation() * preparing);
     // A test takes about as long as its preparation where that was too long for a trial.
     if (!trial.packing) out.spend(tests, runs * scale.preparation() * trial.seconds);
