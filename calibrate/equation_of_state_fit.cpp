@@ -12,6 +12,7 @@
 #include "common/core/limits.h"
 #include "common/core/random.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 
@@ -278,9 +279,9 @@ std::string not_determined(const StateSamples& data, const StateFit& fit) {
   const auto points = static_cast<int>(data.points);
   if (points - numbers < kLeastFreedom)
     return fmt::format(
-        "too few points: {} of {} sample{} for {} numbers (K, n, phi_J of each packing), at least {} are needed: "
+        "too few points: {} of {} for {} numbers (K, n, phi_J of each packing), at least {} are needed: "
         "record more points along the test, or more samples",
-        points, data.samples.size(), data.samples.size() == 1 ? "" : "s", numbers, numbers + kLeastFreedom);
+        points, counted(data.samples.size(), "sample"), numbers, numbers + kLeastFreedom);
   if (fit.fit.at_bound.size() > 1 && fit.fit.at_bound[1])
     return fmt::format("n is not determined: it runs to {:.3g}, the end of what is tried, and K with it",
                        fit.exponent.value);

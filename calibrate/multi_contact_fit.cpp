@@ -17,6 +17,7 @@
 #include "common/core/limits.h"
 #include "common/core/parallel_tasks.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 #include "common/data/multi_contact_replicates.h"
 
 namespace softgrain {
@@ -318,11 +319,11 @@ void judge_accuracy(MultiContactLaw& law, double largest) {
 void require_data(const MultiContactMeasurements& data, const std::vector<MultiContactStates>& states,
                   const MultiContactFitOptions& o) {
   if (static_cast<int>(data.packings.size()) < o.min_packings)
-    throw InputError(fmt::format("multi-contact laws: {} packings are too few, at least {} are needed",
-                                 data.packings.size(), o.min_packings));
+    throw InputError(fmt::format("multi-contact laws: only {}, at least {} are needed",
+                                 counted(data.packings.size(), "packing"), o.min_packings));
   if (const std::size_t measured = measured_packings(data).size(); measured < static_cast<std::size_t>(o.min_packings))
-    throw UnusableResult(
-        fmt::format("multi-contact laws: {} packings were measured, at least {} are needed", measured, o.min_packings));
+    throw UnusableResult(fmt::format("multi-contact laws: measured on {} only, at least {} are needed",
+                                     counted(measured, "packing"), o.min_packings));
   double force = 0.0;
   for (const MultiContactStates* c : plane_selection(states, LawForm::pair))
     force = std::max(force, c->largest_force());

@@ -253,7 +253,8 @@ OnsetExtrapolation extrapolate_onset(const StateFit& fit, double span, const Ons
     return std::unique(all.begin(), all.end()) - all.begin();  // groups are ordered by span
   }();
   if (spans < 2)
-    throw InputError(fmt::format("onsets: groups of {} span(s); two or more are needed for an extrapolation", spans));
+    throw InputError(
+        fmt::format("onsets: groups of {}; two or more are needed for an extrapolation", counted(spans, "span")));
   OnsetExtrapolation out;
   out.span = span;
   out.largest_span = at.span.back();

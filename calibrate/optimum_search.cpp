@@ -14,6 +14,7 @@
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/core/limits.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 
@@ -195,7 +196,8 @@ OptimumEstimate find_optimum(const SearchedPoints& data, bool maximise, std::uin
   const std::size_t inputs = data.points.empty() ? 0 : data.points.front().size();
   const std::size_t coefficients = ResponseSurface::coefficients(inputs);
   if (data.points.size() < coefficients || inputs == 0) {
-    out.message = fmt::format("{} points have the number, a surface needs {}", data.points.size(), coefficients);
+    out.message =
+        fmt::format("{} with the number, a surface needs {}", counted(data.points.size(), "point"), coefficients);
     return out;
   }
   std::vector<double> means;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 
@@ -62,9 +63,8 @@ StateSamples read_state_curves(const std::vector<StateCurve>& curves) {
       throw InputError(
           fmt::format("equation of state: curve {} (group {}) never bears: no point above the onset", k, c.group));
     if (order.size() < kFewestPoints)
-      throw InputError(
-          fmt::format("equation of state: curve {} (group {}) has {} points with pressure; {} or more are needed", k,
-                      c.group, order.size(), kFewestPoints));
+      throw InputError(fmt::format("equation of state: curve {} (group {}) has {} with pressure; {} or more are needed",
+                                   k, c.group, counted(order.size(), "point"), kFewestPoints));
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return c.pressure[a] < c.pressure[b]; });
     StateSample s;
     s.group = index[{c.span, c.group}];

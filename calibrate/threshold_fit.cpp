@@ -113,8 +113,8 @@ void prepare(Work& w) {
   for (std::size_t j = 0; j < kLawCurves; ++j) {
     if (w.samples[j].empty()) continue;
     if (w.clear[j].size() < kClearNeeded[j])
-      w.reasons.push_back(fmt::format("{}: {} points clearly above zero, {} needed", kCurveNames[j], w.clear[j].size(),
-                                      kClearNeeded[j]));
+      w.reasons.push_back(fmt::format("{}: {} clearly above zero, {} needed", kCurveNames[j],
+                                      counted(w.clear[j].size(), "point"), kClearNeeded[j]));
     if (j > 0 && w.clear[j].size() < kClearNeeded[j]) continue;
     w.curves[j] = {w.means[j], w.sigma[j]};
   }

@@ -85,10 +85,8 @@ class BranchProblem {
   [[nodiscard]] BranchOutcome fit() const {
     constexpr std::size_t kLeast = kShape + 2;
     if (const std::size_t below = readings_ - curves_.size(); below < kLeast)
-      return {std::nullopt,
-              fmt::format("{} reading{} of unloading from above the threshold of the law, at least {} are "
-                          "needed",
-                          below, below == 1 ? "" : "s", kLeast)};
+      return {std::nullopt, fmt::format("{} of unloading from above the threshold of the law, at least {} are needed",
+                                        counted(below, "reading"), kLeast)};
     LeastSquaresProblem problem;
     problem.residuals = readings_;
     problem.evaluate = [this](std::span<const double> x, std::span<double> r) { return residuals(x, r); };

@@ -14,6 +14,11 @@ void append_part(std::string& text, std::string_view part, std::string_view sepa
   text += part;
 }
 
+std::string counted(std::int64_t count, std::string_view one, std::string_view many) {
+  if (count == 1) return fmt::format("1 {}", one);
+  return many.empty() ? fmt::format("{} {}s", count, one) : fmt::format("{} {}", count, many);
+}
+
 std::string shell_word(const std::string& word) {
   if (!word.empty() && word.find_first_of(" \t\n\"'\\$`*?[]{}()<>|&;#~!") == std::string::npos) return word;
   std::string out = "'";
@@ -25,12 +30,26 @@ namespace {
 
 bool is_control(unsigned char c) { return c < 0x20 || c == 0x7f; }
 
+/// Bytes of the control character that begins at `at`; 0 where none does. U+0080 to U+009F have two in UTF-8, and
+/// terminals take U+009B like the escape character.
+std::size_t control_size(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+  if (is_control(byte(at))) return 1;
+  const bool two = byte(at) == 0xc2 && at + 1 < text.size() && byte(at + 1) >= 0x80 && byte(at + 1) < 0xa0;
+  return two ? 2 : 0;
+}
+
 }  // namespace
 
-bool is_one_line(std::string_view text) { return std::ranges::none_of(text, is_control); }
+bool is_one_line(std::string_view text) {
+  for (std::size_t k = 0; k < text.size(); ++k)
+    if (control_size(text, k) > 0) return false;
+  return true;
+}
 
 std::string on_one_line(std::string text) {
-  std::ranges::replace_if(text, is_control, ' ');
+  for (std::size_t k = 0; k < text.size(); ++k)
+    if (const std::size_t size = control_size(text, k); size > 0) text.replace(k, size, 1, ' ');
   return text;
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <concepts>
+#include <cstdint>
 #include <iterator>
 #include <optional>
 #include <ranges>
@@ -35,6 +36,9 @@ requires std::invocable<TextOf&, std::ranges::range_reference_t<const Range>> st
 /// Adds a part to a text: "a" becomes "a; b". The first part has no separator before it. An empty part that is not the
 /// first leaves a separator at the end.
 void append_part(std::string& text, std::string_view part, std::string_view separator = "; ");
+
+/// "1 sample", "3 samples": a number and what it counts. `many`: the plural, where it is not that with an s.
+std::string counted(std::int64_t count, std::string_view one, std::string_view many = "");
 
 /// A word as a shell reads it back: in quotes where it needs them.
 std::string shell_word(const std::string& word);

@@ -31,22 +31,33 @@ struct CardEntry {
   bool is_drawn = true;
 };
 
-/// Void ratios, and factors on them: grains that jam have less than one part in a hundred of solid nowhere.
+// Ranges hold all numbers that fits end at, and far more. Beyond them a number is a mistake, and a run with it fails
+// late.
+/// Void ratios: grains that jam have less than one part in a hundred of solid nowhere, nor more than fits allow
+/// (0.999).
 constexpr double kMostPores = 100.0;
-constexpr Range kPores{0.0, kMostPores, true, false};
+constexpr Range kPores{1e-4, kMostPores, false, false};
+/// Factors on void ratios, and void ratios over each other.
+constexpr Range kFactor{0.01, 100.0, false, false};
+/// Numbers of order 1 whose order of magnitude is not known before.
+constexpr Range kAnyScale{1e-6, 1e6, false, false};
+/// Exponents of p/E: fits of equations of state end there.
+constexpr Range kStateExponent{1.0, 20.0, true, false};
+/// Pressures over E: those of gravity on fine powders, and far beyond all grains pressed flat.
+constexpr Range kOverModulus{1e-15, 1000.0, false, false};
 
 const std::array<CardEntry<CellCard>, 9>& cell_numbers() {
   using C = CellCard;
   static const std::array<CardEntry<C>, 9> numbers{
-      {{"K", &C::modulus, Range::positive(), "p/E = K x^n"},
-       {"n", &C::exponent, Range{1.0, kLargestExponent, true, false}, "its exponent", false},
+      {{"K", &C::modulus, kAnyScale, "p/E = K x^n"},
+       {"n", &C::exponent, kStateExponent, "its exponent", false},
        {"e_J", &C::void_ratio, kPores, "void ratio of the fines alone where they jam"},
        {"e_c", &C::excess_alone, kPores, "void ratio of the coarse grains alone where they jam"},
        {"w_inf", &C::excess_many, Range::closed(0.0, kMostPores), "excess pores beside coarse grains among many fines",
         false},
-       {"xi", &C::excess_decay, Range::positive(), "ratio of fines over which they fall to that"},
-       {"mu_f", &C::friction, Range::not_negative(), "friction of faces"},
-       {"chi", &C::stiffness, Range::positive(), "stiffness of their springs"},
+       {"xi", &C::excess_decay, kAnyScale, "ratio of fines over which they fall to that"},
+       {"mu_f", &C::friction, Range::friction(), "friction of faces"},
+       {"chi", &C::stiffness, kAnyScale, "stiffness of their springs"},
        {"K0", &C::lateral_ratio, Range{0.0, 1.0, true, false}, "lateral over axial stress of the fines alone", false,
         false}}};
   return numbers;
@@ -55,10 +66,11 @@ const std::array<CardEntry<CellCard>, 9>& cell_numbers() {
 const std::array<CardEntry<CellMemory>, 6>& memory_numbers() {
   using M = CellMemory;
   static const std::array<CardEntry<M>, 6> numbers{
-      {{"A", &M::dilatancy, Range::not_negative(), "compaction by slip beyond what friction uses of the work", false},
-       {"r_c", &M::critical_pores, Range::positive(), "pores at the critical state over those at the onset", false},
-       {"m", &M::strength_slope, Range::not_negative(), "growth of the strength of faces with density"},
-       {"c", &M::strength_range, Range{0.0, 1.0, true, true}, "strengths lie within mu_f (1 -+ c)", false},
+      {{"A", &M::dilatancy, Range::closed(0.0, 1000.0), "compaction by slip beyond what friction uses of the work",
+        false},
+       {"r_c", &M::critical_pores, kFactor, "pores at the critical state over those at the onset", false},
+       {"m", &M::strength_slope, Range::closed(0.0, 1e6), "growth of the strength of faces with density"},
+       {"c", &M::strength_range, Range{0.001, 1.0, false, true}, "strengths lie within mu_f (1 -+ c)", false},
        {"lambda", &M::density_slope, Range{-kLargestExponent, kLargestExponent, false, false},
         "change of the critical solid fraction with phi - phi_J", false},
        {"x_r", &M::least_state, Range{0.0, 1.0, true, true},
@@ -143,7 +155,12 @@ void write_preparations(Out out, const std::vector<PreparationFactor>& preparati
     fmt::format_to(out, "[[preparation]]\nname = {}\nfactor = {}\n", quoted(p.preparation), estimate_text(p.factor));
 }
 
-Estimate read_estimate(const SceneTable& table, const Range& range) {
+/// Number `key` of `holder`. A value out of range is said under its name, which its inline table does not hold.
+Estimate read_estimate(const SceneTable& holder, const char* key, const Range& range) {
+  const SceneTable table = holder.table(key);
+  const double value = table.number("value", Unit::none, Range::any());
+  if (!range.contains(value))
+    holder.throw_error(key, fmt::format("value = {} must be {}", real(value), range_text(range)));
   Estimate e = read_estimate_text(table, range);
   if (!(e.low <= e.high)) table.throw_error("low", "must not be above the high end");
   return e;
@@ -151,7 +168,7 @@ Estimate read_estimate(const SceneTable& table, const Range& range) {
 
 CellMemory read_memory(const SceneTable& t) {
   CellMemory memory;
-  for (const auto& n : memory_numbers()) memory.*n.estimate = read_estimate(t.table(n.key), n.range);
+  for (const auto& n : memory_numbers()) memory.*n.estimate = read_estimate(t, n.key, n.range);
   const double c = memory.strength_range.value;
   if (memory.dilatancy.value > most_dilatancy(c))
     t.throw_error("A",
@@ -202,39 +219,33 @@ CellCorrelation read_correlation(const SceneTable& t, const CellCard& card) {
 }
 
 void read_range(const SceneTable& t, CellCard& card) {
-  const std::vector<double> pressure = t.numbers("pressure", Unit::none, Range::positive());
+  const std::vector<double> pressure = t.numbers("pressure", Unit::none, kOverModulus);
   if (pressure.size() != 2 || !(pressure[0] < pressure[1])) t.throw_error("pressure", "must be two rising values");
   card.pressure_low = pressure[0];
   card.pressure_high = pressure[1];
-  card.mixture_high = t.number("mixture_max", Unit::none, Range::positive());
-}
-
-std::string read_words_of(const SceneTable& t, const char* key) {
-  std::string text = t.text(key);
-  if (text.empty()) t.throw_error(key, "must not be empty");
-  return text;
+  card.mixture_high = t.number("mixture_max", Unit::none, kAnyScale);
 }
 
 void read_measured(const SceneTable& t, CellCard& card) {
   if (t.has("E")) card.youngs_modulus = t.number("E", Unit::pressure, Range::positive());
   if (t.has("density")) card.density = t.number("density", Unit::density, Range::positive());
   card.poisson_ratio = t.number("nu", Unit::none, kPoissonRange);
-  card.grain_friction = t.number("mu", Unit::none, Range::not_negative());
+  card.grain_friction = t.number("mu", Unit::none, Range::friction());
   if (t.has("mu_r")) {
-    card.grain_rolling.friction = t.number("mu_r", Unit::none, Range::positive());
-    card.grain_rolling.stiffness = t.number("kr_ratio", Unit::none, Range::positive());
+    card.grain_rolling.friction = t.number("mu_r", Unit::none, Range{0.0, 1000.0, true, false});
+    card.grain_rolling.stiffness = t.number("kr_ratio", Unit::none, Range{0.0, 1000.0, true, false});
   }
-  card.preparation = read_words_of(t, "preparation");
-  card.start_pressure = t.number("start_pressure", Unit::none, Range::positive());
+  card.preparation = t.line_text("preparation");
+  card.start_pressure = t.number("start_pressure", Unit::none, kOverModulus);
   card.split = t.number("split", Unit::none, Range{0.0, 1.0, true, true});
-  card.fines_ratio = t.number("fines_ratio", Unit::none, Range{1.0, std::numeric_limits<double>::max(), false, false});
-  card.fines_sizes = read_words_of(t, "fines_sizes");
+  card.fines_ratio = t.number("fines_ratio", Unit::none, Range::closed(1.0, 1e9));
+  card.fines_sizes = t.filled_text("fines_sizes");
   card.samples = t.count("samples", 1, std::numeric_limits<int>::max());
 }
 
 void read_preparations(const SceneTable& root, CellCard& card) {
   for (const SceneTable& t : root.tables("preparation")) {
-    PreparationFactor p{read_words_of(t, "name"), read_estimate(t.table("factor"), kPores)};
+    PreparationFactor p{t.line_text("name"), read_estimate(t, "factor", kFactor)};
     if (void_ratio_factor(card, p.preparation))
       t.throw_error("name",
                     p.preparation == card.preparation ? "is that of [measured], whose factor is 1" : "is used twice");
@@ -314,7 +325,7 @@ CellCard read_cell_card(const Scene& file) {
   (void)read_words(root, {});
   const SceneTable cell = root.table("cell");
   card.form = cell.choice<StateForm>("form");
-  for (const auto& n : cell_numbers()) card.*n.estimate = read_estimate(cell.table(n.key), n.range);
+  for (const auto& n : cell_numbers()) card.*n.estimate = read_estimate(cell, n.key, n.range);
   if (root.has("memory")) {
     card.memory = read_memory(root.table("memory"));
     if (card.form != StateForm::porosity) cell.throw_error("form", "[memory] goes with \"porosity\"");

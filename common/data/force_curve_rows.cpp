@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 
@@ -35,10 +36,10 @@ void CurveRows::read() {
     if (negative_[k]) refuse_deepest_of_wrong_sign(out_.samples[k], *negative_[k]);
   leave_out_jitter();
   if (before_touch_ > 0)
-    out_.remarks.push_back(fmt::format("{}: {} points before touch (negative overlap) are left out of the fit",
-                                       file_.path(), before_touch_));
+    out_.remarks.push_back(fmt::format("{}: left out of the fit: {} before touch (negative overlap)", file_.path(),
+                                       counted(before_touch_, "point")));
   if (dropped_ > 0)
-    out_.remarks.push_back(fmt::format("{}: {} points of unloading are left out", file_.path(), dropped_));
+    out_.remarks.push_back(fmt::format("{}: left out: {} of unloading", file_.path(), counted(dropped_, "point")));
   note_falls();
   require_enough();
 }

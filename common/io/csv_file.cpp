@@ -249,8 +249,8 @@ void CsvFile::read_row(const std::string& line, int number) {
   }
   while (row.cells.size() > columns_.size() && row.cells.back().empty()) row.cells.pop_back();
   if (row.cells.size() != columns_.size())
-    throw InputError(where(number) + ": " + std::to_string(row.cells.size()) + " cells, the header (line " +
-                     std::to_string(header_line_) + ") has " + std::to_string(columns_.size()) + " columns" +
+    throw InputError(where(number) + ": " + counted(row.cells.size(), "cell") + ", the header (line " +
+                     std::to_string(header_line_) + ") has " + counted(columns_.size(), "column") +
                      (separator_ == ',' && row.cells.size() > columns_.size()
                           ? "; where numbers have decimal commas, separate columns by ; or tab"
                           : ""));

@@ -53,6 +53,10 @@ struct Range {
   static Range above(double low) { return {low, std::numeric_limits<double>::infinity(), true, false}; }
   /// Of coefficients of friction: with a thousand no contact slides that bears anything, and more is a wrong unit.
   static Range friction() { return closed(0.0, 1000.0); }
+
+  [[nodiscard]] bool contains(double value) const {
+    return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+  }
 };
 
 /// "above 0", "from 0 to 0.5", "at least 0 and below 1"; empty when all numbers are allowed.
@@ -134,6 +138,8 @@ class SceneTable {
   [[nodiscard]] std::string line_text(const Key& key, const std::string& fallback) const;
   /// What line_text() asks of a name, where the name is that of a table.
   void require_line(const std::string& key, const std::string& name) const;
+  /// Key `title`, one line like line_text(); empty where the scene has none.
+  [[nodiscard]] std::string title() const;
   /// One of a list of words; the error names the nearest.
   [[nodiscard]] std::string choice(const Key& key, std::initializer_list<const char*> words) const;
   [[nodiscard]] std::string choice(const Key& key, const std::vector<const char*>& words) const;

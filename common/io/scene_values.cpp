@@ -34,11 +34,6 @@ std::string plain_end(double end) {
 /// "must be above 1", "must be from 0 to 0.5", "must be at least 0 and below 1".
 std::string describe(const Range& range) { return "must be " + range_text(range); }
 
-bool holds(const Range& range, double value) {
-  return (range.low_open ? value > range.low : value >= range.low) &&
-         (range.high_open ? value < range.high : value <= range.high);
-}
-
 /// ", must be above 0" after another complaint; nothing when all numbers are allowed.
 std::string also(const Range& range) {
   return std::isfinite(range.low) || std::isfinite(range.high) ? ", and " + describe(range) : "";
@@ -60,7 +55,7 @@ double raw_number(const Table& table, const std::string& key, const toml::node& 
 double number_of(const Table& table, const std::string& key, const toml::node& node, Unit unit, const Range& range) {
   const double value = raw_number(table, key, node, unit, range);
   if (!std::isfinite(value)) table.throw_error(key, node, "must be a finite number" + also(range));
-  if (!holds(range, value)) table.throw_error(key, node, describe(range));
+  if (!range.contains(value)) table.throw_error(key, node, describe(range));
   if (unit != Unit::none && value != 0.0 && (std::abs(value) < kLeast || std::abs(value) > kMost))
     table.throw_error(key, node, "must be 0 or from 1e-30 to 1e30 in SI units, either sign" + also(range));
   if (std::abs(value) > kMostPlain) table.throw_error(key, node, "must be at most 1e100, either sign" + also(range));
@@ -292,6 +287,12 @@ std::string SceneTable::line_text(const Key& key) const {
 std::string SceneTable::line_text(const Key& key, const std::string& fallback) const {
   std::string value = filled_text(key, fallback);
   require_line(key.name, value);
+  return value;
+}
+
+std::string SceneTable::title() const {
+  std::string value = text(kTitleKey, "");
+  require_line(kTitleKey.name, value);
   return value;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/io/csv_file.h"
 
 namespace softgrain {
@@ -121,8 +122,8 @@ Grading read_curve(const SceneTable& t, int dimension) {
     for (const double end : {0.0, 1.0})
       if (std::abs(share - end) < kSieveRounding) share = end;
   if (openings.size() != passing.size())
-    t.throw_error("passing",
-                  fmt::format("has {} values; openings has {}: one for each", passing.size(), openings.size()));
+    t.throw_error("passing", fmt::format("has {}; openings has {}: one for each", counted(passing.size(), "value"),
+                                         openings.size()));
   std::vector<SieveRow> rows;
   for (std::size_t k = 0; k < openings.size(); ++k) rows.push_back({openings[k], passing[k], t.where("passing")});
   return sieve_grading(std::move(rows), dimension);
@@ -141,7 +142,8 @@ Grading read_list(const SceneTable& t, int dimension) {
     counts = t.numbers({"counts", "`\"list\"`: number of grains of each size (weights by number)", "one of each"},
                        Unit::none, Range::not_negative());
     if (counts.size() != radii.size())
-      t.throw_error("counts", fmt::format("has {} values; radii has {}: one for each", counts.size(), radii.size()));
+      t.throw_error("counts",
+                    fmt::format("has {}; radii has {}: one for each", counted(counts.size(), "value"), radii.size()));
     if (std::ranges::none_of(counts, [](double n) { return n > 0.0; }))
       t.throw_error("counts", "at least one must be above 0");
   }

@@ -219,7 +219,7 @@ ParticlesSceneOf<D> read_particles_scene(const Scene& scene, const std::optional
   return scene.read([&](const SceneTable& root) {
     (void)root.choice(kKindKey, {"particles"});
     ParticlesSceneOf<D> out;
-    out.title = root.text(kTitleKey, "");
+    out.title = root.title();
     out.text = scene.text();
     System<D>& s = out.system;
     s.gravity = read_vector<D>(root, {"gravity", "acceleration vector"}, Unit::acceleration, {});

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "calibrate/threshold_fit.h"
+#include "common/core/text.h"
 #include "common/data/measurements.h"
 #include "pipelines/commands/commands.h"
 #include "pipelines/law/law_fit.h"
@@ -66,8 +67,8 @@ std::string console_line(const FitReport& report, const SoftParticleSpec& spec) 
   const std::string line = verdict_text(law) + "\n";
   if (law.normal.b.value <= 0.0) return line;
   return line + normal_law_text(report, spec) +
-         fmt::format("  {} packings, {} points, {} left out (not converged)\n", law.packings, law.points,
-                     report.normal_left_out + report.tangential_left_out);
+         fmt::format("  {}, {}, {} left out (not converged)\n", counted(law.packings, "packing"),
+                     counted(law.points, "point"), report.normal_left_out + report.tangential_left_out);
 }
 
 }  // namespace

@@ -27,7 +27,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* kFirstExample = "quickstart.toml";  ///< a folder with this scene is that of all
-constexpr std::size_t kExampleColumns = 99;
 constexpr std::size_t kLongestTime = 130;  ///< characters of a sentence about time; longer ones are about more
 
 /// What the list says of a scene.
@@ -90,8 +89,8 @@ std::vector<Example> examples_in(const std::string& folder) {
 std::string list_of_examples(const std::vector<Example>& examples, const std::string& folder) {
   std::string text = fmt::format("softgrain examples NAME --out FILE copies one of these scenes of {}:\n", folder);
   for (const Example& e : examples) {
-    text += law::wrapped(fmt::format("{} ({}): {}", e.name, e.kind, e.title), 4, kExampleColumns);
-    if (!e.time.empty()) text += law::wrapped("    " + e.time, 4, kExampleColumns);
+    text += law::wrapped(fmt::format("{} ({}): {}", e.name, e.kind, e.title), 4, law::kTerminalColumns);
+    if (!e.time.empty()) text += law::wrapped("    " + e.time, 4, law::kTerminalColumns);
   }
   return text;
 }

@@ -34,8 +34,9 @@ nlohmann::json to_json(const ExportedSeries& s) {
 std::string text_of(const std::vector<ExportedSeries>& all, const std::string& directory) {
   std::string text;
   for (const ExportedSeries& s : all)
-    text += fmt::format("{} ({}): {} states, {} with contacts; open {}{}\n", s.name, to_string(s.kind), s.states,
-                        s.with_contacts, join_text(s.files), s.remark.empty() ? "" : "; " + s.remark);
+    text +=
+        fmt::format("{} ({}): {}, {} with contacts; open {}{}\n", s.name, to_string(s.kind), counted(s.states, "state"),
+                    s.with_contacts, join_text(s.files), s.remark.empty() ? "" : "; " + s.remark);
   return text + "files: " + directory + "\n";
 }
 

@@ -295,7 +295,7 @@ ExitStatus make_library(const LawOptions& o) {
     if (!written.empty()) out["written"] = written;
     write_standard_output(out.dump(2) + "\n");
   } else {
-    write_standard_output(left_out_text(all.left_out) + fmt::format("{} materials\n", all.library.materials.size()) +
+    write_standard_output(left_out_text(all.left_out) + counted(all.library.materials.size(), "material") + "\n" +
                           checks_text(all.library) + next_text(next) +
                           (written.empty() ? "" : "written: " + join_text(written) + "\n"));
   }

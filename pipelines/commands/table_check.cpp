@@ -8,6 +8,7 @@
 
 #include "calibrate/experiment_fit.h"
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/data/force_curves.h"
 #include "common/io/csv_file.h"
 #include "common/packing/grading_scene.h"
@@ -56,10 +57,10 @@ void check_force_curves(const CsvFile& table, Findings& out) {
   }
   out.add("kind", "force curves",
           fmt::format("{}force over overlap of an experiment; softgrain calibrate fits a law to it", kNoScene));
-  out.add("samples", curves.samples.size(), fmt::format("{} samples, {} points", curves.samples.size(), points));
+  out.add("samples", curves.samples.size(), counted(curves.samples.size(), "sample") + ", " + counted(points, "point"));
   out.facts["points"] = points;
   if (returned > 0)
-    out.add("unloading_points", returned, fmt::format("{} points of unloading, to which a branch is fitted", returned));
+    out.add("unloading_points", returned, counted(returned, "point") + " of unloading, to which a branch is fitted");
   if (!options.kind) out.add("contact", to_string(curves.kind), "contact: " + to_string(curves.kind));
   if (!options.shell_radius)
     out.add("largest_delta", largest_delta,
@@ -96,7 +97,8 @@ void check_packing(const CsvFile& table, Findings& out) {
   const std::int64_t soft = packing.soft_count();
   const Vec3 size = packing.size();
   out.add("kind", "packing", fmt::format("{}a packing; the key `packing` of a macro scene takes it", kNoScene));
-  out.add("bodies", packing.bodies.size(), fmt::format("{} bodies, {} of them soft", packing.bodies.size(), soft));
+  out.add("bodies", packing.bodies.size(),
+          fmt::format("{}, {} of them soft", counted(packing.bodies.size(), "body", "bodies"), soft));
   out.facts["soft"] = soft;
   out.add("box", {size[0], size[1], size[2]},
           fmt::format("box {:.4g} x {:.4g} x {:.4g} m{}", size[0], size[1], size[2],

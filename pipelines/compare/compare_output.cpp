@@ -142,8 +142,8 @@ std::string factor(double value) { return rounded_text(value, {3}, kUndefined); 
 
 std::string text_of(const MacroPart& part) {
   const Comparison& c = part.result;
-  std::string out =
-      fmt::format("macro: {} against {}, {} samples\n", part.candidate_engine, part.reference_engine, c.samples.size());
+  std::string out = fmt::format("macro: {} against {}, {}\n", part.candidate_engine, part.reference_engine,
+                                counted(c.samples.size(), "sample"));
   const bool given = std::ranges::any_of(c.samples, [](const auto& s) { return s.axial_imposed; });
   if (c.deviator_difference.n > 0)
     out += fmt::format("  deviator, relative L2 difference        {}\n", percent(c.deviator_difference));

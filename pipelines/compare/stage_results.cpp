@@ -281,7 +281,7 @@ double compression_index(const std::vector<double>& void_ratio, const std::vecto
 
 std::string mean_modulus_text(const MeanError& m) {
   if (is_told_from_zero(m.n, m.mean, m.error)) return pressure_text(m);
-  return fmt::format("not determined ({}, {} samples)", pressure_text(m), m.n);
+  return fmt::format("not determined ({}, {})", pressure_text(m), counted(m.n, "sample"));
 }
 
 std::string modulus_text(const StageMeans& s) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/contact/rolling_scene.h"
+#include "common/core/text.h"
 #include "common/data/cell_card.h"
 #include "common/data/law_words.h"
 #include "pipelines/law/fitted_law.h"
@@ -40,10 +41,10 @@ std::string show(const CellCard& card, const FittedLaw& file, bool utf8) {
   std::string text = wrapped("cell law " + file.path + ": coarse grains in cells of fines, material without shells", 2);
   if (const std::string origin = origin_text(file.origin); !origin.empty()) text += wrapped(origin, 2);
   text += wrapped(
-      fmt::format("measured on {} samples each, fines {}, largest over smallest {}, split at {} of the largest grain; "
+      fmt::format("measured on {} each, fines {}, largest over smallest {}, split at {} of the largest grain; "
                   "E = {}, density {}, nu = {}, mu = {}{}, prepared '{}' to p/E = {}",
-                  card.samples, card.fines_sizes, number(card.fines_ratio), number(card.split),
-                  is_known(card.youngs_modulus) ? number(card.youngs_modulus) + " Pa" : "not said",
+                  counted(card.samples, "sample"), on_one_line(card.fines_sizes), number(card.fines_ratio),
+                  number(card.split), is_known(card.youngs_modulus) ? number(card.youngs_modulus) + " Pa" : "not said",
                   is_known(card.density) ? number(card.density) + " kg/m^3" : "not said", number(card.poisson_ratio),
                   number(card.grain_friction), rolling_text(card.grain_rolling), card.preparation,
                   number(card.start_pressure)),

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "pipelines/law/fitted_law.h"
 #include "pipelines/law/law_library_predict.h"
 #include "pipelines/law/law_library_press.h"
@@ -122,8 +123,9 @@ LibraryCollection collect_library(const std::vector<std::string>& directories, c
     }
   }
   if (out.library.materials.size() < least_materials())
-    throw InputError(fmt::format("law library: {} materials; it needs at least {}\n{}", out.library.materials.size(),
-                                 least_materials(), left_out_text(out.left_out)));
+    throw InputError(fmt::format("law library: {}; it needs at least {}\n{}",
+                                 counted(out.library.materials.size(), "material"), least_materials(),
+                                 left_out_text(out.left_out)));
   out.library.checks = check_library(out.library);
   out.library.press_checks = check_press_tests(out.library);
   return out;

@@ -107,6 +107,7 @@ LibraryMaterial read_material_row(const SceneTable& t, const LawLibrary& library
                                   const std::vector<std::string>& names) {
   LibraryMaterial m;
   m.source = t.text("source");
+  t.require_line("source", m.source);
   m.at = {t.number("mu", Unit::none, Range::not_negative()), t.number("exponent", Unit::none),
           t.number("ratio", Unit::none, Range::above(1.0)),
           t.number("solid_fraction", Unit::none, Range{0.0, 1.0, true, true})};

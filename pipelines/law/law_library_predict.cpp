@@ -9,6 +9,7 @@
 #include "common/core/error.h"
 #include "common/core/few_samples.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 
@@ -111,8 +112,8 @@ double off_the_first(const std::vector<ProcessValue>& z) {
 
 void require_materials(const LawLibrary& library) {
   if (library.materials.size() < least_materials())
-    throw InputError(
-        fmt::format("law library: {} materials; it needs at least {}", library.materials.size(), least_materials()));
+    throw InputError(fmt::format("law library: {}; it needs at least {}", counted(library.materials.size(), "material"),
+                                 least_materials()));
 }
 
 }  // namespace

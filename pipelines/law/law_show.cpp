@@ -100,7 +100,7 @@ std::string plot_of(const PairLaw& law, bool utf8) {
 std::string pair_text(const PairLaw& law, const SoftParticleSpec& spec, bool utf8) {
   std::string text = fmt::format("{}: {}", to_string(law.kind), to_string(law.status));
   if (!law.reason.empty()) text += " (" + law.reason + ")";
-  text += fmt::format(", {} packings, {} points", law.packings, law.points);
+  text += fmt::format(", {}, {}", counted(law.packings, "packing"), counted(law.points, "point"));
   if (law.chi2_per_dof > 0.0)
     text += fmt::format(", chi^2 per degree of freedom {} (probability of a larger one {})",
                         number(law.chi2_per_dof, 2), number(law.quality, 3));

@@ -119,8 +119,8 @@ std::string unloading_of(const LawTableEntry& e) {
 
 std::string entry_text(const LawTableEntry& e, bool main, bool utf8) {
   std::string text = wrapped(
-      fmt::format("solid fraction {:.4f} +- {:.4f}{}: {} packings{}, {}", e.solid_fraction, e.solid_fraction_error,
-                  main ? " (main: taken unless another is named)" : "", e.packings,
+      fmt::format("solid fraction {:.4f} +- {:.4f}{}: {}{}, {}", e.solid_fraction, e.solid_fraction_error,
+                  main ? " (main: taken unless another is named)" : "", counted(e.packings, "packing"),
                   e.grains > 0.0 ? fmt::format(", a soft particle represents {} grains", number(e.grains, 3)) : "",
                   e.relaxation),
       4);

@@ -35,6 +35,9 @@ struct TerminalPlot {
 /// that are not finite are left out. Empty when there is nothing to draw.
 std::string draw(const TerminalPlot& plot);
 
+/// Widest lines of what runs, sets and lists say in a terminal.
+inline constexpr std::size_t kTerminalColumns = 99;
+
 /// Columns that a text takes in a terminal: its UTF-8 characters.
 std::size_t columns_of(const std::string& text);
 

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "microsim/protocol.h"
 #include "pipelines/compare/compare_measurements.h"
 #include "pipelines/compare/macro_scores.h"
@@ -20,10 +21,10 @@ void add_scene(const std::string& name, const std::vector<MacroCurve>& curves, s
     if (s.twin() == Twin::shelled || !(s.shelled.speedup_evaluations > 0.0)) continue;
     const ComparedQuantity off = headline_of(s.shelled);
     if (off.value.n == 0) continue;
-    out.push_back(
-        {engine_name(s.engine),
-         fmt::format("{}, {}, {} samples", name, off.what == "stress" ? "axial stress" : off.what, off.value.n),
-         s.engine, 1.0 / s.shelled.speedup_evaluations, off.value.mean, off.value.error});
+    out.push_back({engine_name(s.engine),
+                   fmt::format("{}, {}, {}", name, off.what == "stress" ? "axial stress" : off.what,
+                               counted(off.value.n, "sample")),
+                   s.engine, 1.0 / s.shelled.speedup_evaluations, off.value.mean, off.value.error});
   }
 }
 
@@ -56,9 +57,10 @@ void add_relaxation(const RunData& run, PairKind kind, std::vector<ErrorCost>& o
     const auto [error, deviation] = distance_from_one(c.normal);
     const double cost = c.candidate_normal_cost.contact_evaluations / c.reference_normal_cost.contact_evaluations;
     if (!(error > 0.0) || !(cost > 0.0)) return;
-    out.push_back({"relaxation " + own + ", " + to_string(kind),
-                   fmt::format("normal force against the published relaxation, {} overlaps", c.normal.size()), "", cost,
-                   error, deviation});
+    out.push_back(
+        {"relaxation " + own + ", " + to_string(kind),
+         fmt::format("normal force against the published relaxation, {}", counted(c.normal.size(), "overlap")), "",
+         cost, error, deviation});
   } catch (const InputError&) {  // said in the section of the relaxations
   }
 }

@@ -84,7 +84,8 @@ std::string material_of_scene(const std::string& scene) {
     for (const std::string table : kMaterialTables)
       if (key.starts_with(table)) said.push_back(key.substr(table == "material." ? table.size() : 0) + " = " + value);
   const std::string text = join_text(std::span(said).first(std::min(said.size(), kMost)));
-  return said.size() > kMost ? text + fmt::format(" and {} more keys of the scene", said.size() - kMost) : text;
+  return said.size() > kMost ? text + fmt::format(" and {} of the scene", counted(said.size() - kMost, "more key"))
+                             : text;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "common/core/text.h"
 #include "common/data/law_words.h"
 #include "pipelines/law/law_json.h"
 #include "pipelines/report/html.h"
@@ -46,7 +47,7 @@ void add_law_rows(HtmlTable& table, const std::string& name, const ThresholdPowe
 std::string status_line(const PairLaw& law, const char* noun) {
   std::string text = "Status: " + to_string(law.status);
   if (!law.reason.empty()) text += " (" + law.reason + ")";
-  text += fmt::format(". {} {}, {} points, fitted over Δ = {} .. {}", law.packings, noun, law.points,
+  text += fmt::format(". {} {}, {}, fitted over Δ = {} .. {}", law.packings, noun, counted(law.points, "point"),
                       format_number(law.delta_min), format_number(law.delta_max));
   text += fmt::format("; chi²/dof {}, probability of a larger one {}", format_number(law.chi2_per_dof, 3),
                       format_number(law.quality, 2));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/sections.h"
@@ -54,7 +55,8 @@ Series measured(const Measurements& data, const SizeRange& range) {
     const auto one = density(packing, data.spec.shell_radius, range);
     for (std::size_t k = 0; k < kBins; ++k) columns[k].push_back(one[k]);
   }
-  Series s{.label = fmt::format("packed grains, mean of {} packings \u00b1 standard error", columns.front().size()),
+  Series s{.label = fmt::format("packed grains, mean of {} \u00b1 standard error",
+                                counted(columns.front().size(), "packing")),
            .hover = "packed grains",
            .x = {},
            .y = {}};
@@ -100,9 +102,9 @@ std::string packing_facts(const Measurements& data) {
     return format_with_error(m.mean, m.error);
   };
   return paragraph(
-      fmt::format("{} packings; per packing (mean ± standard error): grains {}, solid fraction {}, contacts per grain "
+      fmt::format("{}; per packing (mean ± standard error): grains {}, solid fraction {}, contacts per grain "
                   "at the start {}.",
-                  data.packings.size(), text(grains), text(fraction), text(contacts)));
+                  counted(data.packings.size(), "packing"), text(grains), text(fraction), text(contacts)));
 }
 
 constexpr const char* kPackingsLead =

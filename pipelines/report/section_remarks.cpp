@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "common/core/text.h"
 #include "common/data/law_words.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/plot_helpers.h"
@@ -45,8 +46,8 @@ void add_convergence(const Measurements& data, Remarks& remarks) {
 
 void add_packings(const Measurements& data, Remarks& remarks) {
   if (data.packings.size() < 7) {
-    remarks.push_back(fmt::format("Only {} packings: at least seven are needed for a mean, about 32 for a law.",
-                                  data.packings.size()));
+    remarks.push_back(fmt::format("Only {}: at least seven are needed for a mean, about 32 for a law.",
+                                  counted(data.packings.size(), "packing")));
   }
   double largest = 0.0;
   for (const PackingRun& run : data.runs) {

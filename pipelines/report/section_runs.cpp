@@ -167,7 +167,7 @@ std::vector<HeadLine> set_lines(const RunData& run) {
   if (set.runs.empty()) return lines;
   const auto good = std::ranges::count_if(set.runs, [](const RunEntry& r) { return r.status == RunStatus::good; });
   const std::string kind = run.kind().empty() ? "" : " of a scene of kind " + run.kind();
-  lines.emplace_back("Runs", fmt::format("{} runs{}, {} of them good.", set.runs.size(), kind, good));
+  lines.emplace_back("Runs", fmt::format("{}{}, {} of them good.", counted(set.runs.size(), "run"), kind, good));
   if (set.search && set.search->usable)
     for (const SearchedKey& key : set.search->keys)
       lines.emplace_back(

@@ -113,8 +113,8 @@ std::string paired_text(const PairedSummary& summary) {
   text += summary.paired ? "  paired: " + summary.method + "\n"
                          : "  not paired, errors as of independent runs: " + summary.reason + "\n";
   if (summary.numbers.size() > shown)
-    text += fmt::format("  {} more differences in summary and differences.csv (--out DIR)\n",
-                        summary.numbers.size() - shown);
+    text += fmt::format("  {} in summary and differences.csv (--out DIR)\n",
+                        counted(summary.numbers.size() - shown, "more difference"));
   return text;
 }
 

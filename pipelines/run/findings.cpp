@@ -115,7 +115,7 @@ std::string time_text(double seconds) {
 
 std::string busy_text(double load, int cores) {
   if (!(load >= 0.5 * cores)) return "";
-  return fmt::format("the machine is busy now, load {:.1f} on {} core{}", load, cores, cores == 1 ? "" : "s");
+  return fmt::format("the machine is busy now, load {:.1f} on {}", load, counted(cores, "core"));
 }
 
 std::string busy_text() {

@@ -26,6 +26,7 @@ namespace softgrain {
 
 namespace {
 
+using law::kTerminalColumns;
 using law::wrapped;
 
 /// Lines with a time into DIR/log.txt (continued by --resume), plain lines to standard error unless quiet.
@@ -124,11 +125,10 @@ std::string settings_text(const Scene& scene, std::uint64_t seed) {
   return head + ":\n" + text;
 }
 
-constexpr std::size_t kLineWidth = 99;
 constexpr std::size_t kMostWarnings = 5;
 
 /// The result; whether it is not usable, and why; the first kMostWarnings warnings; where the rest is. In lines of at
-/// most kLineWidth.
+/// most kTerminalColumns.
 std::string console_text(std::string result, const nlohmann::json& summary) {
   if (!result.empty() && result.back() != '\n') result += '\n';
   const auto all = record_of<AnySummary>(summary);
@@ -138,20 +138,20 @@ std::string console_text(std::string result, const nlohmann::json& summary) {
   for (std::size_t at = 0; at < result.size();) {
     const std::size_t end = result.find('\n', at);
     const std::string line = result.substr(at, end - at);
-    text += line.size() > kLineWidth ? wrapped(line, 4, kLineWidth) : line + "\n";
+    text += line.size() > kTerminalColumns ? wrapped(line, 4, kTerminalColumns) : line + "\n";
     at = end + 1;
   }
   if (bad && !result.starts_with(all.status))
     text += wrapped(fmt::format("status: {} (exit status {}){}", all.status, static_cast<int>(ExitStatus::not_usable),
                                 warnings.empty() ? "" : ": " + warnings.front()),
-                    4, kLineWidth);
+                    4, kTerminalColumns);
   if (bad && !warnings.empty()) warnings.erase(warnings.begin());  // has been said
   for (std::size_t k = 0; k < std::min(warnings.size(), kMostWarnings); ++k)
-    text += wrapped("warning: " + warnings[k], 4, kLineWidth);
+    text += wrapped("warning: " + warnings[k], 4, kTerminalColumns);
   const std::size_t further = warnings.size() - std::min(warnings.size(), kMostWarnings);
-  if (further > 0) text += fmt::format("{} more warning{} at the end of log.txt\n", further, further == 1 ? "" : "s");
+  if (further > 0) text += counted(further, "more warning") + " at the end of log.txt\n";
   const std::size_t notes = notes_of(all).size();
-  if (notes > 0) text += fmt::format("{} note{} at the end of log.txt\n", notes, notes == 1 ? "" : "s");
+  if (notes > 0) text += counted(notes, "note") + " at the end of log.txt\n";
   return text;
 }
 
@@ -199,8 +199,8 @@ RunContext::RunContext(const CommonOptions& options, const std::string& command,
   try {
     logger_ = make_logger(path("log.txt"), options_);
     // The first line: was_run_directory() knows the directory of a run by it.
-    log_to(*logger_->sinks().front(), fmt::format("softgrain {} ({}), {} threads: {}", build.version, build.commit,
-                                                  threads_, options_.command_line));
+    log_to(*logger_->sinks().front(), fmt::format("softgrain {} ({}), {}: {}", build.version, build.commit,
+                                                  counted(threads_, "thread"), options_.command_line));
   } catch (const spdlog::spdlog_ex& e) {
     throw IoError(path("log.txt") + ": " + e.what());
   }
@@ -251,7 +251,7 @@ Provenance RunContext::provenance(const Scene& scene, std::uint64_t used_seed) c
 }
 
 void RunContext::say(const std::string& line) const {
-  std::string text = line.size() > kLineWidth ? wrapped(line, 4, kLineWidth) : line;
+  std::string text = line.size() > kTerminalColumns ? wrapped(line, 4, kTerminalColumns) : line;
   if (!text.empty() && text.back() == '\n') text.pop_back();
   logger_->info("{}", text);
 }

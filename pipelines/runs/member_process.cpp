@@ -76,8 +76,8 @@ class SideBySide {
   }
 
   void run() {
-    context_.say(fmt::format("{} runs, {} at once with {} thread{} each", entries_.size(), jobs_, options_.threads,
-                             options_.threads == 1 ? "" : "s"));
+    context_.say(fmt::format("{}, {} at once with {} each", counted(entries_.size(), "run"), jobs_,
+                             counted(options_.threads, "thread")));
     std::vector<std::thread> workers;
     for (std::size_t k = 0; k < jobs_; ++k) workers.emplace_back([this] { work(); });
     for (std::thread& worker : workers) worker.join();

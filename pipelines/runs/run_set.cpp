@@ -285,7 +285,7 @@ void note_swept_keys(const RunPlan& plan, SetSummary& summary) {
 
 SetSummary summarise(const Scene& scene, const RunPlan& plan, std::vector<RunEntry> entries) {
   SetSummary summary;
-  const std::string title = scene.root().text("title", "");
+  const std::string title = scene.root().title();
   summary.over = plan.over;
   summary.seeds.assign(plan.seeds.begin(), plan.seeds.end());
   summary.runs = std::move(entries);

@@ -134,7 +134,8 @@ std::vector<std::vector<double>> unit_points(const SampleDesign& design, std::si
   const bool saltelli = design.form == SampleForm::saltelli;
   const std::size_t most = saltelli ? kMostSobolColumns / 2 : kMostSobolColumns;
   if (keys > most)
-    throw InputError(fmt::format("--sample {}: {} keys, at most {} go into this design", design.text(), keys, most));
+    throw InputError(
+        fmt::format("--sample {}: {}, at most {} go into this design", design.text(), counted(keys, "key"), most));
   return saltelli ? saltelli_points(design, keys) : sobol_sequence(design, keys);
 }
 

@@ -95,7 +95,7 @@ void add_correlations(const SetSummary& summary, const std::vector<PointValue>& 
     effect.points = points.size();
     std::vector<double> column = column_of(summary.over[k], points);
     if (points.size() < kLeastRanked)
-      effect.reason = fmt::format("{} points, at least {} are needed", points.size(), kLeastRanked);
+      effect.reason = fmt::format("{}, at least {} are needed", counted(points.size(), "point"), kLeastRanked);
     else if (!varies(y))
       effect.reason = "the number does not vary";
     else if (column.empty())
@@ -114,9 +114,9 @@ void add_correlations(const SetSummary& summary, const std::vector<PointValue>& 
   }
   if (fit || keys.empty()) return;
   const std::size_t needed = least_regressed(keys.size());
-  const std::string why = points.size() < needed
-                              ? fmt::format("{} points, at least {} are needed for a regression", points.size(), needed)
-                              : std::string("no regression: keys depend on each other");
+  const std::string why = points.size() < needed ? fmt::format("{}, at least {} are needed for a regression",
+                                                               counted(points.size(), "point"), needed)
+                                                 : std::string("no regression: keys depend on each other");
   for (const std::size_t k : keys) append_part(effects[k].reason, why, "; ");
 }
 

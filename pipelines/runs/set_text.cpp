@@ -49,7 +49,6 @@ constexpr std::size_t kSampledRuns = 20;  ///< runs of a design in the terminal
 /// Rows with a name in the first column; where they would be broken at the end of the line, each name stands above its
 /// values.
 std::string named_rows(Rows rows, std::size_t indent) {
-  constexpr std::size_t kWidest = 98;  // the terminal breaks longer lines (kLineWidth in run_context.cpp)
   const auto lines_of = [](const std::string& text) {
     std::vector<std::string> lines;
     std::istringstream stream(text);
@@ -57,7 +56,7 @@ std::string named_rows(Rows rows, std::size_t indent) {
     return lines;
   };
   const std::string beside = law::aligned(rows, indent);
-  if (std::ranges::max(lines_of(beside), {}, &std::string::size).size() <= kWidest) return beside;
+  if (std::ranges::max(lines_of(beside), {}, &std::string::size).size() <= law::kTerminalColumns) return beside;
   std::vector<std::string> names;
   for (std::vector<std::string>& row : rows) names.push_back(std::exchange(row.front(), ""));
   std::string text;
@@ -95,8 +94,10 @@ std::string runs_down(const SetSummary& summary, const std::vector<RunValue>& nu
     rows.push_back({run.name, to_string(run.status)});
     for (std::size_t k = 0; k < shown; ++k) rows.back().push_back(cell_of(run, numbers[k].name));
   }
-  if (summary.runs.size() > runs) text += fmt::format("  {} more runs in table.csv\n", summary.runs.size() - runs);
-  if (numbers.size() > shown) text += fmt::format("  {} more numbers in summary and report\n", numbers.size() - shown);
+  if (summary.runs.size() > runs)
+    text += fmt::format("  {} in table.csv\n", counted(summary.runs.size() - runs, "more run"));
+  if (numbers.size() > shown)
+    text += fmt::format("  {} in summary and report\n", counted(numbers.size() - shown, "more number"));
   return text + law::aligned(rows, 2, 2);
 }
 
@@ -121,8 +122,7 @@ std::string number_text(double value, double error) {
 std::string varied_text(const SetSummary& summary) {
   std::string text = summary.over.empty() ? "" : "sweep over " + join_text(summary.over, ", ", &SweptKey::key);
   if (summary.design) append_part(text, "sample " + summary.design->sample);
-  if (!summary.seeds.empty())
-    append_part(text, fmt::format("{} seed{}", summary.seeds.size(), summary.seeds.size() == 1 ? "" : "s"));
+  if (!summary.seeds.empty()) append_part(text, counted(summary.seeds.size(), "seed"));
   return text;
 }
 
@@ -141,7 +141,7 @@ std::string differences_text(const SetSummary& summary) {
       append_part(values, fmt::format("{} {}", letter(k), one.values[k]), ", ");
     text += fmt::format("differs: {}: {}\n", one.key, values);
   }
-  if (shown > kShown) text += fmt::format("differs: {} more keys\n", shown - kShown);
+  if (shown > kShown) text += fmt::format("differs: {}\n", counted(shown - kShown, "more key"));
   return text;
 }
 

@@ -11,7 +11,7 @@ ExampleSetup read_example(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     ExampleSetup out;
     (void)root.choice(kKindKey, {"example"});
-    out.title = root.text(kTitleKey, "");
+    out.title = root.title();
     constexpr std::int64_t kLargestSeed = 1'000'000'000'000;
     out.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, kLargestSeed, 0));
     const SceneTable grain = root.table({"grain", "the grain that falls"});

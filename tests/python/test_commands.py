@@ -66,7 +66,7 @@ class CommandsTest(InEmptyFolder):
         force = two.numbers()["largest force of a contact"]
         self.assertAlmostEqual(force[0], runs[0].summary["contacts"][0]["max_force"], delta=1e-9 * force[0])
         self.assertIn("a with ", repr(two))
-        self.assertIn("differ in 1 keys", repr(two))
+        self.assertIn("differ in 1 key;", repr(two))
         self.assertEqual((two.table().rows, two.directory), (0, None))
         several = softgrain.compare(*runs, out="compared")
         self.assertEqual(list(several.numbers()["name"]), ["a", "b", "c"])

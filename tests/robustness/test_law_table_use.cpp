@@ -422,7 +422,7 @@ TEST_F(LawTableUse, WrongInputsOfCalibrateAreRefused) {
   save(synthetic::measurements(4), file("measurements.h5"));
   const std::string multi_contact = "calibrate '" + file("multi_contact.h5") + "' ";
   const std::string out = " --quiet --set replicates=0 --out '" + file("out") + "'";
-  expect(run_the_program(multi_contact + out), 2, {"3 packings are too few"});
+  expect(run_the_program(multi_contact + out), 2, {"only 3 packings, at least"});
   expect(run_the_program(multi_contact + "'" + file("multi_contact.h5") + "' --set min_packings=2" + out), 2,
          {"same solid fraction"});
   expect(run_the_program(multi_contact + "'" + file("measurements.h5") + "'" + out), 2, {"a run each"});

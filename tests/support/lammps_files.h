@@ -1,12 +1,14 @@
-// Tables and dumps as the script of LAMMPS writes them.
+// Tables and dumps as the script of LAMMPS writes them, and a test that has stages of every kind.
 #pragma once
 
 #include <fmt/format.h>
 
+#include <fstream>
 #include <string>
 #include <vector>
 
 #include "macrosim/lammps_run/points_file.h"
+#include "macrosim/macro_spec.h"
 
 namespace softgrain::test {
 
@@ -48,6 +50,33 @@ inline std::string dump_text(const std::string& what, const std::vector<std::str
   text += "ITEM: " + what + " some columns\n";
   for (const std::string& row : rows) text += row + "\n";
   return text;
+}
+
+/// Without waiting for the disk.
+inline void overwrite(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+/// Stages of every kind, in a periodic cell.
+inline MacroSpec staged_spec() {
+  MacroSpec spec;
+  spec.boundary = Boundary::periodic;
+  spec.test = MacroTest::stages;
+  const auto add = [&](StageKind kind) -> MacroStage& {
+    spec.stages.emplace_back();
+    spec.stages.back().record = {to_string(kind), kind, kind};
+    return spec.stages.back();
+  };
+  for (AxisDrive& axis : add(StageKind::consolidation).axis) axis = {true, 300.0, -1};
+  MacroStage& triaxial = add(StageKind::triaxial);
+  triaxial.axis[0] = triaxial.axis[1] = {true, 0.0, 1};
+  triaxial.axis[2].value = 0.05;
+  MacroStage& shear = add(StageKind::shear);
+  shear.axis[0].value = -0.01;
+  shear.axis[2].value = 0.01;
+  shear.logarithmic = true;
+  add(StageKind::hold);
+  return spec;
 }
 
 }  // namespace softgrain::test

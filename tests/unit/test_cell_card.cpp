@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "common/core/error.h"
 #include "common/data/cell_card.h"
@@ -164,7 +167,7 @@ TEST(CellCardFile, FactorsOfPreparationsAreOneEachAndAboveNone) {
   expect_words(factor_of("slow", 0.97) + factor_of("slow", 0.96), "is used twice");
   expect_words(factor_of("fast", 0.97), "whose factor is 1");
   expect_words(factor_of("slow", 0.0), "value = ");
-  expect_words(factor_of("slow", 1e30), "at most 100");
+  expect_words(factor_of("slow", 1e30), "factor: value = 1e+30 must be from 0.01 to 100");
   expect_words(factor_of("", 0.97), "must not be empty");
   expect_words(factor_of("slow", 0.97, "mu = 0.3\n"), "unknown key 'mu'");
   expect_words("[[preparation]]\nname = \"slow\"\n", "factor");
@@ -264,6 +267,74 @@ std::string complaint_of(const std::string& begin, const std::string& line) {
   return "";
 }
 
+/// What complains of a card with the number `key` of its [cell] or [memory] set to `value`, whatever its errors.
+std::string complaint_of_number(const std::string& key, double value) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.file("card.toml");
+  CellCard card = card_with_memory();
+  write_cell_card(card, path);
+  std::string text = read_text(path);
+  const auto at = text.find("\n" + key + " = {");
+  EXPECT_NE(at, std::string::npos) << key;
+  text.replace(
+      at + 1, text.find('\n', at + 1) - at - 1,
+      fmt::format("{} = {{ value = {}, standard_error = \"inf\", low = \"-inf\", high = \"inf\" }}", key, value));
+  write_text_atomic(path, text);
+  try {
+    (void)read_cell_card(path);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+/// A card with K = 1e30 was read, and the run failed after its packings were made.
+TEST(CellCardFile, NumbersBeyondReasonAreRefusedWithTheirKeyAndRange) {
+  struct Wrong {
+    const char* key;
+    double value;
+    const char* words;
+  };
+  const std::vector<Wrong> wrong{{"K", 1e30, "K: value = 1e+30 must be from 1e-06 to 1"},
+                                 {"K", 1e-30, "K: value = 1e-30 must be from 1e-06 to 1"},
+                                 {"n", 21.0, "n: value = 21.0 must be above 1 and at most 20"},
+                                 {"e_J", 1e-9, "e_J: value = 1e-09 must be from 0.0001 to 100"},
+                                 {"e_c", 1e30, "e_c: value = 1e+30 must be from 0.0001 to 100"},
+                                 {"w_inf", 1e30, "w_inf: value = 1e+30 must be from 0 to 100"},
+                                 {"xi", 1e30, "xi: value = 1e+30 must be from 1e-06 to 1"},
+                                 {"mu_f", 1e30, "mu_f: value = 1e+30 must be from 0 to 1000"},
+                                 {"chi", 1e30, "chi: value = 1e+30 must be from 1e-06 to 1"},
+                                 {"K0", 2.0, "K0: value = 2.0 must be above 0 and at most 1"},
+                                 {"A", 1e30, "A: value = 1e+30 must be from 0 to 1000"},
+                                 {"r_c", 1e30, "r_c: value = 1e+30 must be from 0.01 to 100"},
+                                 {"m", 1e30, "m: value = 1e+30 must be from 0 to 1"},
+                                 {"c", 1e-30, "c: value = 1e-30 must be at least 0.001 and below 1"},
+                                 {"lambda", -1e30, "lambda: value = -1e+30 must be from -50 to 50"},
+                                 {"x_r", 1.0, "x_r: value = 1.0 must be above 0 and below 1"}};
+  for (const Wrong& w : wrong) {
+    const std::string text = complaint_of_number(w.key, w.value);
+    EXPECT_NE(text.find("card.toml:"), std::string::npos) << w.key << ": " << text;
+    EXPECT_NE(text.find(w.words), std::string::npos) << w.key << ": " << text;
+  }
+  for (const auto& [key, value] :
+       {std::pair{"K", 1e5}, {"K", 1e-5}, {"n", 19.0}, {"e_J", 0.002}, {"chi", 1e-3}, {"mu_f", 500.0}, {"m", 1e5}})
+    EXPECT_EQ(complaint_of_number(key, value), "") << key << " = " << value;
+}
+
+/// Fits end within the ranges of the numbers, so every card that was written is read.
+TEST(CellCardFile, AllCardsOfTheRepositoryAreRead) {
+  int cards = 0;
+  for (const char* folder : {"/results/material_law", "/results/recipes", "/tests/reference/earlier"})
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(std::string(SOFTGRAIN_SOURCE_DIR) + folder)) {
+      const std::string name = entry.path().filename().string();
+      if (!name.starts_with("cell_law") || !name.ends_with(".toml")) continue;
+      EXPECT_NO_THROW((void)read_cell_card(entry.path().string())) << entry.path();
+      ++cards;
+    }
+  EXPECT_GE(cards, 14);
+}
+
 TEST(CellCardFile, NothingWrongIsTaken) {
   const auto estimate = [](double v) {
     return fmt::format("{{ value = {}, standard_error = 0.1, low = 0.0, high = 9.0 }}", v);
@@ -291,11 +362,13 @@ TEST(CellCardFile, NothingWrongIsTaken) {
   EXPECT_NE(complaint_of("K = ", "").find("missing table [cell.K]"), std::string::npos) << complaint_of("K = ", "");
   EXPECT_NE(complaint_of("K = ", "KK = 3"), "");
   EXPECT_NE(complaint_of("form", "form = \"poors\"").find("nearest is \"pores\""), std::string::npos);
-  for (const char* line : {"pressure = [2e-3, 1e-3]", "pressure = [0.0, 1e-3]", "pressure = [1e-3]"})
+  for (const char* line :
+       {"pressure = [2e-3, 1e-3]", "pressure = [0.0, 1e-3]", "pressure = [1e-3]", "pressure = [1e-4, 1e30]"})
     EXPECT_NE(complaint_of("pressure", line).find("pressure"), std::string::npos) << line;
   const std::vector<std::pair<std::string, std::string>> others{
-      {"mixture_max", "0"},    {"nu", "0.6"},    {"mu", "-1"},           {"preparation", "\"\""},
-      {"start_pressure", "0"}, {"split", "1.0"}, {"fines_ratio", "0.9"}, {"fines_sizes", "3"},
+      {"mixture_max", "0"},    {"mixture_max", "1e30"}, {"mu", "1e30"},         {"start_pressure", "1e30"},
+      {"fines_ratio", "1e30"}, {"nu", "0.6"},           {"mu", "-1"},           {"preparation", "\"\""},
+      {"start_pressure", "0"}, {"split", "1.0"},        {"fines_ratio", "0.9"}, {"fines_sizes", "3"},
       {"samples", "0"},        {"schema", "2"}};
   for (const auto& [key, value] : others)
     EXPECT_NE(complaint_of(key, key + " = " + value).find(key), std::string::npos) << key;

@@ -214,7 +214,7 @@ TEST_F(ForceCurveFile, WrongFilesAreNamedWithTheirLine) {
   expect_refused(replaced(kGood, "hn [mm]", "overlapp [mm]"), {"data.csv:6", "overlapp", "\"overlap\" is near"});
   expect_refused(replaced(kGood, "1.6, 80", "1.6, "), {"data.csv:8", "Fn [mN]", "missing"});
   expect_refused(replaced(kGood, "1.6, 80", "1.6, eighty"), {"data.csv:8", "Fn [mN]", "eighty"});
-  expect_refused(replaced(kGood, "1.6, 80", "1.6"), {"data.csv:8", "1 cells", "2 columns"});
+  expect_refused(replaced(kGood, "1.6, 80", "1.6"), {"data.csv:8", "1 cell,", "2 columns"});
   expect_refused(replaced(kGood, "1.6, 80", "1,6, 80"), {"data.csv:8", "3 cells", "decimal commas", "; or tab"});
   expect_refused(replaced(kGood, "4.0, 1500", "4.0, \"1,500.5\""),
                  {"data.csv:11", "\"1,500.5\" has a comma and a point", "thousands"});

@@ -412,6 +412,18 @@ TEST(Kinds, SayAllMistakesOfASceneAtOnce) {
   EXPECT_EQ(kinds.size(), scene_kinds().size()) << "one scene of each kind";
 }
 
+/// Titles stand in reports, pictures and files for LAMMPS: no characters that move the cursor of a terminal.
+TEST(Kinds, TitlesHaveNoControlCharacters) {
+  for (const Mistaken& m : kMistaken)
+    for (const char* title : {"\\u001b[2Jb", "a\\nb", "a\\tb", "a\\u009bb"}) {
+      const std::string text = errors_of("title = \"" + std::string(title) + "\"\n" + m.scene);
+      EXPECT_NE(text.find("s:1: title = \""), std::string::npos) << text;
+      EXPECT_NE(text.find("must be one line of text, without control characters"), std::string::npos) << text;
+      EXPECT_EQ(text.find('\x1b'), std::string::npos) << title;
+    }
+  EXPECT_EQ(errors_of(std::string("title = \"one line\"\n") + kMistaken[0].scene).find("title = "), std::string::npos);
+}
+
 TEST(Kinds, UnknownOnesAreNamedWithTheNearest) {
   EXPECT_NE(complaint("pipline", "run").find("nearest is \"pipeline\""), std::string::npos)
       << complaint("pipline", "run");

@@ -1,9 +1,7 @@
 // What goes to LAMMPS and comes back from it: data file, script, tables of points, dumps.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "common/core/error.h"
@@ -19,10 +17,8 @@
 namespace softgrain {
 namespace {
 
-using lammps::Point;
-using lammps::PointRow;
-using test::point_row;
-using test::with;
+using test::overwrite;
+using test::staged_spec;
 
 /// Two octaves of solid grains, one of soft ones.
 MacroPacking small_packing() {
@@ -71,9 +67,6 @@ TEST(LammpsFiles, TheDataFileReadsBackToTheSameBits) {
   EXPECT_FALSE(std::filesystem::exists(directory.file("bodies.data.tmp")));
 }
 
-/// Without waiting for the disk.
-void overwrite(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
-
 std::string script_of(const MacroSpec& spec) {
   const MacroPacking packing = small_packing();
   return lammps::script_text({spec, packing, lammps::body_types(packing), "a title & $more", "0123456789abcdef", 4});
@@ -84,28 +77,6 @@ MacroSpec spec_of(MacroTest test, double preload = 0.0, Preparation preparation 
   spec.test = test;
   spec.preload = preload;
   spec.preparation = preparation;
-  return spec;
-}
-
-/// Stages of every kind, in a periodic cell.
-MacroSpec staged_spec() {
-  MacroSpec spec;
-  spec.boundary = Boundary::periodic;
-  spec.test = MacroTest::stages;
-  const auto add = [&](StageKind kind) -> MacroStage& {
-    spec.stages.emplace_back();
-    spec.stages.back().record = {to_string(kind), kind, kind};
-    return spec.stages.back();
-  };
-  for (AxisDrive& axis : add(StageKind::consolidation).axis) axis = {true, 300.0, -1};
-  MacroStage& triaxial = add(StageKind::triaxial);
-  triaxial.axis[0] = triaxial.axis[1] = {true, 0.0, 1};
-  triaxial.axis[2].value = 0.05;
-  MacroStage& shear = add(StageKind::shear);
-  shear.axis[0].value = -0.01;
-  shear.axis[2].value = 0.01;
-  shear.logarithmic = true;
-  add(StageKind::hold);
   return spec;
 }
 
@@ -220,168 +191,6 @@ TEST(LammpsFiles, PeriodicCellsArePressedWithoutWalls) {
   EXPECT_EQ(text.find("f_walls"), std::string::npos);
 }
 
-class Tables : public ::testing::Test {
- protected:
-  [[nodiscard]] std::string points() const { return directory_.file(lammps::kPointsFile); }
-  [[nodiscard]] std::string copy() const { return directory_.file(lammps::kPointsCopy); }
-  [[nodiscard]] std::vector<PointRow> read() const { return lammps::read_points(directory_.path(), "key"); }
-  void write(std::size_t count) {
-    std::vector<PointRow> rows;
-    for (double k = 0.0; k < static_cast<double>(count); k += 1.0) rows.push_back(point_row(k, 0.1 * k));
-    lammps::write_points(directory_.path(), "key", rows);
-  }
-
-  test::TemporaryDirectory directory_;
-};
-
-TEST_F(Tables, ReadBackWhatWasWritten) {
-  EXPECT_TRUE(read().empty());
-  write(3);
-  const auto rows = read();
-  ASSERT_EQ(rows.size(), 3U);
-  EXPECT_EQ(rows[2].values, point_row(2.0, 0.2).values);
-  EXPECT_EQ(lammps::count_points(directory_.path()), 3);
-  EXPECT_THROW((void)lammps::read_points(directory_.path(), "another"), InputError);
-}
-
-TEST_F(Tables, ColumnsOfTheSceneComeAfterThoseOfEveryTest) {
-  const std::vector<std::string> names{"rattlers", "coarse-coarse_0.5"};
-  PointRow row = point_row(0.0, 0.0);
-  row.more = {3.0, 1.0 / 3.0};
-  lammps::write_points(directory_.path(), "key", {row}, names);
-  const auto rows = lammps::read_points(directory_.path(), "key", names);
-  ASSERT_EQ(rows.size(), 1U);
-  EXPECT_EQ(rows[0].more, row.more);
-  EXPECT_EQ(rows[0].values, row.values);
-  EXPECT_THROW((void)read(), IoError);
-}
-
-/// Cut at any place, a table gives the rows before or is refused; it never gives others.
-TEST_F(Tables, CutShortAnywhereIsNoticed) {
-  write(3);
-  const std::string whole = read_text(points());
-  for (std::size_t size = 0; size < whole.size(); ++size) {
-    overwrite(points(), whole.substr(0, size));
-    try {
-      EXPECT_LE(read().size(), 2U) << size;
-    } catch (const IoError&) {
-    }
-  }
-}
-
-TEST_F(Tables, AnyDamagedByteIsNoticed) {
-  write(2);
-  const std::string whole = read_text(points());
-  const auto expected = read();
-  for (const std::string& path : {points(), copy()})
-    for (std::size_t k = 0; k < whole.size(); ++k) {
-      std::string damaged = whole;
-      damaged[k] = static_cast<char>(damaged[k] ^ 1);
-      overwrite(path, damaged);
-      try {
-        const auto rows = read();
-        // The last line may count as being written.
-        ASSERT_LT(rows.size(), 2U) << k << " of " << path;
-      } catch (const Error&) {
-      }
-      overwrite(path, whole);
-    }
-}
-
-TEST_F(Tables, RowsThatComeAgainReplaceThoseBefore) {
-  write(3);
-  std::string text = read_text(points());
-  const std::size_t row = text.find("\n1 ") + 1;
-  text += text.substr(row, text.find('\n', row) + 1 - row);
-  overwrite(points(), text);
-  overwrite(copy(), text);
-  EXPECT_EQ(read().size(), 2U);
-}
-
-TEST_F(Tables, GapsAndOtherWordsAreRefused) {
-  const auto refused = [&](const std::string& from, const std::string& to) {
-    write(3);
-    std::string text = read_text(points());
-    text.replace(text.find(from), from.size(), to);
-    overwrite(points(), text);
-    overwrite(copy(), text);
-    EXPECT_THROW((void)read(), IoError) << to;
-  };
-  refused("\n1 ", "\n5 ");
-  refused("\n1 ", "\nnan ");
-  refused("\n1 ", "\none ");
-  refused("\n1 0.1 ", "\n1 ");
-  refused("# softgrain points 3", "# softgrain points 9");
-}
-
-/// A run that an earlier version began is taken up as it is: its script is there too, and writes rows of its time.
-TEST_F(Tables, OfAnEarlierVersionAreReadAndGoneOnWith) {
-  PointRow row = with(with(point_row(0.0, 0.0), Point::residual, 0.004), Point::end, 2.0);
-  row.earlier = true;
-  lammps::write_points(directory_.path(), "key", {row, with(row, Point::number, 1.0)});
-  const std::string text = read_text(points());
-  EXPECT_TRUE(text.starts_with("# softgrain points 2, scene key\n"));
-  EXPECT_EQ(text.find("unrest"), std::string::npos);
-  const auto rows = read();
-  ASSERT_EQ(rows.size(), 2U);
-  EXPECT_TRUE(rows[1].earlier);
-  EXPECT_EQ(rows[1][Point::over], row[Point::over]);
-  EXPECT_EQ(rows[1][Point::unrest], 0.004);
-  EXPECT_EQ(rows[1][Point::unrest_end], 2.0);
-}
-
-/// Test of four points, with tables and restart files as a run leaves them.
-class Resume : public Tables {
- protected:
-  void touch(const std::string& name) const { overwrite(directory_.file(name), "x"); }
-  [[nodiscard]] lammps::ResumePoint find() const { return lammps::find_resume_point(directory_.path(), "key", 4); }
-  using Words = std::vector<std::string>;
-};
-
-TEST_F(Resume, GoesOnAfterTheLastPointThatHasARestartFile) {
-  EXPECT_TRUE(find().settings.empty());
-  write(3);
-  EXPECT_TRUE(find().settings.empty()) << "no restart file";
-  write(3);
-  touch("restart.1");
-  EXPECT_EQ(find().settings, (Words{"-var", "from", "1"}));
-  EXPECT_EQ(read().size(), 2U);
-  write(3);
-  touch("restart.2");
-  EXPECT_EQ(find().settings, (Words{"-var", "from", "2"}));
-}
-
-TEST_F(Resume, IsDoneWhenTheLastStateIsThere) {
-  write(4);
-  touch("restart.3");
-  EXPECT_EQ(find().settings, (Words{"-var", "from", "3"}));
-  touch(lammps::kEndFile);
-  EXPECT_TRUE(find().done);
-}
-
-TEST_F(Resume, ATestThatEndedEarlyDoesNotGoBeyond) {
-  lammps::write_points(directory_.path(), "key", {point_row(0, 0), with(point_row(1, 0.1), Point::law_refused, 2.0)});
-  touch("restart.0");
-  touch("restart.1");
-  EXPECT_EQ(find().settings, (Words{"-var", "from", "0"}));
-  lammps::write_points(directory_.path(), "key", {point_row(0, 0), with(point_row(1, 0.1), Point::law_refused, 2.0)});
-  touch(lammps::kEndFile);
-  EXPECT_TRUE(find().done);
-}
-
-TEST_F(Resume, GoesOnWithinTheCompaction) {
-  overwrite(directory_.file(lammps::kCompactionFile), "# head\n1 128 2000 1 0 5 1\n2 89.6 0 1 0 5 1\n3 62.7 0 1");
-  touch("restart.compaction.1");
-  touch("restart.compaction.2");
-  touch("restart.compaction.3");
-  EXPECT_EQ(find().settings,
-            (Words{"-var", "round_done", "2", "-var", "next_pressure", "89.6", "-var", "passes_under", "0"}));
-  EXPECT_NEAR(lammps::compaction_share(directory_.path()), 0.7 - 0.3 * std::log(89.6) / std::log(128.0 / 0.7), 1e-12);
-  touch(lammps::kTouchingFile);
-  EXPECT_EQ(find().settings, (Words{"-var", "prepared", "1"}));
-  EXPECT_EQ(lammps::compaction_share(directory_.path()), 1.0);
-}
-
 class Dumps : public ::testing::Test {
  protected:
   [[nodiscard]] std::string write(const std::string& text) const {
@@ -426,51 +235,6 @@ TEST_F(Dumps, ContactsAreReadAndMustFitTheRowOfTheirPoint) {
   EXPECT_THROW((void)lammps::read_contacts(path, 1, 2.0, 5.0), IoError);
 }
 
-class Curves : public ::testing::Test {
- protected:
-  Curves() {
-    spec_.steps = 2;
-    spec_.strain_end = 0.2;
-    curve_.engine = "law";
-    curve_.bodies = 4;
-    curve_.soft = 2;
-  }
-  MacroSpec spec_;
-  MacroCurve curve_;
-};
-
-TEST_F(Curves, RowsBecomeWhatOurOwnEngineRecords) {
-  lammps::add_points({point_row(0, 0.0), point_row(1, 0.1), point_row(2, 0.2)}, spec_, curve_);
-  ASSERT_EQ(curve_.strain.size(), 3U);
-  EXPECT_EQ(curve_.strain, (std::vector<double>{0.0, 0.1, 0.2}));
-  EXPECT_EQ(curve_.stress_x[1], 10.5);
-  EXPECT_EQ(curve_.stress_y[1], 12.5);
-  EXPECT_EQ(curve_.stress_axial[1], 14.5);
-  EXPECT_EQ(curve_.stress_lateral[1], 11.5);
-  EXPECT_EQ(curve_.stress_deviator[1], 4.0);
-  EXPECT_EQ(curve_.stress_axial_contacts[1], 15.0);
-  EXPECT_EQ(curve_.coordination[1], 2.0);
-  EXPECT_EQ(curve_.coordination_bodies[1], 1.5);
-  EXPECT_EQ(curve_.law_evaluations[1], 3.0);
-  EXPECT_EQ(curve_.cost.loop_passes, 300);
-  EXPECT_EQ(curve_.cost.contact_evaluations, 3702);
-  EXPECT_TRUE(curve_.usable);
-  EXPECT_EQ(curve_.note, "");
-}
-
-TEST_F(Curves, WhatWentWrongIsSaidAsWithOurOwnEngine) {
-  // The point itself came to rest, the first of the two increments before it did not.
-  const PointRow capped = with(with(point_row(1, 0.1), Point::unrest_end, 2.0), Point::unrest, 0.4);
-  lammps::add_points({point_row(0, 0.0), capped, point_row(2, 0.2)}, spec_, curve_);
-  EXPECT_FALSE(curve_.usable);
-  EXPECT_EQ(curve_.note,
-            "relaxation capped at strain 0.100000, increment 1 of the 2 before it (residual 0.400000 of the mean "
-            "contact force, wanted 0.010000)");
-  EXPECT_EQ(curve_.residual[1], 0.003);
-  EXPECT_EQ(curve_.residual_largest, (std::vector<double>{0.003, 0.4, 0.003}));
-}
-
-/// The script keeps the increment that ended farthest from rest, of short forms and of stages.
 TEST(LammpsFiles, ScriptsWatchEveryIncrement) {
   for (const MacroSpec& spec : {spec_of(MacroTest::oedometric), staged_spec()}) {
     const std::string text = script_of(spec);
@@ -484,40 +248,6 @@ TEST(LammpsFiles, ScriptsWatchEveryIncrement) {
     EXPECT_LT(watch, next);
     EXPECT_NE(text.find("$(v_unrest_end:%.17g)"), std::string::npos);
   }
-}
-
-TEST_F(Curves, ARefusedLawEndsTheTest) {
-  PointRow last = with(point_row(1, 0.1), Point::law_refused, 1.0);
-  last = with(with(last, Point::law_beyond, 1.0), Point::law_largest, 1.5);
-  EXPECT_TRUE(lammps::ended_early(last));
-  lammps::add_points({point_row(0, 0.0), last}, spec_, curve_);
-  EXPECT_FALSE(curve_.usable);
-  EXPECT_NE(curve_.note.find("which the law does not allow"), std::string::npos) << curve_.note;
-}
-
-/// Without walls the stress is that of the contacts; strains come from the box, and a stage whose stress was not
-/// reached is said.
-TEST_F(Curves, RowsOfStagesSayWhatTheBoxDid) {
-  MacroSpec spec = staged_spec();
-  spec.stages.resize(1);
-  spec.stages[0].steps = 1;
-  curve_.boundary = Boundary::periodic;
-  const PointRow first = point_row(0, 0.0);
-  curve_.start.size_x = first[Point::lx];
-  curve_.start.size_y = first[Point::ly];
-  curve_.start.size_z = first[Point::lz];
-  PointRow second = with(with(point_row(1, 0.1), Point::lz, 0.9 * first[Point::lz]), Point::over, 1.0);
-  second = with(with(second, Point::end, 2.0), Point::asked_z, 300.0);
-  EXPECT_TRUE(lammps::ended_early(second));
-  lammps::add_points({first, second}, spec, curve_);
-  EXPECT_NEAR(curve_.strain_z[1], 0.1, 1e-12);
-  EXPECT_EQ(curve_.strain, curve_.strain_z);
-  EXPECT_EQ(curve_.strain_x[1], 0.0);
-  const double volume = second[Point::lx] * second[Point::ly] * second[Point::lz];
-  EXPECT_DOUBLE_EQ(curve_.stress_x[1], second[Point::branch_xx] / volume);
-  EXPECT_FALSE(curve_.usable);
-  EXPECT_NE(curve_.note.find("stage 'consolidation' ended at axial strain 0.1"), std::string::npos) << curve_.note;
-  EXPECT_NE(curve_.note.find("z 300 Pa asked"), std::string::npos) << curve_.note;
 }
 
 /// A script that goes on within stages asks for the stresses at which they began, those that stages to come ask for
@@ -542,30 +272,6 @@ TEST(LammpsFiles, EveryStageHasATolerance) {
   EXPECT_NE(text.find("variable tolerance2    index 0.002 "), std::string::npos) << text;
   EXPECT_NE(text.find("variable rest equal v_tolerance2\n"), std::string::npos);
   EXPECT_EQ(text.find("${tolerance}"), std::string::npos);
-}
-
-/// Rows of a run that went on without the stress at which its stage began.
-TEST_F(Curves, StressesThatDoNotFollowFromTheBeginAreRefused) {
-  MacroSpec spec = staged_spec();
-  spec.stages.resize(1);
-  spec.stages[0].steps = 2;
-  curve_.boundary = Boundary::periodic;
-  const PointRow first = point_row(0, 0.0);
-  const double volume = first[Point::lx] * first[Point::ly] * first[Point::lz];
-  const double began = first[Point::branch_zz] / volume;
-  const auto asking = [&](double x, double y, double z) {
-    return with(with(with(point_row(1, 0.0), Point::asked_x, x), Point::asked_y, y), Point::asked_z, z);
-  };
-  const double half_x = 0.5 * (first[Point::branch_xx] / volume + 300.0);
-  const double half_y = 0.5 * (first[Point::branch_yy] / volume + 300.0);
-  MacroCurve good = curve_;
-  EXPECT_NO_THROW(lammps::add_points({first, asking(half_x, half_y, 0.5 * (began + 300.0))}, spec, good));
-  EXPECT_GT(began, 1.0);
-  EXPECT_THROW(lammps::add_points({first, asking(half_x, half_y, 150.0)}, spec, curve_), IoError) << "as from 0";
-}
-
-TEST_F(Curves, AnotherTestIsRefused) {
-  EXPECT_THROW(lammps::add_points({point_row(0, 0.0), point_row(1, 0.11)}, spec_, curve_), IoError);
 }
 
 TEST(LammpsLog, NamesTheErrorOrTheLastLines) {

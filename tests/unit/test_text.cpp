@@ -44,6 +44,32 @@ TEST(AppendPart, StartsWithoutASeparator) {
   EXPECT_EQ(text, "a; b, c; ");
 }
 
+TEST(Counted, IsOneOrMany) {
+  EXPECT_EQ(counted(1, "sample"), "1 sample");
+  EXPECT_EQ(counted(0, "sample"), "0 samples");
+  EXPECT_EQ(counted(2, "sample"), "2 samples");
+  EXPECT_EQ(counted(1, "body", "bodies"), "1 body");
+  EXPECT_EQ(counted(3, "body", "bodies"), "3 bodies");
+}
+
+TEST(OneLine, HasNoControlCharacters) {
+  for (const char* text : {"", "Sand 0/2, \xc3\xa9tude", "\xc2\xb5", "\xc2\xa0"}) {
+    EXPECT_TRUE(is_one_line(text)) << text;
+    EXPECT_EQ(on_one_line(text), text);
+  }
+  // The last: U+009B in UTF-8, which terminals take like the escape character and "[".
+  for (const char* text : {"a\nb", "a\tb",
+                           "a\x1b"
+                           "b",
+                           "a\x7f"
+                           "b",
+                           "a\xc2\x9b"
+                           "b"}) {
+    EXPECT_FALSE(is_one_line(text));
+    EXPECT_EQ(on_one_line(text), "a b");
+  }
+}
+
 TEST(WithoutTrailingZeros, KeepsZerosBeforeThePoint) {
   EXPECT_EQ(without_trailing_zeros("0.250000"), "0.25");
   EXPECT_EQ(without_trailing_zeros("10.00"), "10");

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 #include "common/state/system_io.h"
 #include "microsim/powder/powder_state_io.h"
 #include "pipelines/kinds/cohesive_powder/powder_data.h"
@@ -334,8 +335,8 @@ void check_powder_file(const std::string& path, Findings& out) {
   const PowderRun run = load_powder(path);
   const auto unusable =
       std::count_if(run.samples.begin(), run.samples.end(), [](const PowderSample& s) { return !s.usable; });
-  out.add("kind", "powders", fmt::format("cohesive powders: {} samples", run.samples.size()));
-  if (unusable > 0) out.warn(fmt::format("{} samples did not reach equilibrium", unusable));
+  out.add("kind", "powders", "cohesive powders: " + counted(run.samples.size(), "sample"));
+  if (unusable > 0) out.warn(counted(unusable, "sample") + " did not reach equilibrium");
 }
 
 std::vector<HeadLine> lines_of(const report::RunData& run) {

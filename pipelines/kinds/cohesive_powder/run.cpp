@@ -198,7 +198,7 @@ std::string add_means(const PowderSetup& setup, const std::vector<Sample>& sampl
                   {"z_deviation", z["deviation"]}};
   summary.mean.update(structure_means_json(structures, usable_samples(samples)));
   if (structures.mean_curve) summary.scattering = {structures.fit, structures.other_ranges};
-  return fmt::format("{} samples of {} disks: Phi {}, z {} (standard errors of the means)\n", setup.samples,
+  return fmt::format("{} of {} disks: Phi {}, z {} (standard errors of the means)\n", counted(setup.samples, "sample"),
                      setup.spec.disks, mean_with_error(fraction, 4), mean_with_error(z, 3));
 }
 

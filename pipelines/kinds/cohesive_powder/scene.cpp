@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/io/hdf5_file.h"
 #include "common/io/text_file.h"
 #include "common/packing/grading_scene.h"
@@ -256,7 +257,7 @@ PowderSetup read_powder(const Scene& scene) {
   return scene.read([&](const SceneTable& root) {
     (void)root.choice(kKindKey, {"cohesive-powder"});
     PowderSetup setup;
-    setup.title = root.text(kTitleKey, "");
+    setup.title = root.title();
     setup.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
     setup.samples = root.count({"samples", "number of packings"}, 1, 10000, 1);
     read_disks(root.table_or_empty({"disks", "disks of a packing; a is the largest diameter"}), setup.spec);
@@ -297,9 +298,9 @@ std::string check_setup(const PowderSetup& setup, json& facts) {
   facts["disks"] = setup.spec.disks;
   facts["time_step"] = step;
   facts["steps_max"] = phases * setup.options.time_max / step;
-  return fmt::format(
-      "{} samples of {} disks, {:.0f} phases; time step {:.3g} T0 or a little more, at most {:.3g} steps each\n",
-      setup.samples, setup.spec.disks, phases, step, phases * setup.options.time_max / step);
+  return fmt::format("{} of {} disks, {}; time step {:.3g} T0 or a little more, at most {:.3g} steps each\n",
+                     counted(setup.samples, "sample"), setup.spec.disks, counted(std::llround(phases), "phase"), step,
+                     phases * setup.options.time_max / step);
 }
 
 /// Overlap of a contact at rest: adhesion presses by F0, the load by about P a, over K_N.
@@ -429,8 +430,8 @@ void warn_of_setup(const PowderSetup& setup, const std::string& name, Findings& 
                          "a)",
                          setup.spec.range, 1.0 / setup.spec.stiffness));
   if (setup.samples < 3)
-    out.warn(of + fmt::format("{} sample{}: no scatter to judge differences by; the published means are over four",
-                              setup.samples, setup.samples == 1 ? "" : "s"));
+    out.warn(of + fmt::format("{}: no scatter to judge differences by; the published means are over four",
+                              counted(setup.samples, "sample")));
   constexpr std::int64_t kFew = 300;
   if (setup.spec.disks < kFew)
     out.warn(of + fmt::format("{} disks are few: chains of force span so small a cell", setup.spec.disks));

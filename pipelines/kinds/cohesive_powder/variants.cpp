@@ -213,7 +213,7 @@ ExitStatus run_powder_variants(const Scene& scene, const CommonOptions& options)
   }
   const std::uint64_t seed = context.seed(variants.front().setup.seed);
   summary.head = {usable ? RunStatus::good : RunStatus::not_usable,
-                  scene.root().text("title", ""),
+                  scene.root().title(),
                   remarks_on(entries),
                   {{"table", context.path("table.csv")},
                    {"table for people", context.path("table.md")},

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/text.h"
 #include "microsim/grain_box/analysis.h"
 #include "microsim/grain_box/record.h"
 #include "pipelines/report/html.h"
@@ -337,10 +338,11 @@ std::vector<HeadLine> lines_of(const RunData& run) {
   for (const GrainBoxResult& r : *boxes) {
     const auto points = r.points_of(BoxPhase::loading);
     if (points.empty()) continue;
-    lines.emplace_back("Pack " + r.spec.name,
-                       fmt::format("{} grains, mu = {:g}, {} loading to a confining stress of {} MPa; {} states.",
-                                   format_count(r.spec.grains), r.spec.friction, r.spec.loading.test,
-                                   format_number(points.back()->pressure * 1e-6, 4), r.state.points.size()));
+    lines.emplace_back(
+        "Pack " + r.spec.name,
+        fmt::format("{} grains, mu = {:g}, {} loading to a confining stress of {} MPa; {}.",
+                    format_count(r.spec.grains), r.spec.friction, r.spec.loading.test,
+                    format_number(points.back()->pressure * 1e-6, 4), counted(r.state.points.size(), "state")));
   }
   return lines;
 }

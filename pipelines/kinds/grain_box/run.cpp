@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "common/core/parallel_tasks.h"
+#include "common/core/text.h"
 #include "common/io/progress.h"
 #include "microsim/grain_box/grain_box_run.h"
 #include "pipelines/kinds/grain_box/report.h"
@@ -48,8 +49,8 @@ std::string console_summary(const std::vector<GrainBoxResult>& results) {
   std::string text;
   for (const GrainBoxResult& r : results) {
     const auto points = r.points_of(BoxPhase::loading);
-    text += fmt::format("{}: {} grains, {} states in {:.1f} s", r.spec.name, r.spec.grains, r.state.points.size(),
-                        r.state.seconds);
+    text += fmt::format("{}: {} grains, {} in {:.1f} s", r.spec.name, r.spec.grains,
+                        counted(r.state.points.size(), "state"), r.state.seconds);
     if (!points.empty())
       text += fmt::format(", sigma_c {:.4g} MPa, last K {:.3g} GPa, G {:.3g} GPa", points.back()->pressure * 1e-6,
                           points.back()->bulk * 1e-9, points.back()->shear_modulus * 1e-9);

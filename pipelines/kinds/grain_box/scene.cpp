@@ -392,7 +392,7 @@ GrainBoxSetup read_grain_box(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     GrainBoxSetup setup;
     (void)root.choice(kKindKey, {"grain-box"});
-    setup.title = root.text(kTitleKey, "");
+    setup.title = root.title();
     setup.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
     GrainBoxSpec spec;
     const SceneTable material = root.table_or_empty({"material", "the grains: radii, elasticity, density, friction"});

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "common/contact/make_laws.h"
+#include "common/core/text.h"
 #include "pipelines/kinds/hierarchy/level.h"
 #include "pipelines/kinds/hierarchy/summary.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
@@ -105,9 +106,9 @@ LevelSummary summary_of(const HierarchyLevel& level, double grains_below, LawFor
 
 std::string check_text(const CheckResult& check) {
   return fmt::format(
-      "Two decades checked with all their grains: {:.0f} inner soft particles, {:.0f} grains on average, {} packings; "
+      "Two decades checked with all their grains: {:.0f} inner soft particles, {:.0f} grains on average, {}; "
       "{:.0f} times fewer contact evaluations by law.",
-      check.inner, check.grains, check.packings,
+      check.inner, check.grains, counted(check.packings, "packing"),
       static_cast<double>(check.resolved_cost.contact_evaluations) /
           static_cast<double>(std::max<std::int64_t>(check.law_cost.contact_evaluations, 1)));
 }

@@ -96,7 +96,7 @@ HierarchySetup read_hierarchy_setup(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     HierarchySetup out;
     (void)root.choice(kKindKey, {"hierarchy"});
-    out.title = root.text(kTitleKey, "");
+    out.title = root.title();
     out.multi_contact = read_multi_contact_setup(root);
     read_levels(
         root.table({"hierarchy",

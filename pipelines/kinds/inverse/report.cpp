@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/text.h"
 #include "pipelines/kinds/inverse/summary.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
@@ -134,11 +135,11 @@ std::string inverse_section(const RunData& run) {
   if (!summary.inverse) return "";
   const SearchSummary& search = *summary.inverse;
   std::string body = paragraph(fmt::format(
-      "Which soft particle gives the target curve ({} contact)? {} evaluations of {} packings each, the same random "
-      "numbers at every point of the search; misfit per point of the answer, with {} packings that the search has not "
+      "Which soft particle gives the target curve ({} contact)? {} of {} each, the same random "
+      "numbers at every point of the search; misfit per point of the answer, with {} that the search has not "
       "seen: {}.",
-      to_string(search.contact), search.evaluations.size(), search.packings, search.confirmed.packings,
-      format_number(search.confirmed.misfit, 3)));
+      to_string(search.contact), counted(search.evaluations.size(), "evaluation"), counted(search.packings, "packing"),
+      counted(search.confirmed.packings, "packing"), format_number(search.confirmed.misfit, 3)));
   body += parameter_table(search);
   std::vector<std::string> figures{curve_figure(search)};
   for (std::size_t k = 0; k < search.parameters.size(); ++k)

@@ -10,6 +10,7 @@
 #include "common/core/error.h"
 #include "common/core/parallel_tasks.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 #include "common/data/fields.h"
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
@@ -308,8 +309,8 @@ SearchSummary search_of(const InverseSetup& setup, const InverseResult& r, doubl
 }
 
 std::string console_summary(const InverseSetup& setup, const InverseResult& r, double misfit) {
-  std::string text = fmt::format("{} evaluations of {} packings; the soft particle nearest to the target:\n",
-                                 r.evaluations.size(), setup.packings);
+  std::string text = fmt::format("{} of {}; the soft particle nearest to the target:\n",
+                                 counted(r.evaluations.size(), "evaluation"), counted(setup.packings, "packing"));
   const InverseAnswer& a = r.answer;
   for (std::size_t k = 0; k < setup.search.size(); ++k) {
     const SearchParameter& p = setup.search[k];

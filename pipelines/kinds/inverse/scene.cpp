@@ -10,6 +10,7 @@
 #include "calibrate/experiment_fit.h"
 #include "calibrate/response_surface.h"
 #include "common/core/error.h"
+#include "common/core/text.h"
 #include "common/data/force_curves.h"
 #include "common/data/soft_particle_schema.h"
 #include "common/io/csv_file.h"
@@ -229,7 +230,7 @@ InverseSetup read_inverse(const Scene& scene) {
   return scene.read([&](const SceneTable& root) {
     (void)root.choice(kKindKey, {"inverse"});
     InverseSetup s;
-    s.title = root.text(kTitleKey, "");
+    s.title = root.title();
     s.measure = read_measure_protocols(root, s.relaxation, s.plan);
     s.packings = root.table_or_empty("packing").count({"count", "number of packings of each evaluation"}, 2, 100000, 8);
     const SceneTable search = root.table(
@@ -280,8 +281,9 @@ void check_inverse(const InverseSetup& setup, Findings& out) {
   out.facts["evaluations"] = setup.budget;
   out.facts["points_per_run"] = setup.target.delta.size();
   out.add("runs", runs,
-          fmt::format("{} evaluations of {} packings and {} to confirm: {} runs of {} {} states", setup.budget,
-                      setup.packings, setup.confirm, runs, setup.target.delta.size(), to_string(setup.kind)));
+          fmt::format("{} of {} and {} to confirm: {} of {} {} states", counted(setup.budget, "evaluation"),
+                      counted(setup.packings, "packing"), setup.confirm, counted(runs, "run"),
+                      setup.target.delta.size(), to_string(setup.kind)));
   for (const SearchParameter& p : setup.search)
     out.lines += fmt::format("  {} from {:.4g} to {:.4g}{}\n", p.name, p.low, p.high,
                              p.logarithmic ? ", evenly in its logarithm" : "");

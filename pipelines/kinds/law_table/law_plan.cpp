@@ -11,6 +11,7 @@
 #include "common/core/error.h"
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 #include "common/data/card_text.h"
 #include "pipelines/kinds/law_table/multi_contact_stage.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
@@ -270,10 +271,10 @@ LawPlan plan_law(const FittedLaw& table, const MultiContactSetup& candidates, co
 
 std::string plan_text(const LawPlan& plan) {
   std::string text = fmt::format(
-      "{}: {} draws on {} curves. Axial stress, standard deviations:\n"
+      "{}: {} draws on {}. Axial stress, standard deviations:\n"
       "  {:5.2f} %  its packings leave open: further packings narrow this\n"
       "  {:5.2f} %  its form is off by on what its fit did not see: they do not\n\n",
-      plan.engine, plan.draws, plan.curves, 100.0 * plan.law_part, 100.0 * plan.discrepancy);
+      plan.engine, plan.draws, counted(plan.curves, "curve"), 100.0 * plan.law_part, 100.0 * plan.discrepancy);
   std::vector<const PlanCandidate*> order;
   for (const PlanCandidate& c : plan.candidates) order.push_back(&c);
   const auto rate = [](const PlanCandidate* c) { return (1.0 - c->share) / c->seconds; };

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/core/text.h"
 #include "microsim/multi_contact_experiment.h"
 #include "microsim/particles/scene_memory.h"
 #include "pipelines/kinds/soft_particle/check.h"
@@ -58,8 +59,8 @@ void warn_of_configurations(const MultiContactSetup& setup, Findings& out) {
     out.warn("nothing is held out: how well the law predicts is known from leaving one out alone");
   constexpr std::int64_t kFew = 6;
   if (setup.packings_min < kFew)
-    out.warn(fmt::format("{} packings at least are few: single loadings differ by 10 % and more between packings",
-                         setup.packings_min));
+    out.warn(fmt::format("only {} at least; single loadings differ by 10 % and more between packings",
+                         counted(setup.packings_min, "packing")));
 }
 
 void add_overlaps(const MultiContactSetup& setup, Findings& out) {

@@ -123,8 +123,8 @@ std::vector<EntrySummary> summaries_of(const LawTable& table) {
 std::string entries_text(const LawTable& table) {
   std::string text;
   for (const LawTableEntry& entry : table.entries) {
-    text += fmt::format("laws at solid fraction {:.3f} ({} packings{}):\n", entry.solid_fraction, entry.packings,
-                        entry.prior ? " and a library" : "");
+    text += fmt::format("laws at solid fraction {:.3f} ({}{}):\n", entry.solid_fraction,
+                        counted(entry.packings, "packing"), entry.prior ? " and a library" : "");
     for (const MultiContactLaw& law : entry.laws) text += law_line(entry, law);
   }
   return text;

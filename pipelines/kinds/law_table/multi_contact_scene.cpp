@@ -363,9 +363,8 @@ MultiContactConfiguration read_configuration(const SceneTable& t) {
   if (c.turning && !goes_straight(w.path))
     t.add_error("turning", "neighbours that slide or roll are led: leave it out");
   read_press(t, w.path, c);
-  c.name = t.text({"name", "name in tables and files", "arrangement, partner, path"},
-                  default_name(w, c.centre_free) + (t.has("pressed") ? "-pressed" : ""));
-  if (c.name.empty()) t.add_error("name", "must not be empty");
+  c.name = t.line_text({"name", "name in tables and files", "arrangement, partner, path"},
+                       default_name(w, c.centre_free) + (t.has("pressed") ? "-pressed" : ""));
   return c;
 }
 

@@ -8,6 +8,7 @@
 
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 
 namespace softgrain {
 
@@ -134,8 +135,8 @@ std::string orientations_text(const MultiContactMeasurements& data) {
   const auto n = static_cast<double>(orientations);
   return fmt::format(
       "{} orientations of every packing: {:.0f} % of the variance of end forces is between packings, the rest between "
-      "orientations (mean of {} configurations); so many count as {:.2f} packings of one orientation each\n",
-      orientations, 100.0 * same, shares.size(), n / (1.0 + (n - 1.0) * same));
+      "orientations (mean of {}); so many count as {:.2f} packings of one orientation each\n",
+      orientations, 100.0 * same, counted(shares.size(), "configuration"), n / (1.0 + (n - 1.0) * same));
 }
 
 ConfigurationSummary summary_of(const MultiContactConfiguration& c, const std::vector<MultiContactRun>& runs,
@@ -187,9 +188,9 @@ std::vector<std::string> multi_contact_remarks(const MultiContactMeasurements& d
     const std::string& name = data.configurations[k].name;
     const MeanForce force = mean_end_force(data.configurations[k], runs);
     if (!met(force, target))
-      missed.push_back(
-          fmt::format("{}: standard error {:.1f} % of the mean force after {} packings, {:.1f} % was wanted", name,
-                      100.0 * force.standard_error / force.mean, force.runs, 100.0 * target));
+      missed.push_back(fmt::format("{}: standard error {:.1f} % of the mean force after {}, {:.1f} % was wanted", name,
+                                   100.0 * force.standard_error / force.mean, counted(force.runs, "packing"),
+                                   100.0 * target));
     const Convergence c = convergence(runs);
     if (c.converged < c.points)
       remarks.push_back(fmt::format("{}: {} of {} points did not converge", name, c.points - c.converged, c.points));

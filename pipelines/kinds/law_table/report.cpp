@@ -8,6 +8,7 @@
 #include "calibrate/multi_contact_fit.h"
 #include "calibrate/multi_contact_states.h"
 #include "common/contact/make_laws.h"
+#include "common/core/text.h"
 #include "common/data/law_words.h"
 #include "common/data/multi_contact_replicates.h"
 #include "pipelines/kinds/law_table/scene.h"
@@ -157,11 +158,11 @@ std::string prior_table(const LawTableEntry& entry) {
 
 std::string entry_body(const LawTableEntry& entry, const std::optional<MultiContactMeasurements>& multi_contact) {
   std::string body = paragraph(fmt::format(
-      "Solid fraction {:.4f} ± {:.4f}, {} packings. Taken where none is named: the {} law. Measured up to h/Rs = "
+      "Solid fraction {:.4f} ± {:.4f}, {}. Taken where none is named: the {} law. Measured up to h/Rs = "
       "{:.2f} and an equivalent lost volume of {:.3f}; grains overlap there by up to {:.1f} of the smaller radius. "
       "Sliding, {}; {}.",
-      entry.solid_fraction, entry.solid_fraction_error, entry.packings, to_string(entry.best), entry.overlap_max,
-      entry.volume_max, entry.grain_overlap_max, slides_text(entry), unloading_text(entry)));
+      entry.solid_fraction, entry.solid_fraction_error, counted(entry.packings, "packing"), to_string(entry.best),
+      entry.overlap_max, entry.volume_max, entry.grain_overlap_max, slides_text(entry), unloading_text(entry)));
   for (const MultiContactLaw& law : entry.laws)
     if (law.status != LawStatus::good)
       body += paragraph("The " + to_string(law.form) + " law is " + to_string(law.status) +

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "common/contact/make_laws.h"
+#include "common/core/text.h"
 #include "pipelines/kinds/law_table/multi_contact_stage.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
 #include "pipelines/results/summary.h"
@@ -64,8 +65,8 @@ LawTableSummary summarise(const LawTableSetup& setup, const LawTableRun& result,
 }
 
 std::string console_summary(const LawTableRun& result, const Run& run) {
-  std::string text =
-      fmt::format("{} configurations, {} runs:\n", result.data.configurations.size(), result.data.runs.size());
+  std::string text = fmt::format("{}, {}:\n", counted(result.data.configurations.size(), "configuration"),
+                                 counted(result.data.runs.size(), "run"));
   text += multi_contact_text(result.data);
   text += entries_text(result.fit.table);
   return text + "law table: " + run.path("law_table.toml") + "\n";

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "common/core/text.h"
 #include "common/data/soft_particle_schema.h"
 #include "pipelines/kinds/law_table/multi_contact_summary.h"
 #include "pipelines/kinds/soft_particle/scene.h"
@@ -56,8 +57,7 @@ LawTableSetup read_law_table(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     (void)root.choice(kKindKey, {"law-table"});
     const SceneTable calibrate = root.table_or_empty({"calibrate", "fit of the laws to the measurements"});
-    LawTableSetup out{
-        root.text(kTitleKey, ""), read_multi_contact_setup(root), {}, read_multi_contact_fit(calibrate), {}};
+    LawTableSetup out{root.title(), read_multi_contact_setup(root), {}, read_multi_contact_fit(calibrate), {}};
     read_plan(root, out.multi_contact);
     const SceneTable multi_contact = root.table_or_empty("multi_contact");
     const bool valid = !multi_contact.has_errors() && !root.table_or_empty("packing").has_errors();
@@ -84,9 +84,9 @@ void check_law_table(const LawTableSetup& setup, Findings& out) {
     const MultiContactSetup of_variant = setup_of(v, setup.multi_contact);
     spend_on_packings(of_variant, trial, 1.0, out);
     spend_on_multi_contact(of_variant, trial, 1.0, "variants", out);
-    out.lines += fmt::format("  the same on {} with beta = {}, {} trials per grain\n",
-                             v.packings ? fmt::format("{} packings", *v.packings) : "as many packings", v.spec.beta,
-                             v.spec.trials);
+    out.lines +=
+        fmt::format("  the same on {} with beta = {}, {} trials per grain\n",
+                    v.packings ? counted(*v.packings, "packing") : "as many packings", v.spec.beta, v.spec.trials);
   }
   if (setup.variants.empty())
     out.warn(

@@ -288,11 +288,10 @@ std::string bands_text(const std::vector<BandRecord>& bands, const std::vector<B
   std::string text;
   for (const BandedEnd& e : ends) text += banded_text(e) + "\n";
   for (const BandRecord& b : bands) {
-    const std::string way = b.components > 0 ? fmt::format(
-                                                   "{} runs per sample along {} components that hold {:.0f} % of its "
-                                                   "scatter",
-                                                   b.runs, b.components, 100.0 * b.explained)
-                                             : fmt::format("{} runs per sample", b.runs);
+    const std::string way = b.components > 0
+                                ? fmt::format("{} per sample along {}, {:.0f} % of its scatter", counted(b.runs, "run"),
+                                              counted(b.components, "component"), 100.0 * b.explained)
+                                : counted(b.runs, "run") + " per sample";
     const std::string off = b.discrepancy > 0.0
                                 ? fmt::format("{:.2g} %, from {}", 100.0 * b.discrepancy, b.discrepancy_origin)
                                 : b.discrepancy_origin;

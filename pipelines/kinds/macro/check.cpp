@@ -318,9 +318,9 @@ void warn_of_scene(const MacroSetup& setup, const BodyCounts& count, Findings& o
     out.warn(fmt::format("{:.0f} bodies are few: most touch a wall, and samples will differ widely", count.all));
   if (setup.samples < 3 && count.all < 4.0 * kFew)
     out.warn(
-        fmt::format("{} sample{} of {:.0f} bodies: no way to tell scatter from difference; the scatter of stress is "
+        fmt::format("{} of {:.0f} bodies: no way to tell scatter from difference; the scatter of stress is "
                     "about 10 %",
-                    setup.samples, setup.samples == 1 ? "" : "s", count.all));
+                    counted(setup.samples, "sample"), count.all));
   if (setup.spec.soft_share > 0.0 && count.soft < 1.0)
     out.warn("soft_share is so small that the scene has no soft particle");
   constexpr double kLargeStep = 0.01;
@@ -343,7 +343,7 @@ std::string test_text(const MacroSpec& spec) {
     return fmt::format("{} test to a strain of {}", to_string(spec.test), spec.strain_end);
   std::string names;
   for (const MacroStage& stage : spec.stages) append_part(names, stage.record.name, ", ");
-  return fmt::format("test in {} stage{}: {}", spec.stages.size(), spec.stages.size() == 1 ? "" : "s", names);
+  return fmt::format("test in {}: {}", counted(spec.stages.size(), "stage"), names);
 }
 
 }  // namespace
@@ -405,9 +405,8 @@ void tell_bodies(const MacroSetup& setup, const std::vector<BodyCounts>& samples
   const bool any = *std::max_element(soft.begin(), soft.end()) > 0.0;
   const bool estimated = static_cast<std::int64_t>(samples.size()) < setup.samples;
   out.add("macro_bodies", mean_of(samples).all,
-          fmt::format("macro: {} sample{} of {}{} bodies{}{}, {}", setup.samples, setup.samples == 1 ? "" : "s",
-                      estimated ? "about " : "", range_text(all),
-                      setup.spec.boundary == Boundary::periodic ? " in a periodic cell" : "",
+          fmt::format("macro: {} of {}{} bodies{}{}, {}", counted(setup.samples, "sample"), estimated ? "about " : "",
+                      range_text(all), setup.spec.boundary == Boundary::periodic ? " in a periodic cell" : "",
                       any ? fmt::format(", {}{} of them soft", estimated ? "about " : "", range_text(soft)) : "",
                       test_text(setup.spec)));
 }

@@ -9,6 +9,7 @@
 
 #include "common/core/error.h"
 #include "common/core/statistics.h"
+#include "common/core/text.h"
 #include "common/io/hdf5_file.h"
 #include "macrosim/macro_packing.h"
 #include "pipelines/compare/compare.h"
@@ -308,9 +309,9 @@ void check_macro_file(const std::string& path, Findings& out) {
     const bool recorded = !c.strain.empty() && !c.stress_axial.empty();
     out.facts["curves"].push_back({{"engine", c.engine}, {"sample", c.sample}, {"usable", c.usable}});
     if (recorded)
-      out.lines += fmt::format(
-          "    {} sample {}: {} bodies, {} points to a strain of {:.3g}, axial stress {:.4g} Pa{}\n", c.engine,
-          c.sample, c.bodies, c.strain.size(), c.strain.back(), c.stress_axial.back(), c.usable ? "" : ", not usable");
+      out.lines += fmt::format("    {} sample {}: {} bodies, {} to a strain of {:.3g}, axial stress {:.4g} Pa{}\n",
+                               c.engine, c.sample, c.bodies, counted(c.strain.size(), "point"), c.strain.back(),
+                               c.stress_axial.back(), c.usable ? "" : ", not usable");
     if (!c.usable) out.warn(fmt::format("{} sample {} is not usable: {}", c.engine, c.sample, c.note));
     if (!c.law_beyond.empty() && c.law_beyond.back() > 0.0)
       out.warn(fmt::format("{} sample {}: {:.0f} of {:.0f} uses of its law lay beyond what was measured at the end",
@@ -374,8 +375,8 @@ std::string macro_line(const std::vector<MacroCurve>& macro) {
   try {
     const Comparison c = compare_curves(laws, twins);
     if (!c.undefined.empty()) return "Law and resolved twin: " + c.undefined.front() + ".";
-    return fmt::format("{} ({} samples); {} times fewer contact evaluations, {} times faster.", difference_line(c),
-                       c.samples.size(), format_number(c.speedup_contact_evaluations, 3),
+    return fmt::format("{} ({}); {} times fewer contact evaluations, {} times faster.", difference_line(c),
+                       counted(c.samples.size(), "sample"), format_number(c.speedup_contact_evaluations, 3),
                        format_number(c.speedup_seconds, 3));
   } catch (const InputError& error) {
     return error.what();

@@ -132,7 +132,7 @@ const Key kLawKey{"law",
 MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   (void)root.choice(kKindKey, {"macro"});
   MacroScene out;
-  out.title = root.text(kTitleKey, "");
+  out.title = root.title();
   out.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
   out.law_file = law_file;
   if (law_file.empty()) {

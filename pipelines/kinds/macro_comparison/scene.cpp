@@ -7,6 +7,7 @@
 #include <cctype>
 #include <utility>
 
+#include "common/core/text.h"
 #include "pipelines/kinds/macro/check.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stage.h"
@@ -73,7 +74,7 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
   return scene.read([&](const SceneTable& root) {
     (void)root.choice(kKindKey, {"macro-comparison"});
     MacroComparisonSetup setup;
-    setup.title = root.text(kTitleKey, "");
+    setup.title = root.title();
     setup.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
     setup.spec = read_soft_particle(root);
     setup.contents = root.table_or_empty("packing").count(
@@ -130,7 +131,7 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
 using nlohmann::json;
 
 void check_macro_comparison(const MacroComparisonSetup& setup, Findings& out) {
-  out.lines += fmt::format("  comparison of laws with twins on {} scenes\n", setup.scenes.size());
+  out.lines += fmt::format("  comparison of laws with twins on {}\n", counted(setup.scenes.size(), "scene"));
   const MacroContent content = content_of(setup.spec, setup.contents, setup.seed);
   out.add("solid_fraction", content.solid_fraction,
           fmt::format("solid fraction of the contents: {:.3f}", content.solid_fraction));

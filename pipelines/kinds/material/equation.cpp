@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -57,13 +58,14 @@ std::vector<ExtrapolationSummary> extrapolate(const std::string& family, const s
                                               double exponent, const EquationSettings& settings, std::uint64_t seed) {
   std::vector<ExtrapolationSummary> out;
   StateFit fit;
+  std::optional<StateFit> with_onsets;  // the fit and what was measured elsewhere, the same for every span
   for (const double span : settings.spans) {
     ExtrapolationSummary s{family, span, settings.largest_span, false, "", {}, {}, {}};
     try {
       if (fit.groups.empty()) fit = fit_family(curves, settings, seed);
       if (fit.usable) s.measured = measured_onset(fit, settings.form, curves, span);
-      const OnsetExtrapolation e =
-          extrapolate_onset(with_known_onsets(fit, settings.onsets, seed), span, {.groups = {}, .exponent = exponent});
+      if (!with_onsets) with_onsets = with_known_onsets(fit, settings.onsets, seed);
+      const OnsetExtrapolation e = extrapolate_onset(*with_onsets, span, {.groups = {}, .exponent = exponent});
       s.usable = e.usable;
       s.message = e.message;
       s.largest_fitted = e.largest_span;

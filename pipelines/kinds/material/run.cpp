@@ -328,8 +328,7 @@ std::string equation_text(const EquationSummary& s) {
 std::string console_summary(const MaterialSummary& s) {
   std::string text;
   for (const MaterialVariantSummary& v : s.variants) {
-    text +=
-        fmt::format("{}: {} sample{} of {} grains", v.name, v.runs.samples, v.runs.samples == 1 ? "" : "s", v.grains);
+    text += fmt::format("{}: {} of {} grains", v.name, counted(v.runs.samples, "sample"), v.grains);
     if (v.solid_fraction_start)
       text += fmt::format(", solid fraction {} at the start",
                           with_error(*v.solid_fraction_start, {.value = {4, true}, .error = {4, true}}));

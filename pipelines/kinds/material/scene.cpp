@@ -334,7 +334,7 @@ void refuse_idle_onsets(const SceneTable& equation, const MaterialScene& scene) 
 
 MaterialScene read_material(const SceneTable& root, bool alone) {
   MaterialScene out;
-  out.title = root.text(kTitleKey, "");
+  out.title = root.title();
   out.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
   MacroSetup base = material_defaults();
   std::vector<Constituent> constituents;

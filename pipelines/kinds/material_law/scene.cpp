@@ -292,7 +292,7 @@ MaterialLawScene read_material_law_scene(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     (void)root.choice(kKindKey, {"material-law"});
     MaterialLawScene out{{}, Grading::power_law(3.5, 1.0, 2.0), 1.0 / 3.0, {}};
-    out.material.title = root.text(kTitleKey, "");
+    out.material.title = root.title();
     out.material.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
     MacroSetup base = material_law_defaults();
     read_material_tables(root, base);

@@ -11,6 +11,7 @@
 #include "common/core/error.h"
 #include "common/core/limits.h"
 #include "common/core/particles.h"
+#include "common/core/text.h"
 #include "common/dynamics/contact_watch.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/time_step.h"
@@ -50,7 +51,7 @@ void add_time(double seconds, Findings& out) {
   if (seconds > kDay) out.warn("it takes about " + time_text(seconds));
   const std::string busy = busy_text();  // threads of the trial may have waited for cores
   out.add("seconds", seconds,
-          fmt::format("expected time: about {:.3g} s with {} threads{}", seconds, omp_get_max_threads(),
+          fmt::format("expected time: about {:.3g} s with {}{}", seconds, counted(omp_get_max_threads(), "thread"),
                       busy.empty() ? "" : "; " + busy + ": less once it is idle"));
 }
 
@@ -150,10 +151,11 @@ void check_particles(const ParticlesSceneOf<D>& scene, Findings& out) {
   System<D> s = scene.system;
   const StepLimit limit = step_limit(s);
   out.add("bodies", s.particles.size(),
-          fmt::format("{} {}, {} walls", s.particles.grains, D == 3 ? "grains" : "disks", scene.wall_name.size()));
+          fmt::format("{}, {}", counted(s.particles.grains, D == 3 ? "grain" : "disk"),
+                      counted(scene.wall_name.size(), "wall")));
   out.add("time_step", scene.time.step,
-          fmt::format("step {:.4g} s to {:.4g} s: {} steps", scene.time.step,
-                      scene.time.step * static_cast<double>(scene.time.steps), scene.time.steps));
+          fmt::format("step {:.4g} s to {:.4g} s: {}", scene.time.step,
+                      scene.time.step * static_cast<double>(scene.time.steps), counted(scene.time.steps, "step")));
   add_sizes(out, drawn_sizes(scene));
   warn_of_radius(s, out);
   if (limit.body >= 0)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/text.h"
 #include "common/dynamics/verlet.h"
 #include "microsim/particles/trajectory.h"
 
@@ -201,8 +202,8 @@ ParticlesSummary summary_of(const ParticlesSceneOf<D>& scene, const ParticlesRes
 template <int D>
 std::string particles_text(const ParticlesResultOf<D>& result) {
   const System<D>& s = result.system;
-  return fmt::format("{} particles, {} steps to {:.6g} s in {:.2f} s; kinetic energy {:.6g} J", s.particles.grains,
-                     s.step, s.time, s.cost.seconds, kinetic_energy(s.particles));
+  return fmt::format("{}, {} to {:.6g} s in {:.2f} s; kinetic energy {:.6g} J", counted(s.particles.grains, "particle"),
+                     counted(s.step, "step"), s.time, s.cost.seconds, kinetic_energy(s.particles));
 }
 
 template ParticlesSummary summary_of<2>(const ParticlesSceneOf<2>&, const ParticlesResultOf<2>&, double);

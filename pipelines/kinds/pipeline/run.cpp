@@ -30,9 +30,9 @@ namespace {
 std::string law_line(const PairLaw& law) {
   if (law.status == LawStatus::no_threshold_crossing || law.status == LawStatus::not_run)
     return fmt::format("{}: {} ({})", to_string(law.kind), to_string(law.status), law.reason);
-  return fmt::format("{}: Fn/(E Rs^2) = {:.4g} (Delta^{:.3f} - {:.4f}^{:.3f}), Delta up to {:.2f}, {} packings, {}",
+  return fmt::format("{}: Fn/(E Rs^2) = {:.4g} (Delta^{:.3f} - {:.4f}^{:.3f}), Delta up to {:.2f}, {}, {}",
                      to_string(law.kind), law.normal.a.value, law.normal.b.value, law.normal.delta.value,
-                     law.normal.b.value, law.delta_max, law.packings, to_string(law.status));
+                     law.normal.b.value, law.delta_max, counted(law.packings, "packing"), to_string(law.status));
 }
 
 /// What the stages leave behind, for summary and screen.
@@ -228,7 +228,7 @@ std::string difference_text(const Comparison& c) {
 }
 
 std::string console_summary(const PipelineSetup& setup, const PipelineResult& r) {
-  std::string text = fmt::format("{} packings measured, laws fitted:\n", r.measured.data.packings.size());
+  std::string text = counted(r.measured.data.packings.size(), "packing") + " measured, laws fitted:\n";
   for (const PairLaw& law : r.card.pairs) text += "  " + law_line(law) + "\n";
   if (!r.multi_contact_fit.table.entries.empty()) text += entries_text(r.multi_contact_fit.table);
   const bool multi_contact = r.pair_comparison.has_value();

@@ -60,7 +60,7 @@ PipelineSetup read_pipeline_setup(const Scene& scene) {
   return scene.read([&](const SceneTable& root) {
     PipelineSetup setup;
     (void)root.choice(kKindKey, {"pipeline"});
-    setup.title = root.text(kTitleKey, "");
+    setup.title = root.title();
     setup.measure = read_measure_setup(root);
     setup.fit = read_fit_settings(root.table_or_empty({"calibrate", "fit of the law"}));
     read_multi_contact_laws(scene, root, setup);

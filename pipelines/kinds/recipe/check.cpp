@@ -85,8 +85,8 @@ void check_recipe(const RecipeScene& recipe, Findings& out) {
   const auto packings = std::count_if(recipe.material.variants.begin(), recipe.material.variants.end(),
                                       [](const MaterialVariant& v) { return !v.same_packings; });
   out.add("packings", packings,
-          fmt::format("{} different packings are measured, {} samples of each", packings,
-                      recipe.material.variants.front().setup.samples));
+          fmt::format("{} are measured, {} of each", counted(packings, "different packing"),
+                      counted(recipe.material.variants.front().setup.samples, "sample")));
   if (recipe.checked)
     out.add("checked_levels", recipe.checked_levels,
             fmt::format("the {} coarsest levels are checked with all their grains, {} a sample", recipe.checked_levels,

@@ -258,7 +258,7 @@ RecipeScene read_recipe_scene(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     (void)root.choice(kKindKey, {"recipe"});
     RecipeScene out{{}, {}, Grading::power_law(3.5, 1.0, 2.0), {}, {}, {}, {}, {}, 0, {}, {}, {}, {}, {}, 100};
-    out.material.title = root.text(kTitleKey, "");
+    out.material.title = root.title();
     out.material.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
     MacroSetup base = recipe_defaults();
     read_material_tables(root, base, &out.constituents);

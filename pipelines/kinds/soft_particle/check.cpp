@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "common/core/text.h"
 #include "common/dynamics/time_step.h"
 #include "common/dynamics/verlet.h"
 #include "microsim/particles/scene_memory.h"
@@ -131,16 +132,16 @@ void warn_of_series(const MeasureSeries& series, PairKind kind, Findings& out) {
   const std::string name = to_string(kind);
   if (series.packings < kPackings)
     out.warn(
-        fmt::format("{}: {} packings are few: laws differ by 10 % and more between packings, and below {} the fit is "
+        fmt::format("{}: only {}; laws differ by 10 % and more between packings, and below {} the fit is "
                     "marked as underdetermined",
-                    name, series.packings, kPackings));
+                    name, counted(series.packings, "packing"), kPackings));
   const double threshold = expected_threshold(kind);
   const auto above = std::count_if(plan.deltas.begin(), plan.deltas.end(), [=](double d) { return d > threshold; });
   if (above < kCrossed)
     out.warn(
-        fmt::format("{}: {} overlaps lie above Delta = {}, where the published soft particle begins to resist: the "
+        fmt::format("{}: only {} above Delta = {}, where the published soft particle begins to resist: the "
                     "law will be underdetermined; record more, or deeper",
-                    name, above, threshold));
+                    name, counted(above, "overlap"), threshold));
   if (plan.tangential_deltas.empty() || plan.angles_deg.empty())
     out.warn(name + ": nothing is rotated: the law will have no tangential spring");
 }
@@ -196,8 +197,8 @@ double series_seconds(const MeasureSetup& setup, const MeasureSeries& series, do
                measuring_seconds(setup, series.relaxation, series.plan(kind), kind, pass_seconds);
     out.add(to_string(series.relaxation) + " " + to_string(kind),
             json{{"normal", points.normal}, {"rotated", points.rotated}},
-            fmt::format("{} {}: {} packings, {} normal and {} rotated states", to_string(series.relaxation),
-                        to_string(kind), series.packings, points.normal, points.rotated));
+            fmt::format("{} {}: {}, {} normal and {} rotated states", to_string(series.relaxation), to_string(kind),
+                        counted(series.packings, "packing"), points.normal, points.rotated));
   }
   return seconds;
 }

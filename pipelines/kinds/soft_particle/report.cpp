@@ -286,9 +286,10 @@ void check_measurements_file(const std::string& path, Findings& out) {
     open += static_cast<std::size_t>(std::count_if(run.tangential.begin(), run.tangential.end(),
                                                    [](const TangentialPoint& p) { return !p.converged; }));
   }
-  out.add("kind", "measurements",
-          fmt::format("measurements: {} packings, {} runs", data.packings.size(), data.runs.size()));
-  if (open > 0) out.warn(fmt::format("{} recorded points did not converge; fits leave them out", open));
+  out.add(
+      "kind", "measurements",
+      fmt::format("measurements: {}, {}", counted(data.packings.size(), "packing"), counted(data.runs.size(), "run")));
+  if (open > 0) out.warn(fmt::format("left out of fits: {} did not converge", counted(open, "recorded point")));
 }
 
 std::string measured_line(const Measurements& data) {
@@ -297,7 +298,7 @@ std::string measured_line(const Measurements& data) {
   for (const PackingRun& r : data.runs) points += r.normal.size() + r.tangential.size();
   for (const PackingInfo& p : data.packings) fraction.push_back(p.solid_fraction);
   const MeanError m = mean_error(fraction);
-  return fmt::format("{} packings at solid fraction {}, {} relaxed states.", data.packings.size(),
+  return fmt::format("{} at solid fraction {}, {} relaxed states.", counted(data.packings.size(), "packing"),
                      format_with_error(m.mean, m.error), format_count(static_cast<std::int64_t>(points)));
 }
 

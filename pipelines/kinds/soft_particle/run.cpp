@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "common/core/text.h"
 #include "pipelines/kinds/soft_particle/check.h"
 #include "pipelines/results/summary.h"
 #include "pipelines/run/size_summary.h"
@@ -40,8 +41,9 @@ Outcome run_soft_particle(const SoftParticleScene& scene, const Run& run) {
   summary.measured.packings.broke_off = result.left_out.size();
   summary.head.files = {{"measurements", run.path("measurements.h5")}, {"report", run.path("report.html")}};
   std::string console =
-      fmt::format("{} packings, solid fraction {:.4f}, {} points measured in {:.1f} s\n", result.data.packings.size(),
-                  summary.measured.packings.solid_fraction, summary.measured.measurement.points, result.wall_seconds);
+      fmt::format("{}, solid fraction {:.4f}, {} measured in {:.1f} s\n",
+                  counted(result.data.packings.size(), "packing"), summary.measured.packings.solid_fraction,
+                  counted(summary.measured.measurement.points, "point"), result.wall_seconds);
   return {json_of(summary), console};
 }
 

@@ -416,7 +416,7 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
 SoftParticleScene read_soft_particle_scene(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     (void)root.choice(kKindKey, {"soft-particle"});
-    return SoftParticleScene{root.text(kTitleKey, ""), read_measure_setup(root)};
+    return SoftParticleScene{root.title(), read_measure_setup(root)};
   });
 }
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from softgrain.errors import InputError, Mistake
 from softgrain.results import Run
 from softgrain.running import execute, option, outcome, raise_for, require_unusable, run_directory, scene_file
-from softgrain.tables import Tabular, records
+from softgrain.tables import Tabular, counted, records
 from softgrain.toml_text import settings, value_text
 
 
@@ -121,7 +121,7 @@ class Sweep(Run, Tabular):
     def __repr__(self):
         summary = self.summary
         keys = ", ".join(one["key"] for one in summary.get("over", [])) or "seeds"
-        return f"<sweep {self.directory} over {keys}: {len(summary['runs'])} runs, {summary['status']}>"
+        return f"<sweep {self.directory} over {keys}: {counted(len(summary['runs']), 'run')}, {summary['status']}>"
 
 
 def _number(text):
@@ -237,7 +237,7 @@ class Comparison(Tabular):
         what = ", ".join(f"{len(items)} {name}" for name, items in (("laws", self.laws), ("measurements", self.measurements),
                                                                      ("macro", self.macro)) if items)
         runs = ", ".join(run["name"] for run in self.data.get("runs", [])[:-1]) or self.data["candidate"]
-        return f"<comparison of {runs} with {self.reference}: scenes differ in {len(self.differences)} keys; {what or 'no common curves'}>"
+        return f"<comparison of {runs} with {self.reference}: scenes differ in {counted(len(self.differences), 'key')}; {what or 'no common curves'}>"
 
 
 def _mean(value):
@@ -272,7 +272,7 @@ class Export:
 
     def __repr__(self):
         states = sum(one["states"] for one in self.series)
-        return f"<export {self.directory}: {self.form}, {len(self.series)} series, {states} states>"
+        return f"<export {self.directory}: {self.form}, {len(self.series)} series, {counted(states, 'state')}>"
 
 
 def export(run, to="vtp", *, out=None, threads=None, options=()):

@@ -10,7 +10,7 @@ from softgrain.figures import Drawn, Picture, new_figure
 from softgrain.hdf5 import is_group, open_file, text_attribute
 from softgrain.law import Law
 from softgrain.snapshot import read_snapshots
-from softgrain.tables import Table, Tabular, joined, read_csv
+from softgrain.tables import Table, Tabular, counted, joined, read_csv
 
 
 @dataclass(frozen=True, repr=False)
@@ -31,7 +31,7 @@ class MeasuredRun(Tabular):
                      {"delta": "1", "force": "N"})
 
     def __repr__(self):
-        return f"<{self.kind} of packing {self.packing}, {self.relaxation}: {len(self.delta)} points, {len(self.tangential['delta'])} turned>"
+        return f"<{self.kind} of packing {self.packing}, {self.relaxation}: {counted(len(self.delta), 'point')}, {len(self.tangential['delta'])} turned>"
 
 
 @dataclass(frozen=True, repr=False)
@@ -49,7 +49,8 @@ class Measurements(Tabular):
 
     def __repr__(self):
         kinds = ", ".join(dict.fromkeys(r.kind for r in self.runs))
-        return f"<measurements of {kinds}: {len({r.packing for r in self.runs})} packings, {sum(len(r.delta) for r in self.runs)} points>"
+        packings = counted(len({r.packing for r in self.runs}), "packing")
+        return f"<measurements of {kinds}: {packings}, {counted(sum(len(r.delta) for r in self.runs), 'point')}>"
 
 
 def _require(file, path, wanted):
@@ -123,7 +124,7 @@ class MacroCurve(Tabular):
 
     def __repr__(self):
         usable = "" if self.usable else ", not usable"
-        return f"<{self.test} curve of {self.engine}, sample {self.sample}: {len(self.columns['strain'])} strains{usable}>"
+        return f"<{self.test} curve of {self.engine}, sample {self.sample}: {counted(len(self.columns['strain']), 'strain')}{usable}>"
 
 
 class MacroCurves(list, Tabular):

@@ -20,6 +20,7 @@ from pathlib import Path
 from softgrain import installation
 from softgrain.errors import InputError, IoError, Interrupted, UnusableResult, SoftgrainError, error_of
 from softgrain.figures import Drawn
+from softgrain.tables import counted
 from softgrain.results import Run
 from softgrain.toml_text import scene_text, settings
 
@@ -337,7 +338,7 @@ class Findings(Drawn):
 
     def __repr__(self):
         cost = "" if self.core_seconds is None else f", about {self.core_seconds:.3g} s on one core"
-        return f"<check of {self.kind or self.facts.get('what', 'a file')}: {len(self.warnings)} warnings{cost}>"
+        return f"<check of {self.kind or self.facts.get('what', 'a file')}: {counted(len(self.warnings), 'warning')}{cost}>"
 
     def _repr_html_(self):
         return f"<pre>{html.escape(str(self))}</pre>{self._image()}"

@@ -9,7 +9,7 @@ import numpy as np
 
 from softgrain.figures import Drawn, new_figure
 from softgrain.hdf5 import open_file, text_attribute
-from softgrain.tables import Table, Tabular
+from softgrain.tables import Table, Tabular, counted
 
 KINDS = ("particles", "soft-particle", "macro", "twin", "powder", "grain-box")
 ROLES = ("solid", "soft", "inner")
@@ -37,7 +37,7 @@ class Contacts(Tabular):
                      {**units, "normal_force": "N"})
 
     def __repr__(self):
-        return f"<{len(self)} contacts>"
+        return f"<{counted(len(self), 'contact')}>"
 
 
 @dataclass(repr=False)
@@ -60,8 +60,8 @@ class Snapshot(Drawn, Tabular):
     contacts: Contacts | None = None  # None: not kept for this state
 
     def __repr__(self):
-        contacts = "" if self.contacts is None else f", {len(self.contacts)} contacts"
-        return f"<{self.label}: {len(self.radius)} particles{contacts}>"
+        contacts = "" if self.contacts is None else f", {counted(len(self.contacts), 'contact')}"
+        return f"<{self.label}: {counted(len(self.radius), 'particle')}{contacts}>"
 
     def table(self):
         """One particle a row: x, y, z and radius [m], role ("solid", "soft", "inner"), body, velocity [m/s] where it was kept."""

@@ -8,6 +8,11 @@ from pathlib import Path
 import numpy as np
 
 
+def counted(count, one, many=""):
+    """A number and what it counts: "1 point", "3 points"."""
+    return f"{count} {one if count == 1 else many or one + 's'}"
+
+
 class Tabular:
     """Mixin of what has a table()."""
 
