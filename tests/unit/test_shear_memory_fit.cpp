@@ -18,6 +18,7 @@ ShearNumbers true_numbers() {
   n.memory.critical_pores.value = 0.93;
   n.memory.strength_slope.value = 15.0;
   n.memory.strength_range.value = 0.6;
+  n.memory.density_slope.value = -0.15;
   n.memory.least_state.value = 1e-3;
   return n;
 }
@@ -64,18 +65,21 @@ TEST(ShearMemoryFit, FindsTheNumbersThatMadeTheCurves) {
   EXPECT_NEAR(fit.memory.critical_pores.value / n.memory.critical_pores.value, 1.0, 0.01);
   EXPECT_NEAR(fit.memory.strength_slope.value / n.memory.strength_slope.value, 1.0, 0.05);
   EXPECT_NEAR(fit.memory.strength_range.value / n.memory.strength_range.value, 1.0, 0.05);
+  EXPECT_NEAR(fit.memory.density_slope.value, n.memory.density_slope.value, 0.01);
   EXPECT_NEAR(fit.memory.least_state.value, 1e-3, 1e-12);
   EXPECT_LT(fit.deviation, 0.01);
   EXPECT_LE(fit.friction.low, fit.friction.value);
   EXPECT_GE(fit.friction.high, fit.friction.value);
 }
 
-TEST(ShearMemoryFit, WithoutDenseFinesTwoNumbersAreTaken) {
+TEST(ShearMemoryFit, WithoutDenseFinesThreeNumbersAreTaken) {
   const ShearMemoryFit fit = fit_shear_memory(kFines, all_paths(false), false);
   EXPECT_NEAR(fit.memory.strength_range.value, 2.0 / 3.0, 1e-12);
   EXPECT_TRUE(std::isinf(fit.memory.strength_range.standard_error));
   EXPECT_EQ(fit.memory.dilatancy.value, 1.0);
   EXPECT_TRUE(std::isinf(fit.memory.dilatancy.standard_error));
+  EXPECT_EQ(fit.memory.density_slope.value, 0.0);
+  EXPECT_TRUE(std::isinf(fit.memory.density_slope.standard_error));
   EXPECT_TRUE(std::isinf(fit.memory.least_state.standard_error)) << "not measured";
   EXPECT_EQ(fit.memory.dilatancy.low, -kInfinity) << "no interval where nothing was fitted";
 }

@@ -43,13 +43,14 @@ struct FittedNumber {
   double start;
 };
 
-constexpr std::array<FittedNumber, 6> kFitted{{{"mu_f", true, true, 0.02, 3.0, 0.5},
+constexpr std::array<FittedNumber, 7> kFitted{{{"mu_f", true, true, 0.02, 3.0, 0.5},
                                                {"chi", true, true, 0.05, 30.0, 3.0},
                                                {"r_c", true, false, 0.5, 1.6, 0.95},
                                                {"m", false, true, 0.5, 200.0, 20.0},
-                                               // Loose fines alone do not tell these two from r_c and m.
+                                               // Loose fines alone do not tell these from r_c and m.
                                                {"A", true, false, 0.05, 2.0, 1.0},
-                                               {"c", false, false, 0.1, 0.98, kUsualRange}}};
+                                               {"c", false, false, 0.1, 0.98, kUsualRange},
+                                               {"lambda", false, false, -1.0, 1.0, 0.0}}};
 constexpr std::size_t kOfLooseFines = 4;
 
 std::size_t count_of(bool dense) { return dense ? kFitted.size() : kOfLooseFines; }
@@ -66,6 +67,7 @@ ShearNumbers numbers_at(std::span<const double> parameters, double least_state) 
   out.memory.strength_slope.value = x[3];
   out.memory.dilatancy.value = x[4];
   out.memory.strength_range.value = x[5];
+  out.memory.density_slope.value = x[6];
   out.memory.least_state.value = least_state;
   return out;
 }
@@ -255,7 +257,7 @@ ShearMemoryFit fit_shear_memory(const FinesBase& fines, const std::vector<ShearP
   out.memory.strength_slope = estimate(3);
   out.memory.dilatancy = dense ? estimate(4) : not_fitted(kFitted[4].start);
   out.memory.strength_range = dense ? estimate(5) : not_fitted(kFitted[5].start);
-  out.memory.density_slope = not_fitted(0.0);
+  out.memory.density_slope = dense ? estimate(6) : not_fitted(kFitted[6].start);
   out.correlation = correlation_of(fit);
   for (std::string& one : leaning(out.correlation)) out.undetermined.push_back(std::move(one));
   double sum = 0.0;

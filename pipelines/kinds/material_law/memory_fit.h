@@ -59,7 +59,7 @@ struct ShearMemoryFit {
   std::vector<std::string> undetermined;  ///< pairs of numbers that lean on each other, in words
 };
 
-/// Least squares over all paths for mu_f, chi, r_c, m and, with `dense`, A and c (else 1 and 2/3; lambda = 0): ln p and
+/// Least squares over all paths for mu_f, chi, r_c, m and, with `dense`, A, c and lambda (else 1, 2/3 and 0): ln p and
 /// the deviator over p, in units of 8 and 5 %; under constant lateral stress the solid fraction in units of 0.008 in
 /// place of p. Every path weighs the same. Errors are Student's over fits to single samples. x_r is where the
 /// pressure is kUnloadedPressure of the start pressure. Not usable, with the reason: no convergence, a number at its
