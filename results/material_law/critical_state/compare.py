@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """NorSand, SANISAND (2004) and the cell law with shear memory beside resolved packings, at the material point.
 
-    python3 compare.py FINES [--blind RUN ...] [--starts N] [--out FILE.csv]
+    python3 compare.py FINES [--blind RUN ...] [--curves FILE.csv]
 
-FINES: folder of a finished run of kind material-law with shear memory. All numbers of each model are fitted to its fines, one
-set for loose and dense. RUN: folders of finished runs of kind material-models; their packings are predicted with the same
-numbers. Equations and sources: models.cpp, which is compiled with g++ into a temporary folder. Needs numpy and h5py.
+FINES: folder of a finished run of kind material-law with shear memory. All numbers of each model are fitted to its
+fines, one set for loose and dense. RUN: folders of finished runs of kind material or material-models; their packings
+are predicted with the same numbers. Equations and sources: models.cpp, which is compiled with g++ into a temporary
+folder. Needs numpy and h5py.
 """
 import argparse
 import csv
@@ -53,32 +54,44 @@ MODELS["cell law, with lambda"] = (5, CELL + [("lambda", -2.0, 2.0, -0.2, False)
 class Path:
     """One loading of one sample: logarithmic strains, stresses over E, void ratio, lateral stress where it is kept."""
 
-    def __init__(self, name, group):
-        modulus = float(group.attrs["youngs_modulus"])
-        take = lambda key: np.asarray(group[key], dtype=float)
-        self.name = name
-        self.strain = -np.log1p(-np.stack([take(f"strain_{a}") for a in "xyz"], axis=1))
-        self.stress = np.stack([take("stress_x"), take("stress_y"), take("stress_axial")], axis=1) / modulus
-        self.fraction = take("more/solid_fraction")
-        self.void_ratio = 1.0 / self.fraction - 1.0
-        stages = [line.split()[0] for line in group.attrs["stages"].decode().strip().split("\n")]
-        self.kind = [stages[int(s)] for s in take("stage")]
-        self.kept = np.array([k > 0 and kind == "triaxial" for k, kind in enumerate(self.kind)])
-        self.lateral = np.ascontiguousarray(np.where(self.kept, self.stress[:, :2].mean(axis=1), 0.0))
-        self.pressure = self.stress[0].mean()
-        shears = [k > 0 and kind != "isotropic" for k, kind in enumerate(self.kind)]
+    def __init__(self, name, strain, stress, fraction, kind):
+        self.name, self.strain, self.stress, self.fraction, self.kind = name, strain, stress, fraction, kind
+        self.void_ratio = 1.0 / fraction - 1.0
+        self.kept = np.array([k > 0 and one == "triaxial" for k, one in enumerate(kind)])
+        self.lateral = np.ascontiguousarray(np.where(self.kept, stress[:, :2].mean(axis=1), 0.0))
+        self.pressure = stress[0].mean()
+        shears = [k > 0 and one != "isotropic" for k, one in enumerate(kind)]
         self.shears = np.array(shears)
         first = max(shears.index(True) - 1, 0) if True in shears else 0
-        run = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(self.strain[:, 2])))])
+        run = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(strain[:, 2])))])
         self.beyond = self.shears & (run - run[first] > SHEARED)
-        self.unloads = np.array([kind == "unload" for kind in self.kind])
+        self.unloads = np.array([one == "unload" for one in kind])
+
+    @classmethod
+    def of_group(cls, name, group):
+        modulus = float(group.attrs["youngs_modulus"])
+        take = lambda key: np.asarray(group[key], dtype=float)
+        stages = [line.split()[0] for line in group.attrs["stages"].decode().strip().split("\n")]
+        return cls(name, -np.log1p(-np.stack([take(f"strain_{a}") for a in "xyz"], axis=1)),
+                   np.stack([take("stress_x"), take("stress_y"), take("stress_axial")], axis=1) / modulus,
+                   take("more/solid_fraction"), [stages[int(s)] for s in take("stage")])
+
+    @classmethod
+    def of_rows(cls, name, rows):
+        """Rows of ../../material/curves.csv: means over samples."""
+        take = lambda key: np.array([float(row[key]) for row in rows])
+        axial = -np.log1p(-take("strain_z"))
+        x, y = {"isotropic": (1, 1), "shear": (-1, 0)}.get(rows[0]["stage"], (0, 0))
+        return cls(name, np.stack([x * axial, y * axial, axial], axis=1),
+                   np.stack([take("lateral/E"), take("lateral/E"), take("axial/E")], axis=1), take("solid_fraction"),
+                   [row["stage"] for row in rows])
 
 
 def read(file, name):
     """All curves of a file that a run wrote, in the order of samples."""
     with h5py.File(file) as f:
         root = f["curves"] if "curves" in f else f
-        return [Path(name, root[key]) for key in sorted(root) if key.startswith("curve_")]
+        return [Path.of_group(name, root[key]) for key in sorted(root) if key.startswith("curve_")]
 
 
 def compile_models():
@@ -175,7 +188,7 @@ def fit(model, paths, base, starts, seed=1):
             best = (r @ r, outward(x))
     at_bound = [n[0] for k, n in enumerate(model.numbers) if min(inward(best[1])[k] - a[k], b[k] - inward(best[1])[k])
                 < 1e-3 * (b[k] - a[k])]
-    printed(f"{model.name}: cost {best[0]:.2f} of starts {np.round(sorted(ends), 1)}, {calls[0]} evaluations, at bounds "
+    printed(f"{model.name}: cost {best[0]:.2f} of starts {np.round(sorted(ends), 1)}, {calls[0]} evaluations, bounds: "
           f"{at_bound}\n  " + ", ".join(f"{n[0]} = {v:.4g}" for n, v in zip(model.numbers, best[1])))
     return best[1], at_bound
 
@@ -212,21 +225,31 @@ def fines_of(folder):
 
 
 def blind_of(folder):
-    """Paths of a run of kind material or material-models: (path, path of the packing prepared as the card's)."""
+    """Paths of a run of kind material or material-models, and for each that of the packing prepared as the card's."""
     files = [f for f in sorted(folder.glob("material_*.h5")) if not f.stem.startswith("material_initial")]
     paths = [p for f in files for p in read(f, re.sub("^material_", "", f.stem))]
     # Of a dense packing of another grading nothing is known of the loose one.
     paths = [p for p in paths if "-dense" not in p.name]
-    fast = next(p for p in paths if p.name.startswith("fast"))
-    # A preparation has the grading of "fast"; other variants are gradings of their own.
-    own = lambda p: fast if re.match("(fast|slow|dense)-", p.name) else p
-    return [(p, own(p)) for p in paths]
+    fast = [p for p in paths if p.name.startswith("fast")]
+    return [(p, fast[0] if re.match("(fast|slow|dense)-", p.name) else p) for p in paths]
+
+
+def curves_of(file):
+    """The same of curves.csv, without other frictions."""
+    rows = {}
+    with open(file) as f:
+        for row in csv.DictReader(f):
+            if not row["variant"].startswith("mu"):
+                rows.setdefault(row["variant"], []).append(row)
+    paths = {name: Path.of_rows(name, same) for name, same in rows.items()}
+    return [(p, paths.get(re.sub("^(slow|dense)-(.*)-.*", r"fast-\2-oedometric", p.name), p)) for p in paths.values()]
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("fines", type=pathlib.Path)
     parser.add_argument("--blind", type=pathlib.Path, nargs="*", default=[])
+    parser.add_argument("--curves", type=pathlib.Path, help="../../material/curves.csv")
     parser.add_argument("--starts", type=int, default=1)
     parser.add_argument("--numbers", type=pathlib.Path, help="numbers of an earlier fit; without it they are fitted")
     parser.add_argument("--out", type=pathlib.Path, default=HERE)
@@ -256,6 +279,8 @@ def main():
     cases = [("fines (fitted)", p, base) for p in paths]
     for folder in options.blind:
         cases += [(folder.name, p, own) for p, own in blind_of(folder)]
+    if options.curves:
+        cases += [("curves.csv", p, own) for p, own in curves_of(options.curves)]
     rows = []
     for data, path, own in cases:
         for title, (model, values) in sets.items():
@@ -265,7 +290,7 @@ def main():
                 grading = {", scaled": [0.0, own.void_ratio[0] / base.void_ratio[0]],
                            ", shifted": [own.void_ratio[0] - base.void_ratio[0], 1.0]}
             for how, g in grading.items():
-                if own is base and how == ", shifted":
+                if how == ", shifted" and (own is base or data == "curves.csv"):
                     continue
                 rows.append({"data": data, "test": path.name, "model": title + (how if own is not base else ""),
                              **errors(path, *model.follow(values, path, g))})
