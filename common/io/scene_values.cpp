@@ -28,7 +28,7 @@ std::string plain_end(double end) {
   constexpr double kSlack = 1e-8;
   if (end < 0.0 && end > -kSlack) return "0";
   const double rounded = std::stod(rounded_text(end, {6}));
-  return plain(std::abs(end) > kSlack && std::abs(rounded - end) < kSlack ? rounded : end);
+  return plain(std::abs(rounded - end) < kSlack * std::abs(end) ? rounded : end);
 }
 
 /// "must be above 1", "must be from 0 to 0.5", "must be at least 0 and below 1".
