@@ -35,6 +35,11 @@ inline constexpr auto enum_names<Modulus> = enum_name_list<Modulus>({{Modulus::c
 
 Modulus modulus_of(StageKind way);
 
+/// Ways that change the shape of the sample rather than its volume.
+inline bool shears(StageKind way) {
+  return keeps_volume(way) || way == StageKind::triaxial || way == StageKind::direct_shear;
+}
+
 /// The stress whose change over the strain a modulus is: sigma_z; bulk: p; shear: (sigma_z - sigma_x)/2, sliding
 /// sigma_xz; undrained: sigma_z - (sigma_x + sigma_y)/2.
 const char* stress_of(Modulus modulus);

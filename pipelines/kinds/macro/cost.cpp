@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
@@ -12,6 +11,7 @@
 #include "macrosim/compression.h"
 #include "macrosim/constructed_packing.h"
 #include "macrosim/test_protocol.h"
+#include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/run/findings.h"
@@ -125,7 +125,7 @@ class TrialScale {
 
   /// Passes of an increment grow like N^0.33 too: 160, 190, 300 of 1,400, 2,400, 8,000 bodies in a triaxial test. Where
   /// there are more bodies because of a larger span there are not more passes for that. With balance "own-load" their
-  /// number does not count either: 44 min of one core for 24 increments of 450,000 bodies at span 100.
+  /// number does not count either: about 44 min of one core for 32 increments of 450,000 bodies at span 100.
   [[nodiscard]] double test() const { return (own_load_ ? larger_ : std::pow(larger_, 1.33)) * memory(); }
 
  private:
@@ -142,13 +142,6 @@ class TrialScale {
   bool own_load_;
 };
 
-/// Whether a stage changes the shape of the cell rather than its volume.
-bool shears(const StageRecord& stage) {
-  constexpr std::array kShearing{StageKind::shear, StageKind::triaxial, StageKind::undrained, StageKind::simple_shear,
-                                 StageKind::direct_shear};
-  return std::ranges::find(kShearing, stage.kind) != kShearing.end();
-}
-
 /// Share of the work of a test that is done with this share of its points. An increment that shears takes 2.3 times the
 /// passes of one that compresses: 350 and 150 of 8,000 grains of span 12 after an isotropic preload.
 double work_share(const MacroSpec& spec, double share) {
@@ -160,7 +153,8 @@ double work_share(const MacroSpec& spec, double share) {
   double all = 0.0;
   double done = 0.0;
   const auto add = [&](double points, const MacroStage& stage) {
-    const double weight = static_cast<double>(stage.increments_per_step) * (shears(stage.record) ? kShearing : 1.0);
+    const double weight =
+        static_cast<double>(stage.increments_per_step) * (shears(stage.record.kind) ? kShearing : 1.0);
     const double some = std::clamp(left, 0.0, points);
     left -= some;
     done += some * weight;

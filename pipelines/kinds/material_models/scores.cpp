@@ -130,15 +130,11 @@ double error_at(const std::vector<MacroCurve>& curves, std::size_t k) {
   return m.error / m.mean;
 }
 
-/// Whether a stage raises q by straining z: those that q/p and volume are compared in.
-bool shears(StageKind kind) {
-  return kind == StageKind::shear || kind == StageKind::undrained || kind == StageKind::triaxial;
-}
-
-/// Points of the first stage that shears, with the one at which it begins; empty without any.
+/// Points of the first stage that shears by straining z, with the one at which it begins; empty without any.
 std::vector<std::size_t> sheared_points(const MacroCurve& c) {
   std::vector<std::size_t> out;
-  const auto stage = std::ranges::find_if(c.stages, [](const StageRecord& s) { return shears(s.kind); });
+  const auto stage =
+      std::ranges::find_if(c.stages, [](const StageRecord& s) { return shears(s.kind) && !slides(s.kind); });
   const auto wanted = static_cast<double>(stage - c.stages.begin());
   for (std::size_t k = 1; stage != c.stages.end() && k < c.stage.size(); ++k) {
     if (c.stage[k] != wanted) continue;
