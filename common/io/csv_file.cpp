@@ -161,6 +161,13 @@ void CsvFile::read_lines(const std::string& bytes) {
     const bool pair = end + 1 < text.size() && text[end] == '\r' && text[end + 1] == '\n';
     at = end + (pair ? 2 : 1);
   }
+  find_decimal_commas();
+}
+
+void CsvFile::find_decimal_commas() {
+  const auto is_certain = [this](const std::string& cell) { return csv::decimal_marks({cell}, separator_).comma; };
+  const auto has_one = [&](const CsvRow& row) { return std::ranges::any_of(row.cells, is_certain); };
+  decimal_commas_ = separator_ == '\t' && std::ranges::any_of(rows_, has_one);
 }
 
 void CsvFile::read_line(const std::string& line, int number) {
@@ -218,7 +225,22 @@ void CsvFile::find_header(const std::string& line, int number) {
     separator_ = c;
     header_line_ = number;
     columns_ = std::move(columns);
-    return;
+    return refuse_rows_above();
+  }
+  above_.emplace_back(number, line);
+}
+
+/// Rows that were put above their header would else be taken for titles and be missing.
+void CsvFile::refuse_rows_above() const {
+  const auto is_number = [](const std::string& cell) {
+    return cell.find_first_not_of("0123456789.,+-") == std::string::npos && cell.find_first_of("0123456789") == 0;
+  };
+  for (const auto& [number, line] : above_) {
+    std::vector<std::string> cells = split_with_inches(line, separator_);
+    std::erase(cells, "");
+    if (cells.size() > 1 && std::ranges::all_of(cells, is_number))
+      throw InputError(where(number) + ": a row of numbers above the header (line " + std::to_string(header_line_) +
+                       "): put it below, or \"#\" before it");
   }
 }
 
@@ -318,6 +340,9 @@ std::optional<double> CsvFile::number(const CsvRow& row, std::size_t column, Uni
   if (cell.find(',') != std::string::npos && cell.find('.') != std::string::npos)
     throw InputError(where(row.line) + ": column \"" + columns_[column].title + "\": \"" + cell +
                      "\" has a comma and a point: write numbers without a sign between thousands, e.g. 1234.5");
+  const std::size_t digits = cell.front() == '-' || cell.front() == '+' ? 1 : 0;
+  if (separator_ == '\t' && !decimal_commas_ && csv::in_thousands(cell.substr(digits, cell.find(' ') - digits), ','))
+    throw InputError(where(row.line) + ": column \"" + columns_[column].title + "\": " + csv::two_readings(cell));
   if (separator_ != ',') std::replace(cell.begin(), cell.end(), ',', '.');
   const CsvColumn& c = columns_[column];
   const bool percent_sign = unit == Unit::none && cell.back() == '%';

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/io/scene.h"
@@ -44,7 +45,8 @@ class CsvFile {
  public:
   /// Reads a file in any encoding that utf8_of() knows, with any line ends. The separator is what a first line "sep=;"
   /// says, else the first of ";", tab, "," that the header has. With another separator than the comma, a comma in a
-  /// number is its decimal mark. Cells may stand in double quotes. Empty cells at the end of a line and empty lines
+  /// number is its decimal mark; with tabs, "1,016" is refused unless another cell has a decimal comma for certain.
+  /// Cells may stand in double quotes. Empty cells at the end of a line and empty lines
   /// count for nothing. Throws InputError (no header, a row of another length), IoError.
   static CsvFile read(const std::string& path);
   /// Reads a table from a text in the same way; `path` stands for the file in messages, `header` for what its first
@@ -54,7 +56,7 @@ class CsvFile {
   /// Reads a table as laboratories write it; none when no line is a header. Lines above the header are titles; a line
   /// of words right below it goes on with the titles of the columns ("mm; g; %"); columns may have no title, or one
   /// that is there twice; rows may be short. A double quote within a cell is a character (3/8"). Throws InputError for
-  /// a row that is too long.
+  /// a row that is too long or above the header.
   static std::optional<CsvFile> find(const std::string& bytes, const std::string& path, const CsvIsHeader& is_header);
 
   /// Takes units apart that stand behind a name without brackets: "force_N", "Force N", "F/N", "displacement_in_mm".
@@ -67,6 +69,8 @@ class CsvFile {
   [[nodiscard]] const std::vector<CsvRow>& rows() const { return rows_; }
   [[nodiscard]] int header_line() const { return header_line_; }
   [[nodiscard]] char separator() const { return separator_; }
+  /// Whether a table with tabs has a decimal comma for certain ("0,5"): then "1,016" is 1.016 in it too.
+  [[nodiscard]] bool has_decimal_commas() const { return decimal_commas_; }
   /// "file:line".
   [[nodiscard]] std::string where(int line) const { return path_ + ":" + std::to_string(line); }
 
@@ -100,6 +104,8 @@ class CsvFile {
   void read_lines(const std::string& bytes);
   void read_line(const std::string& line, int number);
   void find_header(const std::string& line, int number);
+  void refuse_rows_above() const;
+  void find_decimal_commas();
   [[nodiscard]] bool names_a_sieve(const std::string& line) const;
   bool read_more_titles(const std::string& line, int number);
   void read_header(const std::string& line, int number);
@@ -115,6 +121,8 @@ class CsvFile {
   bool separator_said_ = false;
   CsvIsHeader is_header_{};  ///< of a laboratory's table
   int header_line_ = 0;
+  std::vector<std::pair<int, std::string>> above_{};  ///< lines above a laboratory's header, with their numbers
+  bool decimal_commas_ = false;                       ///< a cell of a table with tabs shows one for certain
   std::vector<CsvColumn> columns_;
   std::vector<CsvRow> rows_;
   std::vector<CsvSetting> settings_;
@@ -147,8 +155,12 @@ std::string folded(std::string text);
 struct DecimalMarks {
   bool comma = false;
   bool point = false;
-  bool comma_separates_cells = false;
+  bool comma_may_separate_thousands = false;  ///< ";" between cells stands for a country with decimal commas
 };
+/// "1.250", "12.345.678" of this mark: groups of three digits behind one to three others, the first not 0.
+bool in_thousands(const std::string& number, char mark);
+/// What to say of such a number where nothing tells the mark.
+std::string two_readings(const std::string& number);
 DecimalMarks decimal_marks(const std::vector<std::string>& cells, char separator);
 
 /// The text with its numbers written with a decimal point alone: "1.250,5", "1 250,5" and "1'250.5" to "1250.5". Throws

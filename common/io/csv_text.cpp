@@ -20,7 +20,8 @@ std::size_t digits_from(const std::string& text, std::size_t at) {
   return end - at;
 }
 
-/// "1.250", "12.345.678" of this mark: groups of three digits behind one to three others, the first not 0.
+}  // namespace
+
 bool in_thousands(const std::string& number, char mark) {
   std::size_t at = digits_from(number, 0);
   if (at == 0 || at > 3 || number[0] == '0' || at == number.size()) return false;
@@ -28,6 +29,8 @@ bool in_thousands(const std::string& number, char mark) {
     if (number[at] != mark || digits_from(number, at + 1) != 3) return false;
   return true;
 }
+
+namespace {
 
 /// Length of a blank or an apostrophe between thousands at `at`; 0: none.
 std::size_t thousands_gap(const std::string& text, std::size_t begin, std::size_t at) {
@@ -87,6 +90,15 @@ std::string with_point(std::string text) {
   return text;
 }
 
+}  // namespace
+
+std::string two_readings(const std::string& number) {
+  return "\"" + number + "\" may be " + with_point(number) + " or " + without(number, ',') +
+         ": write it without the comma";
+}
+
+namespace {
+
 /// Of a number that has both marks: the last one is the decimal mark if the other separates thousands.
 std::string plain_of_both(const std::string& number) {
   const char decimal = number.find_last_of(',') > number.find_last_of('.') ? ',' : '.';
@@ -108,9 +120,8 @@ std::string plain_number(const std::string& number, const DecimalMarks& marks) {
   const bool other_shown = mark == ',' ? marks.point : marks.comma;
   const bool this_shown = mark == ',' ? marks.comma : marks.point;
   if (thousands && other_shown && !this_shown) return without(number, mark);
-  if (thousands && mark == ',' && marks.comma_separates_cells && !this_shown)
-    throw InputError("\"" + number + "\" may be " + with_point(number) + " or " + without(number, mark) +
-                     ": write it without the comma");
+  if (thousands && mark == ',' && marks.comma_may_separate_thousands && !this_shown)
+    throw InputError(two_readings(number));
   return with_point(number);
 }
 
@@ -133,7 +144,7 @@ std::string folded(std::string text) {
 
 DecimalMarks decimal_marks(const std::vector<std::string>& cells, char separator) {
   DecimalMarks marks;
-  marks.comma_separates_cells = separator == ',';
+  marks.comma_may_separate_thousands = separator != ';';
   for (const std::string& cell : cells)
     (void)with_numbers(cell, [&](const std::string& number) {
       const std::size_t last = number.find_last_of(".,");

@@ -67,7 +67,9 @@ class SieveReader {
   [[nodiscard]] csv::DecimalMarks marks_of(std::size_t column) const {
     std::vector<std::string> cells;
     for (const CsvRow& row : csv_.rows()) cells.push_back(row.cells[column]);
-    return csv::decimal_marks(cells, csv_.separator());
+    csv::DecimalMarks marks = csv::decimal_marks(cells, csv_.separator());
+    marks.comma = marks.comma || csv_.has_decimal_commas();
+    return marks;
   }
 
   [[nodiscard]] std::string plain(const CsvRow& row, std::size_t column, const csv::DecimalMarks& marks) const {

@@ -54,6 +54,26 @@ TEST(CsvFile, WhatSpreadsheetsWriteIsRead) {
   EXPECT_EQ(CsvFile::parse("h [\xb5m],F [N]\n1,2\n", "t").columns()[0].unit, "µm") << "Windows-1252";
 }
 
+std::string refusal_of_number(const std::string& bytes, std::size_t row) {
+  const CsvFile csv = CsvFile::parse(bytes, "t.csv");
+  try {
+    (void)csv.number(csv.rows()[row], 1, Unit::force);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+/// Tabs tell no country: a factor of a thousand is not guessed. Semicolons and another cell tell it.
+TEST(CsvFile, CommasOfThousandsOrDecimalsAreRefusedInTablesWithTabs) {
+  const std::string both = "hn [mm]\tFn [N]\n1\t1,016\n2\t-2,032\n";
+  EXPECT_EQ(refusal_of_number(both, 0),
+            "t.csv:2: column \"Fn [N]\": \"1,016\" may be 1.016 or 1016: write it without the comma");
+  EXPECT_NE(refusal_of_number(both, 1).find("\"-2,032\" may be -2.032 or -2032"), std::string::npos);
+  EXPECT_EQ(refusal_of_number(both + "0,5\t3\n", 0), "");
+  EXPECT_EQ(refusal_of_number(replaced(both, "\t", ";"), 0), "");
+}
+
 /// A row does not become a comment because its first cell could not be computed.
 TEST(CsvFile, ErrorsOfASpreadsheetAreMissingCells) {
   const CsvFile csv = CsvFile::parse("# free text\na [m];b\n#N/A;1\n#DIV/0!;2\n3;#WERT!\n# 4;5\n1;#VALUE!\n", "t");

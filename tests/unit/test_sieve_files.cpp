@@ -113,18 +113,35 @@ TEST(SieveFiles, AreReadOrRefusedAsTheTableSays) {
   }
 }
 
-TEST(SieveFiles, WithoutAHeaderAreToldOneOfTheirOwn) {
+std::string complaint_of(const std::string& text) {
   const test::TemporaryDirectory directory;
-  for (const char* text : {"", "4.0;100\n2.0;50\n"}) {
-    write_text_atomic(directory.file("empty.csv"), text);
-    std::string message;
-    try {
-      (void)read_sieve_file(directory.file("empty.csv"), {}, 3);
-    } catch (const InputError& e) {
-      message = e.what();
-    }
-    EXPECT_NE(message.find("e.g. opening [mm], passing [%]"), std::string::npos) << message;
+  write_text_atomic(directory.file("s.csv"), text);
+  try {
+    (void)read_sieve_file(directory.file("s.csv"), {}, 3);
+  } catch (const InputError& e) {
+    return e.what();
   }
+  return "";
+}
+
+TEST(SieveFiles, WithoutAHeaderAreToldOneOfTheirOwn) {
+  for (const char* text : {"", "4.0;100\n2.0;50\n"})
+    EXPECT_NE(complaint_of(text).find("e.g. opening [mm], passing [%]"), std::string::npos) << complaint_of(text);
+}
+
+/// They were taken for titles of the laboratory, and the curve had lost a sieve.
+TEST(SieveFiles, RowsAboveTheHeaderAreRefused) {
+  const std::string table = "opening [mm];passing [%]\n4;100\n2;50\n1;0\n";
+  EXPECT_NE(complaint_of("8;100\n" + table).find("s.csv:1: a row of numbers above the header (line 2)"),
+            std::string::npos);
+  EXPECT_EQ(complaint_of("Sample;12\n30.11.2026\n\n" + table), "");
+}
+
+/// The openings show the mark of the masses.
+TEST(SieveFiles, OneDecimalCommaTellsTheOthersOfATableWithTabs) {
+  const std::string table = "opening [mm]\tmass retained [kg]\n4\t0\n2\t1,250\n1\t2,500\n";
+  EXPECT_NE(complaint_of(table).find("may be 1.250 or 1250"), std::string::npos);
+  EXPECT_EQ(complaint_of(table + "0,5\t1,125\n"), "");
 }
 
 TEST(SieveFiles, EveryFileIsInTheTable) {
