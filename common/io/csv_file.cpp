@@ -254,7 +254,32 @@ void CsvFile::read_row(const std::string& line, int number) {
                      (separator_ == ',' && row.cells.size() > columns_.size()
                           ? "; where numbers have decimal commas, separate columns by ; or tab"
                           : ""));
+  note_marks(row);
   rows_.push_back(std::move(row));
+}
+
+void CsvFile::note_marks(const CsvRow& row) {
+  if (separator_ == ',') return;
+  marks_.resize(columns_.size());
+  for (std::size_t k = 0; k < row.cells.size(); ++k) {
+    if (row.cells[k].find_first_of(".,") == std::string::npos) continue;
+    const csv::DecimalMarks own = csv::decimal_marks({row.cells[k]}, separator_);
+    marks_[k].comma = marks_[k].comma || own.comma;
+    marks_[k].point = marks_[k].point || own.point;
+  }
+}
+
+/// "1.250" in a column that shows decimal commas may be 1250, and "1,250" in one that shows points. Which, nobody says.
+void CsvFile::refuse_thousands(const CsvRow& row, std::size_t column) const {
+  const std::string& cell = row.cells[column];
+  const std::size_t at = cell.find_first_of(".,");
+  if (at == std::string::npos) return;
+  const csv::DecimalMarks own = csv::decimal_marks({cell}, separator_);
+  const bool other = cell[at] == ',' ? marks_[column].point : marks_[column].comma;
+  if (own.comma || own.point || !other) return;
+  throw InputError(where(row.line) + ": column \"" + columns_[column].title + "\": \"" + cell +
+                   "\" may have a sign between thousands, as other numbers have another decimal mark: write numbers "
+                   "with one mark, e.g. 1234.5");
 }
 
 void CsvFile::require_known_columns(const CsvNames& known, const std::string& what) const {
@@ -318,7 +343,10 @@ std::optional<double> CsvFile::number(const CsvRow& row, std::size_t column, Uni
   if (cell.find(',') != std::string::npos && cell.find('.') != std::string::npos)
     throw InputError(where(row.line) + ": column \"" + columns_[column].title + "\": \"" + cell +
                      "\" has a comma and a point: write numbers without a sign between thousands, e.g. 1234.5");
-  if (separator_ != ',') std::replace(cell.begin(), cell.end(), ',', '.');
+  if (separator_ != ',') {
+    refuse_thousands(row, column);
+    std::replace(cell.begin(), cell.end(), ',', '.');
+  }
   const CsvColumn& c = columns_[column];
   const bool percent_sign = unit == Unit::none && cell.back() == '%';
   if (percent_sign) cell = trimmed(cell.substr(0, cell.size() - 1));

@@ -40,6 +40,17 @@ using CsvNames = std::vector<std::string>;
 /// Tells the line of the header from lines of text above it.
 using CsvIsHeader = std::function<bool(const std::vector<CsvColumn>&)>;
 
+namespace csv {
+
+/// Which decimal marks the numbers of a column show. A mark with three digits behind it may separate thousands.
+struct DecimalMarks {
+  bool comma = false;
+  bool point = false;
+  bool comma_separates_cells = false;
+};
+
+}  // namespace csv
+
 class CsvFile {
  public:
   /// Reads a file in any encoding that utf8_of() knows, with any line ends. The separator is what a first line "sep=;"
@@ -105,6 +116,8 @@ class CsvFile {
   void read_header(const std::string& line, int number);
   void read_row(const std::string& line, int number);
   void read_comment(const std::string& line, int number);
+  void note_marks(const CsvRow& row);
+  void refuse_thousands(const CsvRow& row, std::size_t column) const;
   void read_setting(const std::string& text, int number);
   [[nodiscard]] std::vector<CsvSetting> all_of(const CsvNames& names) const;
   [[nodiscard]] std::vector<double> values_of(const CsvSetting& setting, Unit unit, std::size_t count) const;
@@ -117,6 +130,7 @@ class CsvFile {
   int header_line_ = 0;
   std::vector<CsvColumn> columns_;
   std::vector<CsvRow> rows_;
+  std::vector<csv::DecimalMarks> marks_;  ///< of the columns, where a comma is no separator
   std::vector<CsvSetting> settings_;
 };
 
@@ -143,12 +157,7 @@ bool is_missing(const std::string& cell);
 /// "phi".
 std::string folded(std::string text);
 
-/// Which decimal marks the numbers of a column show. A mark with three digits behind it may separate thousands.
-struct DecimalMarks {
-  bool comma = false;
-  bool point = false;
-  bool comma_separates_cells = false;
-};
+/// Marks of the numbers of these cells.
 DecimalMarks decimal_marks(const std::vector<std::string>& cells, char separator);
 
 /// The text with its numbers written with a decimal point alone: "1.250,5", "1 250,5" and "1'250.5" to "1250.5". Throws
