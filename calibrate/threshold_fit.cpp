@@ -63,9 +63,8 @@ std::string nothing_clear_text(const CurveMeans& means, const std::vector<double
   const double count = std::max(means.count[k], 1.0);
   return fmt::format(
       "no mean force stays above two standard errors up to Delta = {:.4g} (largest mean {:.1e} +- {:.1e} E Rs^2, of "
-      "{:g} "
-      "values)",
-      end, means.mean[k], single[k] / std::sqrt(count), count);
+      "{})",
+      end, means.mean[k], single[k] / std::sqrt(count), counted(std::llround(count), "value"));
 }
 
 /// The force of one curve does not fall again: a point above two standard errors with points below behind it is noise.

@@ -33,8 +33,7 @@ struct CardEntry {
 
 // Ranges hold all numbers that fits end at, and far more. Beyond them a number is a mistake, and a run with it fails
 // late.
-/// Void ratios: grains that jam have less than one part in a hundred of solid nowhere, nor more than fits allow
-/// (0.999).
+/// Void ratios: grains jam at solid fractions above 0.01, and fits end at 0.999.
 constexpr double kMostPores = 100.0;
 constexpr Range kPores{1e-4, kMostPores, false, false};
 /// Factors on void ratios, and void ratios over each other.

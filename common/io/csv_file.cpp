@@ -161,13 +161,6 @@ void CsvFile::read_lines(const std::string& bytes) {
     const bool pair = end + 1 < text.size() && text[end] == '\r' && text[end + 1] == '\n';
     at = end + (pair ? 2 : 1);
   }
-  find_decimal_commas();
-}
-
-void CsvFile::find_decimal_commas() {
-  const auto is_certain = [this](const std::string& cell) { return csv::decimal_marks({cell}, separator_).comma; };
-  const auto has_one = [&](const CsvRow& row) { return std::ranges::any_of(row.cells, is_certain); };
-  decimal_commas_ = separator_ == '\t' && std::ranges::any_of(rows_, has_one);
 }
 
 void CsvFile::read_line(const std::string& line, int number) {
@@ -276,7 +269,40 @@ void CsvFile::read_row(const std::string& line, int number) {
                      (separator_ == ',' && row.cells.size() > columns_.size()
                           ? "; where numbers have decimal commas, separate columns by ; or tab"
                           : ""));
+  note_marks(row);
   rows_.push_back(std::move(row));
+}
+
+void CsvFile::note_marks(const CsvRow& row) {
+  if (separator_ == ',') return;
+  marks_.resize(columns_.size());
+  for (std::size_t k = 0; k < row.cells.size(); ++k) {
+    const auto is_new = [&](char mark, bool known) { return !known && row.cells[k].find(mark) != std::string::npos; };
+    if (!is_new(',', marks_[k].comma) && !is_new('.', marks_[k].point)) continue;
+    const csv::DecimalMarks own = csv::decimal_marks({row.cells[k]}, separator_);
+    marks_[k].comma = marks_[k].comma || own.comma;
+    marks_[k].point = marks_[k].point || own.point;
+  }
+}
+
+bool CsvFile::has_decimal_commas() const {
+  return separator_ == '\t' && std::ranges::any_of(marks_, &csv::DecimalMarks::comma);
+}
+
+/// "1.250" in a column that shows decimal commas may be 1250, and "1,250" in one that shows points. Which, nobody says.
+/// Between tabs "1,250" may be either where no column shows a decimal comma.
+void CsvFile::refuse_thousands(const CsvRow& row, std::size_t column) const {
+  const std::string& cell = row.cells[column];
+  const std::size_t at = cell.find_first_of(".,");
+  if (at == std::string::npos) return;
+  const csv::DecimalMarks own = csv::decimal_marks({cell}, separator_);
+  if (own.comma || own.point) return;
+  const std::string place = where(row.line) + ": column \"" + columns_[column].title + "\": ";
+  if (cell[at] == ',' ? marks_[column].point : marks_[column].comma)
+    throw InputError(place + "\"" + cell +
+                     "\" may have a sign between thousands, as other numbers have another decimal mark: write numbers "
+                     "with one mark, e.g. 1234.5");
+  if (cell[at] == ',' && separator_ == '\t' && !has_decimal_commas()) throw InputError(place + csv::two_readings(cell));
 }
 
 void CsvFile::require_known_columns(const CsvNames& known, const std::string& what) const {
@@ -340,10 +366,10 @@ std::optional<double> CsvFile::number(const CsvRow& row, std::size_t column, Uni
   if (cell.find(',') != std::string::npos && cell.find('.') != std::string::npos)
     throw InputError(where(row.line) + ": column \"" + columns_[column].title + "\": \"" + cell +
                      "\" has a comma and a point: write numbers without a sign between thousands, e.g. 1234.5");
-  const std::size_t digits = cell.front() == '-' || cell.front() == '+' ? 1 : 0;
-  if (separator_ == '\t' && !decimal_commas_ && csv::in_thousands(cell.substr(digits, cell.find(' ') - digits), ','))
-    throw InputError(where(row.line) + ": column \"" + columns_[column].title + "\": " + csv::two_readings(cell));
-  if (separator_ != ',') std::replace(cell.begin(), cell.end(), ',', '.');
+  if (separator_ != ',') {
+    refuse_thousands(row, column);
+    std::replace(cell.begin(), cell.end(), ',', '.');
+  }
   const CsvColumn& c = columns_[column];
   const bool percent_sign = unit == Unit::none && cell.back() == '%';
   if (percent_sign) cell = trimmed(cell.substr(0, cell.size() - 1));

@@ -41,6 +41,17 @@ using CsvNames = std::vector<std::string>;
 /// Tells the line of the header from lines of text above it.
 using CsvIsHeader = std::function<bool(const std::vector<CsvColumn>&)>;
 
+namespace csv {
+
+/// Which decimal marks the numbers of a column show. A mark with three digits behind it may separate thousands.
+struct DecimalMarks {
+  bool comma = false;
+  bool point = false;
+  bool comma_may_separate_thousands = false;  ///< not where ";" separates cells: there commas are decimal marks
+};
+
+}  // namespace csv
+
 class CsvFile {
  public:
   /// Reads a file in any encoding that utf8_of() knows, with any line ends. The separator is what a first line "sep=;"
@@ -70,7 +81,7 @@ class CsvFile {
   [[nodiscard]] int header_line() const { return header_line_; }
   [[nodiscard]] char separator() const { return separator_; }
   /// Whether a table with tabs has a decimal comma for certain ("0,5"): then "1,016" is 1.016 in it too.
-  [[nodiscard]] bool has_decimal_commas() const { return decimal_commas_; }
+  [[nodiscard]] bool has_decimal_commas() const;
   /// "file:line".
   [[nodiscard]] std::string where(int line) const { return path_ + ":" + std::to_string(line); }
 
@@ -105,12 +116,13 @@ class CsvFile {
   void read_line(const std::string& line, int number);
   void find_header(const std::string& line, int number);
   void refuse_rows_above() const;
-  void find_decimal_commas();
   [[nodiscard]] bool names_a_sieve(const std::string& line) const;
   bool read_more_titles(const std::string& line, int number);
   void read_header(const std::string& line, int number);
   void read_row(const std::string& line, int number);
   void read_comment(const std::string& line, int number);
+  void note_marks(const CsvRow& row);
+  void refuse_thousands(const CsvRow& row, std::size_t column) const;
   void read_setting(const std::string& text, int number);
   [[nodiscard]] std::vector<CsvSetting> all_of(const CsvNames& names) const;
   [[nodiscard]] std::vector<double> values_of(const CsvSetting& setting, Unit unit, std::size_t count) const;
@@ -122,9 +134,9 @@ class CsvFile {
   CsvIsHeader is_header_{};  ///< of a laboratory's table
   int header_line_ = 0;
   std::vector<std::pair<int, std::string>> above_{};  ///< lines above a laboratory's header, with their numbers
-  bool decimal_commas_ = false;                       ///< a cell of a table with tabs shows one for certain
   std::vector<CsvColumn> columns_;
   std::vector<CsvRow> rows_;
+  std::vector<csv::DecimalMarks> marks_;  ///< of the columns, where a comma is no separator
   std::vector<CsvSetting> settings_;
 };
 
@@ -151,16 +163,11 @@ bool is_missing(const std::string& cell);
 /// "phi".
 std::string folded(std::string text);
 
-/// Which decimal marks the numbers of a column show. A mark with three digits behind it may separate thousands.
-struct DecimalMarks {
-  bool comma = false;
-  bool point = false;
-  bool comma_may_separate_thousands = false;  ///< ";" between cells stands for a country with decimal commas
-};
 /// "1.250", "12.345.678" of this mark: groups of three digits behind one to three others, the first not 0.
 bool in_thousands(const std::string& number, char mark);
 /// What to say of such a number where nothing tells the mark.
 std::string two_readings(const std::string& number);
+/// Marks of the numbers of these cells.
 DecimalMarks decimal_marks(const std::vector<std::string>& cells, char separator);
 
 /// The text with its numbers written with a decimal point alone: "1.250,5", "1 250,5" and "1'250.5" to "1250.5". Throws

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <ctime>
 #include <filesystem>
 
@@ -218,6 +219,15 @@ TEST_F(ForceCurveFile, WrongFilesAreNamedWithTheirLine) {
   expect_refused(replaced(kGood, "1.6, 80", "1,6, 80"), {"data.csv:8", "3 cells", "decimal commas", "; or tab"});
   expect_refused(replaced(kGood, "4.0, 1500", "4.0, \"1,500.5\""),
                  {"data.csv:11", "\"1,500.5\" has a comma and a point", "thousands"});
+  // A point between thousands was a decimal point: 1.5 for 1500.
+  std::string commas = kGood;
+  std::ranges::replace(commas, ',', ';');
+  const std::string excel = replaced(replaced(commas, "2.4; 300", "2,4; 300,5"), "4.0; 1500", "4,0; 1.500");
+  expect_refused(excel, {"data.csv:11", "\"1.500\" may have a sign between thousands"});
+  expect_refused(replaced(replaced(commas, "2.4; 300", "2.4; 300.5"), "1500", "1,500"), {"data.csv:11", "\"1,500\""});
+  std::string german = replaced(commas, "2.4; 300", "2.400; 300.125");
+  std::replace(german.begin() + static_cast<std::ptrdiff_t>(german.find("hn [mm]")), german.end(), '.', ',');
+  EXPECT_EQ(read(german).samples.at(0).normal.at(2).force, 0.300125);
   expect_refused(replaced(kGood, "2.4, 300", "1.2, 300"), {"data.csv:9", "does not rise", "unloading=drop"});
   expect_refused(replaced(kGood, "4.0, 1500\n", ""), {"too few points", "4", "at least 5"});
   expect_refused(replaced(kGood, "4.0, 1500", "40, 1500"), {"data.csv:11", "2.5 Rs", "check unit and radius"});

@@ -11,6 +11,7 @@
 #include "macrosim/body_contacts.h"
 #include "pipelines/kinds/material_models/models.h"
 #include "pipelines/kinds/material_models/scene.h"
+#include "pipelines/kinds/material_models/summary.h"
 
 namespace softgrain {
 namespace {
@@ -283,6 +284,47 @@ TEST(MaterialModels, ShearIsComparedFromTheBeginOfItsStage) {
   EXPECT_TRUE(std::isnan(score(run, false).volume));
   for (MacroCurve* c : {&truth.curves.front(), &run.curves.front()}) c->stages[1].kind = StageKind::oedometric;
   EXPECT_TRUE(std::isnan(score(run, false).ratio_at_6));
+}
+
+/// Two stages of 3 and 4 % are one of 7 %: nothing was compared at 6 %. One that goes back is another test.
+TEST(MaterialModels, ShearInTwoPartsIsComparedAsInOne) {
+  const MaterialVariant variant{"v", {}};
+  const MaterialModel model{.name = "m"};
+  const auto scored = [&](const auto& edit) {
+    VariantResult truth{&variant, "", {}, nullptr};
+    ModelRun run{&model, &truth, {}, "", ""};
+    truth.curves = {preloaded_triaxial(0.01, 0.3)};
+    run.curves = {preloaded_triaxial(0.012, 0.1)};
+    for (MacroCurve* c : {&truth.curves.front(), &run.curves.front()}) edit(*c);
+    return score(run, false);
+  };
+  const auto in_parts = [](MacroCurve& c) {
+    c.stages.push_back(c.stages.back());
+    for (std::size_t k = 0; k < c.stage.size(); ++k)
+      if (c.strain[k] > 0.055) c.stage[k] = 2.0;
+  };
+  const ModelScore whole = scored([](MacroCurve&) {});
+  const ModelScore parts = scored(in_parts);
+  EXPECT_EQ(parts.ratio_at_2, whole.ratio_at_2);
+  EXPECT_EQ(parts.ratio_at_6, whole.ratio_at_6);
+  EXPECT_EQ(parts.volume, whole.volume);
+  const ModelScore back = scored([&](MacroCurve& c) {
+    in_parts(c);
+    for (std::size_t k = 0; k < c.stage.size(); ++k)
+      if (c.stage[k] == 2.0) c.strain[k] = c.strain_z[k] = 0.1 - c.strain[k];
+  });
+  EXPECT_EQ(back.ratio_at_2, whole.ratio_at_2);
+  EXPECT_TRUE(std::isnan(back.ratio_at_6));
+  EXPECT_NE(console_summary({back}).find(", q/p at 2 and 6 % "), std::string::npos) << console_summary({back});
+}
+
+/// The report of a run of an earlier version said that the volume of all its models was right, "+0.00 %".
+TEST(MaterialModels, WhatAnEarlierVersionDidNotCompareIsNotDefined) {
+  const auto earlier = record_of<ModelScore>({{"model", "m"}, {"samples", 2}, {"q_over_p_at_2", 0.1}});
+  EXPECT_EQ(earlier.samples, 2);
+  EXPECT_EQ(earlier.ratio_at_2, 0.1);
+  EXPECT_TRUE(std::isnan(earlier.volume));
+  EXPECT_EQ(volume_text(earlier), "");
 }
 
 /// A mean field was "- times faster".

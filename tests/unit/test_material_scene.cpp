@@ -139,6 +139,31 @@ modulus_stress = [5e3, 6e3]
   EXPECT_EQ(interval(1, 1), 3e3);
 }
 
+/// A stress is compared with E of the grains that are under it: with variants that is theirs.
+TEST(MaterialScene, StressesAreComparedWithEOfTheVariant) {
+  const auto refusal = [](const std::string& stage, const std::string& material, const std::string& variants) {
+    const std::string head = "kind = \"material\"\n[grains]\ncount = 800\nratio = 3\n" + material;
+    try {
+      (void)read_material_scene(
+          Scene::parse(head + stage + "kind = \"oedometric\"\nstress = \"5 MPa\"\n" + variants, "s"));
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  const std::string variant = "[[variant]]\nname = \"a\"\n";
+  const std::string glass = variant + "E = \"70 GPa\"\n";
+  const std::string powder = "[[variant]]\nname = \"b\"\nE = \"1 MPa\"\n";
+  for (const std::string stage : {"[[stage]]\n", "[[loading]]\nname = \"l\"\n[[loading.stage]]\n"}) {
+    EXPECT_EQ(refusal(stage, "", glass), "");
+    EXPECT_EQ(refusal(stage, "[material]\nE = \"70 GPa\"\n", ""), "");
+    EXPECT_NE(refusal(stage, "", "").find("is 10 times E = 500 kPa"), std::string::npos);
+    EXPECT_NE(refusal(stage, "", variant).find("is 10 times E = 500 kPa"), std::string::npos);
+    const std::string one = refusal(stage, "[material]\nE = \"70 GPa\"\n", variant + powder);
+    EXPECT_NE(one.find("is 5 times E = 1 MPa"), std::string::npos) << one;
+  }
+}
+
 /// Too few grains are refused before the run, by the key of this kind, with the number that would do.
 TEST(MaterialScene, RefusesCellsWithoutRoomForImages) {
   const auto refusal = [](const std::string& count) -> std::string {

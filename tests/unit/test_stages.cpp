@@ -255,6 +255,10 @@ TEST(Stages, StressesAboveEAreRefused) {
   EXPECT_EQ(refusal(sides + in_moduli(0.5)), "");
   EXPECT_NE(refusal(sides + in_moduli(2.0)).find("lateral_stress"), std::string::npos);
   EXPECT_NE(refusal("kind = \"axes\"\nstress_y = " + in_moduli(2.0)).find("stress_y"), std::string::npos);
+  // Of a cycle it is the unloading that goes to a stress.
+  const std::string cycles = "kind = \"oedometric\"\nstrain = 0.05\n[[stage]]\nkind = \"cycles\"\ncount = 2\nstress = ";
+  EXPECT_EQ(refusal(cycles + in_moduli(0.5)), "");
+  EXPECT_NE(refusal(cycles + in_moduli(2.0)).find("is 2 times E"), std::string::npos);
 }
 
 /// Where a stage begins is known only in the run if the one before it goes by strain.

@@ -385,15 +385,16 @@ void require_below_modulus(const SceneTable& t, const MacroStage& stage, double 
   }
 }
 
-/// `holder`: where E may have been refused, with which stresses then cannot be compared.
-void take_stages(const SceneTable& holder, const std::vector<SceneTable>& tables, MacroSpec& spec) {
-  const bool modulus_is_known = !holder.has_errors();
+/// `modulus_is_known`: whether stresses can be compared with E of `spec`.
+void take_stages(const std::vector<SceneTable>& tables, MacroSpec& spec, bool modulus_is_known) {
   std::vector<MacroStage> stages;
   StageReader reader(spec, stages);
   for (const SceneTable& t : tables)
     t.section([&] {
+      const std::size_t before = stages.size();
       reader.read(t);
-      if (modulus_is_known && !stages.empty()) require_below_modulus(t, stages.back(), spec.youngs_modulus);
+      for (std::size_t k = before; modulus_is_known && k < stages.size(); ++k)
+        require_below_modulus(t, stages[k], spec.youngs_modulus);
     });
   spec.test = MacroTest::stages;
   spec.stages = std::move(stages);
@@ -410,13 +411,13 @@ bool each_says(const std::vector<SceneTable>& stages, const std::string& key) {
 
 }  // namespace
 
-void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& spec) {
+void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& spec, bool modulus_is_known) {
   const std::vector<SceneTable> tables = holder.tables(
       {"stage",
        "one loading of a test, in this order; such tables replace `test`, `strain`, `preload` and `preload_steps`"});
   if (tables.empty()) return;
   macro.refuse({"test", "strain", "preload", "preload_steps"}, "goes without [[stage]], which says the whole test");
-  take_stages(holder, tables, spec);
+  take_stages(tables, spec, modulus_is_known && !holder.has_errors());
 }
 
 void read_part_stages(const SceneTable& common, const SceneTable& t, MacroSpec& spec) {
@@ -428,7 +429,7 @@ void read_part_stages(const SceneTable& common, const SceneTable& t, MacroSpec& 
       t.add_error(key,
                   "belongs to a test, and the common [[stage]] say what is tested: give test too, which takes their "
                   "place, or [[stage]] of its own");
-  take_stages(common, stages, spec);
+  take_stages(stages, spec, !common.has_errors() && !t.has_errors());
 }
 
 void refuse_idle_test_keys(const SceneTable& t, const SceneTable& stages, const std::vector<const MacroSpec*>& tests) {

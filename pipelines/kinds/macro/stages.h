@@ -15,8 +15,9 @@ inline constexpr double kLeastStrain = 1e-9;
 
 /// Reads the tables `stage` of `holder`; where there are any they are the test, in place of what `spec` had, and
 /// `macro`, the table that says everything else of the scene, must not name one. Steps, increments and tolerance of a
-/// stage are those of `spec` unless it says them. Throws InputError.
-void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& spec);
+/// stage are those of `spec` unless it says them. `modulus_is_known`: whether E of `spec` is that of the grains, above
+/// which no stress may be; false where parts of the scene may have another one. Throws InputError.
+void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& spec, bool modulus_is_known = true);
 
 /// Key `modulus_stress`: the two stresses [Pa] between which moduli are taken; as they were where the table has none.
 void read_modulus_stress(const SceneTable& t, std::array<double, 2>& interval);

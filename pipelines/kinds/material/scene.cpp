@@ -158,7 +158,7 @@ class Loadings {
       root.add_error("stage", "goes without [[loading]]: give [[loading.stage]], or a loading of its own");
     for (const SceneTable& t : tables_) {
       MacroSpec spec = base;
-      t.section([&] { read(t, spec); });
+      t.section([&] { read(t, spec, false); });
       names_.push_back(t.text("name", ""));
       if (std::count(names_.begin(), names_.end(), names_.back()) > 1) t.add_error("name", "is used twice");
     }
@@ -226,7 +226,7 @@ class Loadings {
     std::vector<MaterialVariant> out;
     for (const std::size_t k : numbers) {
       MaterialVariant one{plain ? names_[k] : v.name + "-" + names_[k], v.setup, !out.empty(), v.name, names_[k]};
-      read(tables_[k], one.setup.spec);
+      read(tables_[k], one.setup.spec, true);
       out.push_back(std::move(one));
     }
     return out;
@@ -244,10 +244,11 @@ class Loadings {
           variants[v].add_error(key, "each [[loading]] of this variant gives its own");
   }
 
-  static void read(const SceneTable& t, MacroSpec& spec) {
+  /// `of_variant`: whether `spec` is that of a variant, whose E may be another than that of [material].
+  static void read(const SceneTable& t, MacroSpec& spec, bool of_variant) {
     (void)read_variant_name(t);
     read_test(t, spec);
-    read_stages(t, t, spec);
+    read_stages(t, t, spec, of_variant);
   }
 
   std::vector<SceneTable> tables_;
@@ -347,7 +348,7 @@ MaterialScene read_material(const SceneTable& root, bool alone) {
   const SceneTable packing = root.table_or_empty("packing");
   read_density_target(packing, base, alone);
   read_splits(grains, base.spec);
-  read_stages(root, root.table_or_empty("test"), base.spec);
+  read_stages(root, root.table_or_empty("test"), base.spec, false);
   base.samples = root.count(kSamplesKey, 1, 10000, base.samples);
   base.kept_states = read_kept_states(root);
   const SceneTable equation = root.table_or_empty(
@@ -376,6 +377,7 @@ MaterialScene read_material(const SceneTable& root, bool alone) {
     if (!root.has_errors()) require_room(t, out, first);
   }
   if (variants.empty()) {
+    read_stages(root, root.table_or_empty("test"), base.spec);  // now that E is known to be that of all
     require_density(packing, base);
     if (!root.has_errors()) require_material_memory(grains, base);
     add({kMaterialEngine, base}, loadings.all(), true);

@@ -117,7 +117,7 @@ MemoryStrains read_memory(const SceneTable& law, Preparation preparation, Materi
   if (preparation == Preparation::dense) law.refuse({"dense"}, "all fines are prepared so");
   out.dense = law.flag({"dense",
                         "with `memory`: whether fines of preparation `\"dense\"` are tested too, without which "
-                        "A = 1 and c = 2/3 are taken"},
+                        "A = 1, c = 2/3 and lambda = 0 are taken"},
                        preparation != Preparation::dense);
   const Range range{0.0, 0.3, true, false};
   s.isotropic = law.number({"isotropic_strain",

@@ -130,16 +130,31 @@ double error_at(const std::vector<MacroCurve>& curves, std::size_t k) {
   return m.error / m.mean;
 }
 
-/// Points of the first stage that shears by straining z, with the one at which it begins; empty without any.
+/// Points of a stage without the one at which it begins.
+std::vector<std::size_t> points_of_stage(const MacroCurve& c, std::size_t stage) {
+  std::vector<std::size_t> out;
+  for (std::size_t k = 1; k < std::min(c.stage.size(), c.strain_z.size()); ++k)
+    if (c.stage[k] == static_cast<double>(stage)) out.push_back(k);
+  return out;
+}
+
+/// Points of the first stage that shears by straining z, with the one at which it begins, and of the stages of its kind
+/// behind it that go on the same way: a test may be said in parts. Empty without any.
 std::vector<std::size_t> sheared_points(const MacroCurve& c) {
   std::vector<std::size_t> out;
-  const auto stage =
+  const auto first =
       std::ranges::find_if(c.stages, [](const StageRecord& s) { return shears(s.kind) && !slides(s.kind); });
-  const auto wanted = static_cast<double>(stage - c.stages.begin());
-  for (std::size_t k = 1; stage != c.stages.end() && k < c.stage.size(); ++k) {
-    if (c.stage[k] != wanted) continue;
-    if (out.empty()) out.push_back(k - 1);
-    out.push_back(k);
+  bool shortens = true;
+  for (auto stage = first; stage != c.stages.end() && stage->kind == first->kind; ++stage) {
+    const std::vector<std::size_t> own = points_of_stage(c, static_cast<std::size_t>(stage - c.stages.begin()));
+    if (own.empty()) break;
+    const bool this_way = c.strain_z[own.back()] > c.strain_z[own.front() - 1];
+    if (out.empty()) {
+      out.push_back(own.front() - 1);
+      shortens = this_way;
+    }
+    if (this_way != shortens) break;
+    out.insert(out.end(), own.begin(), own.end());
   }
   return out;
 }
@@ -272,10 +287,6 @@ ModelScore score(const ModelRun& run, bool blind) {
                .kind = run.model->kind,
                .blind = blind,
                .remark = run.refusal};
-  for (double* value : {&s.axial, &s.axial_error, &s.lateral, &s.lateral_error, &s.axial_at_2, &s.axial_at_end,
-                        &s.ratio_at_2, &s.ratio_at_6, &s.volume, &s.unloading, &s.truth_error, &s.band, &s.inside,
-                        &s.evaluations, &s.seconds, &s.seconds_all})
-    *value = kNaN;
   const Pairs pairs = pairs_of(run, s.remark);
   if (pairs.truth.empty()) return s;
   const std::vector<MacroCurve>& truth = pairs.truth;
@@ -358,7 +369,7 @@ std::string console_summary(const std::vector<ModelScore>& scores) {
     }
     text += fmt::format("axial {}, lateral {}, at 2 % {}, at the end {}", percent(s.axial), percent(s.lateral),
                         percent(s.axial_at_2), percent(s.axial_at_end));
-    if (std::isfinite(s.ratio_at_6))
+    if (std::isfinite(s.ratio_at_2) || std::isfinite(s.ratio_at_6))
       text += fmt::format(", q/p at 2 and 6 % {} and {}", percent(s.ratio_at_2), percent(s.ratio_at_6));
     if (std::isfinite(s.volume)) text += ", volume lost " + volume_text(s) + " of the volume";
     if (std::isfinite(s.unloading)) text += ", unloading modulus " + percent(s.unloading);

@@ -1,12 +1,14 @@
 // What models of materials came to: summary.json of their run, which the report reads back.
 #pragma once
 
+#include "common/core/limits.h"
 #include "pipelines/kinds/material/summary.h"
 #include "pipelines/kinds/material_models/scene.h"
 
 namespace softgrain {
 
-/// One model of one variant: errors against the mean of the truth, what it cost beside it. NaN: not defined.
+/// One model of one variant: errors against the mean of the truth, what it cost beside it. NaN: not defined, or of a
+/// version that did not compare it.
 struct ModelScore {
   std::string variant;
   std::string model;
@@ -15,22 +17,22 @@ struct ModelScore {
   std::string remark;
   std::int64_t samples = 0;
   std::int64_t bodies = 0;
-  double axial = 0.0;  ///< square root of sum (model - truth)^2/sum truth^2 of points beyond 1 % strain
-  double axial_error = 0.0;
-  double lateral = 0.0;
-  double lateral_error = 0.0;
-  double axial_at_2 = 0.0;  ///< model/truth - 1 at 2 % strain
-  double axial_at_end = 0.0;
-  double ratio_at_2 = 0.0;  ///< model/truth - 1 at 2 % strain of the first stage that shears
-  double ratio_at_6 = 0.0;
-  double volume = 0.0;  ///< loss of volume in that stage where it is triaxial, model - truth
-  double unloading = 0.0;
-  double truth_error = 0.0;
-  double band = 0.0;
-  double inside = 0.0;
-  double evaluations = 0.0;  ///< truth over model: of contacts, or faces of cells
-  double seconds = 0.0;      ///< truth over model, tests alone
-  double seconds_all = 0.0;  ///< truth over model, preparations included
+  double axial = kNaN;  ///< square root of sum (model - truth)^2/sum truth^2 of points beyond 1 % strain
+  double axial_error = kNaN;
+  double lateral = kNaN;
+  double lateral_error = kNaN;
+  double axial_at_2 = kNaN;  ///< model/truth - 1 at 2 % strain
+  double axial_at_end = kNaN;
+  double ratio_at_2 = kNaN;  ///< model/truth - 1 at 2 % strain of the first stage that shears
+  double ratio_at_6 = kNaN;
+  double volume = kNaN;  ///< loss of volume in that stage where it is triaxial, model - truth
+  double unloading = kNaN;
+  double truth_error = kNaN;
+  double band = kNaN;
+  double inside = kNaN;
+  double evaluations = kNaN;  ///< truth over model: of contacts, or faces of cells
+  double seconds = kNaN;      ///< truth over model, tests alone
+  double seconds_all = kNaN;  ///< truth over model, preparations included
 };
 
 /// ModelScore::volume in percent of the volume; empty where it is not defined.
