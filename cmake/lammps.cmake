@@ -4,6 +4,10 @@
 set(SOFTGRAIN_LAMMPS AUTO CACHE STRING "Build softgrain-lammps (LAMMPS and MPI): AUTO, ON or OFF")
 set_property(CACHE SOFTGRAIN_LAMMPS PROPERTY STRINGS AUTO ON OFF)
 set(softgrain_lammps_built OFF)
+# The sources of common that the styles take along stay single: whoever links both takes each once. Without LAMMPS too,
+# so that the same sources are compiled together on every machine (tests/install/test_same_units.sh).
+set(lammps_common common/contact/law_file_read.cpp common/contact/law_file_write.cpp common/io/toml_parse.cpp)
+set_source_files_properties(${lammps_common} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 if(NOT SOFTGRAIN_LAMMPS)
   return()
 endif()
@@ -35,9 +39,6 @@ set(softgrain_lammps_built ON)
 
 file(GLOB lammps_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/macrosim/lammps/*.cpp)
 list(FILTER lammps_sources EXCLUDE REGEX "/main\\.cpp$")
-# The sources of common that the styles take along stay single: whoever links both takes each once.
-set(lammps_common common/contact/law_file_read.cpp common/contact/law_file_write.cpp common/io/toml_parse.cpp)
-set_source_files_properties(${lammps_common} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 add_library(softgrain_lammps_styles STATIC ${lammps_sources} ${lammps_common})
 # The shim for fmt must come before every other folder; headers of LAMMPS are not ours to warn about.
 target_include_directories(softgrain_lammps_styles SYSTEM BEFORE PUBLIC ${PROJECT_SOURCE_DIR}/macrosim/lammps/fmt_shim)
