@@ -45,7 +45,7 @@ struct WeightedCurve {
 
 /// The best offset and scale at this threshold and exponent; without an offset where it must be 0.
 OffsetLaw best_at(const WeightedCurve& curve, double delta, double exponent, bool with_offset) {
-  double w = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+  double w = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
   for (std::size_t k = 0; k < curve.points.size(); ++k) {
     const ForcePoint& p = curve.points[k];
     const double g = p.delta > delta ? std::pow(p.delta, exponent) - std::pow(delta, exponent) : 0.0;
@@ -55,7 +55,6 @@ OffsetLaw best_at(const WeightedCurve& curve, double delta, double exponent, boo
     y += ww * p.force;
     xx += ww * g * g;
     xy += ww * g * p.force;
-    yy += ww * p.force * p.force;
   }
   OffsetLaw law;
   const double determinant = with_offset ? w * xx - x * x : xx;
