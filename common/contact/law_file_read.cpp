@@ -70,8 +70,8 @@ class Reader {
   Enum word(const char* key) {
     if (const auto value = parse_enum<Enum>(text(key))) return *value;
     std::string known;  // no fmt: LAMMPS is built with this file
-    for (const EnumName<Enum>& name : enum_names<Enum>)
-      known += (known.empty() ? "" : &name == &enum_names<Enum>.back() ? " or " : ", ") + std::string(name.text);
+    for (const EnumName<Enum>& one : enum_names<Enum>)
+      known += (known.empty() ? "" : &one == &enum_names<Enum>.back() ? " or " : ", ") + std::string(one.text);
     fail(key, "must be " + known);
   }
   MonotoneCurve curve(const char* points, const char* key) {
