@@ -20,21 +20,31 @@ void* aligned(std::size_t bytes) {
   return std::aligned_alloc(kAlignment, (bytes + kAlignment - 1) / kAlignment * kAlignment);
 }
 
+void* aligned_zeros(std::size_t count, std::size_t size) {
+  void* const memory = aligned(count * size);
+  return memory == nullptr ? nullptr : std::memset(memory, 0, count * size);
+}
+
+void* aligned_again(void* old, std::size_t bytes) {
+  void* const memory = aligned(bytes);
+  if (memory == nullptr || old == nullptr) return memory;
+  std::memcpy(memory, old, std::min(bytes, ::malloc_usable_size(old)));
+  std::free(old);
+  return memory;
+}
+
 /// Vector loops treat the first elements up to an aligned address apart, so that sums depend on where memory happens
 /// to lie, which differs from thread to thread: the library gets aligned memory only.
 void align_memory() {
+#if SUITESPARSE_MAIN_VERSION >= 6  // Ubuntu 24.04, Debian 13; Debian 12 has version 5
+  SuiteSparse_config_malloc_func_set(aligned);
+  SuiteSparse_config_calloc_func_set(aligned_zeros);
+  SuiteSparse_config_realloc_func_set(aligned_again);
+#else
   SuiteSparse_config.malloc_func = aligned;
-  SuiteSparse_config.calloc_func = [](std::size_t count, std::size_t size) {
-    void* const memory = aligned(count * size);
-    return memory == nullptr ? nullptr : std::memset(memory, 0, count * size);
-  };
-  SuiteSparse_config.realloc_func = [](void* old, std::size_t bytes) {
-    void* const memory = aligned(bytes);
-    if (memory == nullptr || old == nullptr) return memory;
-    std::memcpy(memory, old, std::min(bytes, ::malloc_usable_size(old)));
-    std::free(old);
-    return memory;
-  };
+  SuiteSparse_config.calloc_func = aligned_zeros;
+  SuiteSparse_config.realloc_func = aligned_again;
+#endif
 }
 
 /// A BLAS with threads of its own splits its sums by how many of them are free at the moment, and the last bits follow.
@@ -135,8 +145,9 @@ void TriangularFactor::solve_normal(std::vector<double>& x) const {
 TriangularFactor sparse_qr(const SparseEntries& matrix, double tolerance) {
   Workspace work;
   load(matrix, work);
-  const std::int64_t rank =
-      SuiteSparseQR<double>(SPQR_ORDERING_DEFAULT, tolerance, 0, work.matrix, &work.r, &work.order, work.common());
+  constexpr SuiteSparse_long kNoMoreRows = 0;  // of R than the rank
+  const std::int64_t rank = SuiteSparseQR<double>(SPQR_ORDERING_DEFAULT, tolerance, kNoMoreRows, work.matrix, &work.r,
+                                                  &work.order, work.common());
   work.check();
   TriangularFactor out = leading(work, rank);
   out.dropped = work.common()->SPQR_norm_E_fro;
