@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# The first command of the README on a release of Debian or Ubuntu, from its base system and the last commit of this tree.
+# By hand: it needs root, debootstrap, the network, 3 GB and a quarter of an hour.
+#   on_release.sh bookworm http://deb.debian.org/debian FOLDER
+#   on_release.sh noble http://archive.ubuntu.com/ubuntu FOLDER
+set -euo pipefail
+
+suite=$1 mirror=$2
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+mkdir -p "$3" && folder=$(readlink -f "$3")
+components=main
+[[ $mirror == *ubuntu* ]] && components=main,universe
+
+[[ -e $folder/etc/debian_version ]] || debootstrap --variant=minbase --components="$components" "$suite" "$folder" "$mirror"
+cp /etc/resolv.conf "$folder/etc/"
+rm -rf "$folder/root/softgrain"
+git clone -q "$root" "$folder/root/softgrain"
+# As a user would have it after git clone; nothing else is there that the list of packages does not bring.
+for of in proc dev; do mount --bind "/$of" "$folder/$of"; done
+trap 'umount "$folder/proc" "$folder/dev"' EXIT
+chroot "$folder" bash -c 'cd /root/softgrain && time ./softgrain run pipelines/quickstart.toml </dev/null'
