@@ -13,7 +13,7 @@ target=$(basename "$program")
 case $target in
   fuzz_scene) cp "$source"/pipelines/*.toml "$source"/tests/reference/scenes/*.toml "$source"/tests/bench/scenes/*.toml seeds ;;
   fuzz_law) # of the library as many materials as it needs to answer
-    cp "$source"/tests/fuzz/seeds/law_*.toml "$source"/results/material_law/cell_law_memory.toml seeds
+    cp "$source"/tests/fuzz/seeds/law_*.toml "$source"/results/material_law/cell_law_memory_lambda.toml seeds
     awk '/^\[\[material\]\]/ { n++ } n < 8' "$source/results/law_library/library.toml" > seeds/library.toml ;;
   fuzz_particles) # the first byte says whether zlib packs the rest, the second how much is cut off
     printf ' 2 1 1 1\n0 0 1 0.01\n0.1 0.2 0.3 2e-3\n' > seeds/plain
