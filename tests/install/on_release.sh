@@ -8,14 +8,15 @@ set -euo pipefail
 suite=$1 mirror=$2
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 mkdir -p "$3" && folder=$(readlink -f "$3")
+[[ $folder != / ]]
 components=main
 [[ $mirror == *ubuntu* ]] && components=main,universe
 
 [[ -e $folder/etc/debian_version ]] || debootstrap --variant=minbase --components="$components" "$suite" "$folder" "$mirror"
 cp /etc/resolv.conf "$folder/etc/"
 rm -rf "$folder/root/softgrain"
+# What else the program needs the list of packages has to bring.
 git clone -q "$root" "$folder/root/softgrain"
-# As a user would have it after git clone; nothing else is there that the list of packages does not bring.
 for of in proc dev; do mount --bind "/$of" "$folder/$of"; done
 trap 'umount "$folder/proc" "$folder/dev"' EXIT
 chroot "$folder" bash -c 'cd /root/softgrain && time ./softgrain run pipelines/quickstart.toml </dev/null'

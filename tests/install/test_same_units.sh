@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The same sources are compiled together on every machine: without LAMMPS, and by another compiler. Names of one file may be
-# those of another only where the two are never in one unit; a unit that a machine alone has is one that nobody compiled.
+# The same sources are compiled together on every machine: without LAMMPS, and by another compiler. Files that use the same
+# names clash in one unit; if a machine puts other files together, nobody has tried whether they clash.
 #   test_same_units.sh CMAKE BUILD ROOT CXX...    BUILD: a finished build of ROOT; CXX: compilers, those that are there count
 set -euo pipefail
 
