@@ -13,6 +13,7 @@
 #include "error.h"
 #include "force.h"
 #include "macrosim/lammps/fix_softgrain_wall.h"
+#include "macrosim/lammps/forward_values.h"
 #include "macrosim/lammps/pair_softgrain.h"
 #include "macrosim/lammps/words.h"
 #include "update.h"
@@ -180,7 +181,7 @@ void ComputeSoftgrainContacts::count_rattlers() {
       }
     grain_values_[0] += found;
     MPI_Allreduce(&found, &more, 1, MPI_INT, MPI_MAX, world);
-    if (more > 0) comm->forward_comm_compute(this);
+    if (more > 0) bridge::forward_values(*comm, this);
   }
 }
 

@@ -17,6 +17,7 @@
 #include "macrosim/lammps/fix_softgrain_history.h"
 #include "macrosim/lammps/fix_softgrain_relax.h"
 #include "macrosim/lammps/fix_softgrain_wall.h"
+#include "macrosim/lammps/forward_values.h"
 #include "macrosim/lammps/words.h"
 #include "memory.h"
 #include "modify.h"
@@ -159,7 +160,7 @@ void PairSoftgrain::coeff(int count, char** words) {
 }
 
 void PairSoftgrain::init_style() {
-  if (!atom->sphere_flag || atom->rmass == nullptr)
+  if (!atom->radius_flag || !atom->omega_flag || atom->rmass == nullptr)
     error->all(FLERR, std::string("pair style softgrain needs atom_style sphere"));
   if (force->newton_pair) error->all(FLERR, std::string("pair style softgrain needs newton off"));
   if (comm->ghost_velocity == 0) error->all(FLERR, std::string("pair style softgrain needs comm_modify vel yes"));
@@ -256,7 +257,7 @@ void PairSoftgrain::particle_pass() {
   for (const FixSoftgrainWall* wall : walls) wall->add_shares(b, now);
   bridge::over_sections(store, laws, [&](const auto& law, const PairRange& range) { close_sums(source, law, range); });
   for (const FixSoftgrainWall* wall : walls) wall->close_sums(b, now);
-  comm->forward_comm_pair(this);
+  bridge::forward_values(*comm, this);
 }
 
 void PairSoftgrain::compute(int eflag, int vflag) {
