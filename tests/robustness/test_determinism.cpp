@@ -118,7 +118,7 @@ std::vector<SmallForm> small_forms() {
               "multi_contact.orientations=2", R"(plan=[{configuration="opposite-plane",depth=0.6,packings=5}])"}}),
        0, false},
       {"law_library.toml", "run",
-       with(multi_contact, {{"configuration=[" + plane + "," + two + "," + soft + "]", "calibrate.replicates=2"}}), 0,
+       with(multi_contact, {{"configuration=[" + plane + "," + two + "," + soft + "]", "calibrate.replicates=2"}}), 3,
        false},
       {"macro_vs_resolved.toml", "run",
        with(
