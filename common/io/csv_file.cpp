@@ -226,7 +226,9 @@ void CsvFile::find_header(const std::string& line, int number) {
 /// Rows that were put above their header would else be taken for titles and be missing.
 void CsvFile::refuse_rows_above() const {
   const auto is_number = [](const std::string& cell) {
-    return cell.find_first_not_of("0123456789.,+-") == std::string::npos && cell.find_first_of("0123456789") == 0;
+    const auto is_mark = [](char c) { return c == '.' || c == ','; };
+    return cell.find_first_not_of("0123456789.,") == std::string::npos && !is_mark(cell.front()) &&
+           std::ranges::count_if(cell, is_mark) <= 1;  // a date has two
   };
   for (const auto& [number, line] : above_) {
     std::vector<std::string> cells = split_with_inches(line, separator_);

@@ -57,8 +57,8 @@ class CsvFile {
   /// Reads a file in any encoding that utf8_of() knows, with any line ends. The separator is what a first line "sep=;"
   /// says, else the first of ";", tab, "," that the header has. With another separator than the comma, a comma in a
   /// number is its decimal mark; with tabs, "1,016" is refused unless another cell has a decimal comma for certain.
-  /// Cells may stand in double quotes. Empty cells at the end of a line and empty lines
-  /// count for nothing. Throws InputError (no header, a row of another length), IoError.
+  /// Cells may stand in double quotes. Empty cells at the end of a line and empty lines count for nothing. Throws
+  /// InputError (no header, a row of another length), IoError.
   static CsvFile read(const std::string& path);
   /// Reads a table from a text in the same way; `path` stands for the file in messages, `header` for what its first
   /// line may look like.
@@ -104,7 +104,8 @@ class CsvFile {
   void require_known_columns(const CsvNames& known, const std::string& what) const;
 
   /// SI value of a cell in the unit of its column; a number with a unit of its own is fine too, and so are percents of
-  /// a number without unit. Empty cells, "-", "nan" and "NA" give nothing. Throws InputError naming line and column.
+  /// a number without unit. Empty cells, "-", "nan" and "NA" give nothing. Throws InputError naming line and column,
+  /// for numbers too whose mark may be decimal or between thousands.
   [[nodiscard]] std::optional<double> number(const CsvRow& row, std::size_t column, Unit unit) const;
 
   /// Throws InputError at the header unless the unit of the column is one of `unit` (Unit::none: none, "1", "-" or
@@ -163,8 +164,6 @@ bool is_missing(const std::string& cell);
 /// "phi".
 std::string folded(std::string text);
 
-/// "1.250", "12.345.678" of this mark: groups of three digits behind one to three others, the first not 0.
-bool in_thousands(const std::string& number, char mark);
 /// What to say of such a number where nothing tells the mark.
 std::string two_readings(const std::string& number);
 /// Marks of the numbers of these cells.

@@ -20,8 +20,7 @@ std::size_t digits_from(const std::string& text, std::size_t at) {
   return end - at;
 }
 
-}  // namespace
-
+/// "1.250", "12.345.678" of this mark: groups of three digits behind one to three others, the first not 0.
 bool in_thousands(const std::string& number, char mark) {
   std::size_t at = digits_from(number, 0);
   if (at == 0 || at > 3 || number[0] == '0' || at == number.size()) return false;
@@ -29,8 +28,6 @@ bool in_thousands(const std::string& number, char mark) {
     if (number[at] != mark || digits_from(number, at + 1) != 3) return false;
   return true;
 }
-
-namespace {
 
 /// Length of a blank or an apostrophe between thousands at `at`; 0: none.
 std::size_t thousands_gap(const std::string& text, std::size_t begin, std::size_t at) {

@@ -134,7 +134,7 @@ TEST(SieveFiles, RowsAboveTheHeaderAreRefused) {
   const std::string table = "opening [mm];passing [%]\n4;100\n2;50\n1;0\n";
   EXPECT_NE(complaint_of("8;100\n" + table).find("s.csv:1: a row of numbers above the header (line 2)"),
             std::string::npos);
-  EXPECT_EQ(complaint_of("Sample;12\n30.11.2026\n\n" + table), "");
+  EXPECT_EQ(complaint_of("Sample;12\n30.11.2026;12\n\n" + table), "") << "a date and the number of a sample";
 }
 
 /// The openings show the mark of the masses.
