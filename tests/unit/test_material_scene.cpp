@@ -161,7 +161,21 @@ TEST(MaterialScene, StressesAreComparedWithEOfTheVariant) {
     EXPECT_NE(refusal(stage, "", variant).find("is 10 times E = 500 kPa"), std::string::npos);
     const std::string one = refusal(stage, "[material]\nE = \"70 GPa\"\n", variant + powder);
     EXPECT_NE(one.find("is 5 times E = 1 MPa"), std::string::npos) << one;
+    // What is wrong elsewhere hides no stress, and where E was refused stresses are not compared with another one.
+    const std::string wrong = "[packing]\npreparation = \"fats\"\n";
+    for (const std::string& variants : {std::string(), variant}) {
+      if (stage.starts_with("[[loading]]") && !variants.empty()) continue;  // read once all else is right
+      const std::string both = refusal(stage, wrong, variants);
+      EXPECT_NE(both.find("fats"), std::string::npos) << both;
+      EXPECT_NE(both.find("is 10 times E = 500 kPa"), std::string::npos) << both;
+    }
+    const std::string no_modulus = refusal(stage, "[material]\nE = \"70 GPaa\"\n", variant);
+    EXPECT_NE(no_modulus.find("GPaa"), std::string::npos) << no_modulus;
+    EXPECT_EQ(no_modulus.find("times E"), std::string::npos) << no_modulus;
   }
+  const std::string own = refusal(variant + "[[variant.stage]]\n", "[material]\nE = \"70 GPaa\"\n", "");
+  EXPECT_NE(own.find("GPaa"), std::string::npos) << own;
+  EXPECT_EQ(own.find("times E"), std::string::npos) << own;
 }
 
 /// Too few grains are refused before the run, by the key of this kind, with the number that would do.

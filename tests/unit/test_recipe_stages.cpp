@@ -69,6 +69,9 @@ TEST(RecipeStageScene, AllPackingsGoThroughTheStagesAndTheFinesAreShearedAtTheir
 
 TEST(RecipeStageScene, StagesThatCannotBeAreRefused) {
   expect_part(stage_refusal("[[stage]]\nkind = \"oedometric\"\nstress = \"2 GPa\"\n"), "allowed: up to 700 MPa");
+  expect_part(
+      stage_refusal("[[stage]]\nkind = \"oedometric\"\nstress = \"77 GPa\"\n", "start_pressure = \"50 kPaa\"\n"),
+      "is 1.1 times E = 70 GPa");
   expect_part(stage_refusal("[[stage]]\nkind = \"oedometric\"\nstress = \"20 kPa\"\n"),
               "must be above the 50 kPa at which the preparation ends");
   expect_part(stage_refusal(kLoad, "start_pressure = 1e-4\n"), "must be above the 7 MPa");

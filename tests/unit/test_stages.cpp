@@ -22,7 +22,7 @@ MacroSpec read(const std::string& stages, const std::string& macro = "", Boundar
     spec.steps = 7;
     spec.boundary = boundary;
     for (const char* key : {"test", "strain", "preload", "preload_steps"}) (void)table.has(key);
-    read_stages(root, table, spec);
+    read_stages(root, table, spec, true);
     return spec;
   });
 }

@@ -149,7 +149,7 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
                    "goes without: the materials of all bodies are those of the law, which was measured with them");
   const SceneTable macro = root.table({"macro", "solid grains and soft particles, their preparation and their test"});
   out.setup = read_macro_setup(macro, out.spec);
-  read_stages(root, macro, out.setup.spec);
+  read_stages(root, macro, out.setup.spec, !root.has_errors());
   refuse_idle_test_keys(macro, root, {&out.setup.spec});
   if (cells != nullptr) {
     read_cells(root, macro, *cells, out.setup);

@@ -417,19 +417,19 @@ void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& s
        "one loading of a test, in this order; such tables replace `test`, `strain`, `preload` and `preload_steps`"});
   if (tables.empty()) return;
   macro.refuse({"test", "strain", "preload", "preload_steps"}, "goes without [[stage]], which says the whole test");
-  take_stages(tables, spec, modulus_is_known && !holder.has_errors());
+  take_stages(tables, spec, modulus_is_known);
 }
 
-void read_part_stages(const SceneTable& common, const SceneTable& t, MacroSpec& spec) {
+void read_part_stages(const SceneTable& common, const SceneTable& t, MacroSpec& spec, bool modulus_is_known) {
   const std::vector<SceneTable> stages = common.tables("stage");
   if (t.has("test")) spec.stages.clear();
-  if (t.has("stage") || t.has("test") || stages.empty()) return read_stages(t, t, spec);
+  if (t.has("stage") || t.has("test") || stages.empty()) return read_stages(t, t, spec, modulus_is_known);
   for (const char* key : {"strain", "preload", "preload_steps"})
     if (t.has(key))
       t.add_error(key,
                   "belongs to a test, and the common [[stage]] say what is tested: give test too, which takes their "
                   "place, or [[stage]] of its own");
-  take_stages(stages, spec, !common.has_errors() && !t.has_errors());
+  take_stages(stages, spec, modulus_is_known);
 }
 
 void refuse_idle_test_keys(const SceneTable& t, const SceneTable& stages, const std::vector<const MacroSpec*>& tests) {

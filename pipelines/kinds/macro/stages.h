@@ -16,15 +16,17 @@ inline constexpr double kLeastStrain = 1e-9;
 /// Reads the tables `stage` of `holder`; where there are any they are the test, in place of what `spec` had, and
 /// `macro`, the table that says everything else of the scene, must not name one. Steps, increments and tolerance of a
 /// stage are those of `spec` unless it says them. `modulus_is_known`: whether E of `spec` is that of the grains, above
-/// which no stress may be; false where parts of the scene may have another one. Throws InputError.
-void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& spec, bool modulus_is_known = true);
+/// which no stress may be; false where it was refused, or where parts of the scene may have another one. Throws
+/// InputError.
+void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& spec, bool modulus_is_known);
 
 /// Key `modulus_stress`: the two stresses [Pa] between which moduli are taken; as they were where the table has none.
 void read_modulus_stress(const SceneTable& t, std::array<double, 2>& interval);
 
 /// Reads the stages of a part of a scene ([[variant]], [[scene]]), table `t`. Without stages or a test of its own it
-/// takes those of `common`, with its own steps, increments and tolerance where a stage says none. Throws InputError.
-void read_part_stages(const SceneTable& common, const SceneTable& t, MacroSpec& spec);
+/// takes those of `common`, with its own steps, increments and tolerance where a stage says none. `modulus_is_known`:
+/// as of read_stages(). Throws InputError.
+void read_part_stages(const SceneTable& common, const SceneTable& t, MacroSpec& spec, bool modulus_is_known);
 
 /// Refuses keys of a test in `t` that none of the tests that read them takes: the preload of a test without shear, the
 /// strain of tests in stages, steps that every stage says itself. `stages`: the table whose tables `stage` they are, in

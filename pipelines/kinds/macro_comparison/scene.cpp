@@ -35,7 +35,7 @@ ComparisonScene read_scene(const SceneTable& root, const SceneTable& t, const Ma
                            std::uint64_t seed, bool valid) {
   ComparisonScene scene;
   scene.setup = read_macro_setup(t, base);
-  read_part_stages(root, t, scene.setup.spec);
+  read_part_stages(root, t, scene.setup.spec, !root.has_errors());
   refuse_idle_test_keys(t, t.has("stage") ? t : root, {&scene.setup.spec});
   refuse_idle_keys(t, !scene.setup.twins.empty(), scene.setup.bands > 0);
   refuse_idle_sizes(t, {&scene.setup});
@@ -81,7 +81,7 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
         {"count", "number of different packings inside the soft particles"}, 1, 100000, setup.contents);
     const SceneTable macro = root.table({"macro", "particles, preparation, test and twins that all scenes share"});
     MacroSetup base = read_macro_setup(macro, setup.spec);
-    read_stages(root, macro, base.spec);
+    read_stages(root, macro, base.spec, !root.has_errors());
     require_own_preparation(macro, base);
     if (!macro.has("resolved")) base.twins = {Twin::shelled, Twin::free};
     base.kept_states = read_kept_states(root);

@@ -103,9 +103,11 @@ void require_own_preparation(const SceneTable& t, const MacroSpec& spec) {
 
 }  // namespace
 
-void read_material_tables(const SceneTable& root, MacroSetup& setup, std::vector<Constituent>* constituents) {
+bool read_material_tables(const SceneTable& root, MacroSetup& setup, std::vector<Constituent>* constituents) {
   MacroSpec& spec = setup.spec;
-  read_matter(root.table_or_empty({"material", "elasticity, friction and density of the grains"}), spec);
+  const SceneTable material = root.table_or_empty({"material", "elasticity, friction and density of the grains"});
+  read_matter(material, spec);
+  bool modulus_is_known = !material.has_errors();
   const SceneTable grains =
       root.table({"grains", "sizes of all grains of the material, and their number in each packing"});
   read_grains(grains, spec);
@@ -115,15 +117,17 @@ void read_material_tables(const SceneTable& root, MacroSetup& setup, std::vector
     if (!constituents->empty())
       grains.refuse({"sizes", "exponent", "radius_max", "ratio"},
                     "goes without [[constituent]], which have sizes of their own");
+    if (root.has("constituent")) modulus_is_known = !root.has_errors();
     if (!root.has_errors()) take_materials(root, *constituents, spec);
   }
   spec.protocol = protocol_of(spec.preparation, spec.friction);
   const SceneTable packing = root.table_or_empty({"packing", "preparation of the packings"});
   constexpr double kAnyPressure = 1e13;  // [Pa]: where E was refused no pressure of this world is out of range
-  if (root.has_errors() && packing.is_text("start_pressure")) spec.youngs_modulus = kAnyPressure;
+  if (!modulus_is_known && packing.is_text("start_pressure")) spec.youngs_modulus = kAnyPressure;
   read_finer_preparation(packing, setup);
   require_own_preparation(packing, spec);
   read_test(root.table_or_empty({"test", "test of the prepared packings"}), spec);
+  return modulus_is_known;
 }
 
 Grading sizes_of(const MacroSpec& spec) {
@@ -165,6 +169,14 @@ class Loadings {
   }
 
   [[nodiscard]] bool empty() const { return tables_.empty(); }
+
+  /// Requires stresses of all loadings to be below E of `base`.
+  void require_below_modulus(const MacroSpec& base) const {
+    for (const SceneTable& t : tables_) {
+      MacroSpec spec = base;
+      t.section([&] { read(t, spec, true); });
+    }
+  }
 
   /// Their numbers.
   [[nodiscard]] std::vector<std::size_t> all() const {
@@ -244,11 +256,10 @@ class Loadings {
           variants[v].add_error(key, "each [[loading]] of this variant gives its own");
   }
 
-  /// `of_variant`: whether `spec` is that of a variant, whose E may be another than that of [material].
-  static void read(const SceneTable& t, MacroSpec& spec, bool of_variant) {
+  static void read(const SceneTable& t, MacroSpec& spec, bool modulus_is_known) {
     (void)read_variant_name(t);
     read_test(t, spec);
-    read_stages(t, t, spec, of_variant);
+    read_stages(t, t, spec, modulus_is_known);
   }
 
   std::vector<SceneTable> tables_;
@@ -264,10 +275,16 @@ void read_density_target(const SceneTable& t, MacroSetup& setup, bool densities)
              "goes with kind = \"material\", which says the compaction_mu that meets it");
 }
 
+/// What the tables of the scene say, which its variants read over.
+struct CommonTables {
+  MacroSetup setup;
+  bool modulus_is_known = false;  ///< see read_stages()
+  bool valid = false;             ///< nothing was found wrong in them
+};
+
 /// Keys of all tables of the scene, in one.
-MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const MacroSetup& base, bool valid,
-                             bool alone) {
-  MaterialVariant v{read_variant_name(t), base};
+MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const CommonTables& common, bool alone) {
+  MaterialVariant v{read_variant_name(t), common.setup};
   MacroSpec& spec = v.setup.spec;
   if (alone && !root.tables("constituent").empty())
     t.refuse({"sizes", "exponent", "radius_max", "ratio"},
@@ -275,15 +292,16 @@ MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const 
   if (!spec.grain_materials.empty())
     t.refuse({"E", "nu", "mu", "density"}, "every [[constituent]] has its own, in all variants");
   read_matter(t, spec);
+  const bool modulus_is_known = common.modulus_is_known && !t.has_errors();
   read_grains(t, spec);
   read_finer_preparation(t, v.setup);
   require_own_preparation(t, spec);
   read_density_target(t, v.setup, alone);
   require_density(t, v.setup);
   read_test(t, spec);
-  read_part_stages(root, t, spec);
+  read_part_stages(root, t, spec, modulus_is_known);
   v.setup.samples = t.count(kSamplesKey, 1, 10000, v.setup.samples);
-  if (valid && !t.has_errors()) require_material_memory(t, v.setup);
+  if (common.valid && !t.has_errors()) require_material_memory(t, v.setup);
   return v;
 }
 
@@ -339,7 +357,7 @@ MaterialScene read_material(const SceneTable& root, bool alone) {
   out.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
   MacroSetup base = material_defaults();
   std::vector<Constituent> constituents;
-  read_material_tables(root, base, alone ? &constituents : nullptr);
+  const bool modulus_is_known = read_material_tables(root, base, alone ? &constituents : nullptr);
   const SceneTable grains = root.table("grains");
   if (!constituents.empty() && !root.has_errors()) {
     take_sizes(base.spec, mixed_sizes(constituents));
@@ -357,7 +375,7 @@ MaterialScene read_material(const SceneTable& root, bool alone) {
   out.equation.asked = root.has("equation");
   const Loadings loadings(root, base.spec);
   std::set<std::string> names;
-  const bool valid = !root.has_errors();
+  const CommonTables common{base, modulus_is_known, !root.has_errors()};
   const auto add = [&](const MaterialVariant& v, const std::vector<std::size_t>& under, bool plain) {
     if (loadings.empty()) return out.variants.push_back(v);
     if (root.has_errors()) return;  // nothing comes of it
@@ -369,7 +387,7 @@ MaterialScene read_material(const SceneTable& root, bool alone) {
                    "table names, and `[[variant.stage]]` for its stages"});
   std::vector<std::vector<std::size_t>> under;
   for (const SceneTable& t : variants) {
-    const MaterialVariant v = read_variant(root, t, base, valid, alone);
+    const MaterialVariant v = read_variant(root, t, common, alone);
     if (!names.insert(v.name).second) t.add_error("name", "is used twice");
     const std::size_t first = out.variants.size();
     under.push_back(loadings.of_variant(t));
@@ -377,7 +395,10 @@ MaterialScene read_material(const SceneTable& root, bool alone) {
     if (!root.has_errors()) require_room(t, out, first);
   }
   if (variants.empty()) {
-    read_stages(root, root.table_or_empty("test"), base.spec);  // now that E is known to be that of all
+    if (modulus_is_known) {  // that of all packings
+      read_stages(root, root.table_or_empty("test"), base.spec, true);
+      loadings.require_below_modulus(base.spec);
+    }
     require_density(packing, base);
     if (!root.has_errors()) require_material_memory(grains, base);
     add({kMaterialEngine, base}, loadings.all(), true);

@@ -34,8 +34,9 @@ struct MaterialScene {
 MacroSetup material_defaults();
 
 /// [material], [grains] (which must be there), [packing] and [test], stages apart, over what `setup` has; with
-/// `constituents` [[constituent]] too, whose sizes the caller takes. Throws InputError.
-void read_material_tables(const SceneTable& root, MacroSetup& setup, std::vector<Constituent>* constituents = nullptr);
+/// `constituents` [[constituent]] too, whose sizes the caller takes. Returns whether E of `setup` is what the scene
+/// says: not where it was refused. Throws InputError.
+bool read_material_tables(const SceneTable& root, MacroSetup& setup, std::vector<Constituent>* constituents = nullptr);
 
 /// Sizes of the solid grains, whichever way the spec says them.
 Grading sizes_of(const MacroSpec& spec);

@@ -295,7 +295,7 @@ MaterialLawScene read_material_law_scene(const Scene& scene) {
     out.material.title = root.title();
     out.material.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
     MacroSetup base = material_law_defaults();
-    read_material_tables(root, base);
+    (void)read_material_tables(root, base);
     root.table_or_empty("packing").refuse(kDensityKeys,
                                           "the packings that are measured differ in density, by their sizes: give "
                                           "preparation or compaction_mu; a target goes with kind = \"material\"");

@@ -261,7 +261,7 @@ RecipeScene read_recipe_scene(const Scene& scene) {
     out.material.title = root.title();
     out.material.seed = static_cast<std::uint64_t>(root.count(kSeedKey, 0, 1000000000000, 1));
     MacroSetup base = recipe_defaults();
-    read_material_tables(root, base, &out.constituents);
+    const bool modulus_is_known = read_material_tables(root, base, &out.constituents);
     out.youngs_modulus = base.spec.youngs_modulus;
     root.table_or_empty("packing").refuse(kDensityKeys,
                                           "the packings that are measured differ in density, by their sizes: give "
@@ -269,7 +269,7 @@ RecipeScene read_recipe_scene(const Scene& scene) {
     const SceneTable grains = root.table("grains");
     if (base.spec.test != MacroTest::oedometric)
       root.table("test").add_error("test", "levels are measured in oedometric compression (and one of them in shear)");
-    read_recipe_stages(root, base.spec);
+    read_recipe_stages(root, base.spec, modulus_is_known);
     base.samples = root.count({"samples", "samples of each packing"}, 1, 10000, base.samples);
     base.kept_states = read_kept_states(root, 0);
     const double shear =

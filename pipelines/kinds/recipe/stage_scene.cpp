@@ -74,9 +74,9 @@ void require_stresses(const std::vector<SceneTable>& tables, const MacroSpec& sp
 
 }  // namespace
 
-void read_recipe_stages(const SceneTable& root, MacroSpec& spec) {
+void read_recipe_stages(const SceneTable& root, MacroSpec& spec, bool modulus_is_known) {
   const SceneTable test = root.table_or_empty("test");
-  read_stages(root, test, spec);
+  read_stages(root, test, spec, modulus_is_known);
   const std::vector<SceneTable> tables = root.tables("stage");
   if (tables.empty() || root.has_errors()) return;
   if (std::ranges::all_of(tables, [](const SceneTable& t) { return t.has("modulus_stress"); }))

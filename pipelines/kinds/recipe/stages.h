@@ -12,7 +12,7 @@
 namespace softgrain {
 
 /// Reads [[stage]] of a recipe: oedometric stages to stresses, unloading, reloading and cycles. Throws InputError.
-void read_recipe_stages(const SceneTable& root, MacroSpec& spec);
+void read_recipe_stages(const SceneTable& root, MacroSpec& spec, bool modulus_is_known);
 
 /// Isotropic compression to the mean stress that stages reach at K0 = 1/2, then shear at constant volume to a
 /// logarithmic strain: the test that the friction of cells is fitted to, in place of one that begins at a strain.
