@@ -5,6 +5,7 @@
 
 #include "common/core/error.h"
 #include "common/packing/grading.h"
+#include "pipelines/kinds/material_law/memory_fit.h"
 #include "pipelines/kinds/material_law/scene.h"
 
 namespace softgrain {
@@ -116,6 +117,19 @@ TEST(MaterialLawScene, WithShearMemoryTestsFinesInMoreWays) {
   EXPECT_EQ(oedometer.stages[1].record.kind, StageKind::unload);
   const MaterialLawScene loose = read_law_scene("[law]\nmemory = true\ndense = false\nmixtures = [0.25, 0.5, 0.75]\n");
   EXPECT_EQ(loose.material.variants.size(), 9U);
+}
+
+/// The fit strains its cells in parts of one size, however many points are recorded: 67 and 79 s of one core with 12
+/// and 3 points a stage, both samples of seven tests. Four numbers take a third of the evaluations of seven.
+TEST(MaterialLawScene, TheFitOfShearMemoryTakesAsLongAsItsStrains) {
+  const auto seconds = [](const std::string& keys, const std::string& test) {
+    return memory_fit_seconds(
+        read_law_scene("[law]\nmemory = true\nmixtures = [0.25, 0.5, 0.75]\n" + keys + "[test]\n" + test));
+  };
+  const double usual = seconds("", "steps = 12\n");
+  EXPECT_NEAR(seconds("", "steps = 3\n") / usual, 1.0, 0.2);
+  EXPECT_NEAR(seconds("", "steps = 12\nstrain = 0.16\n") / usual, 1.0, 0.1) << "triaxial tests take most of it";
+  EXPECT_GT(usual / seconds("dense = false\n", "steps = 12\n"), 3.0);
 }
 
 /// Fines of other preparations: of the same grains, and with nothing but a start that is recorded.
