@@ -287,12 +287,11 @@ void CsvFile::note_marks(const CsvRow& row) {
   }
 }
 
-bool CsvFile::has_decimal_commas() const {
-  return separator_ == '\t' && std::ranges::any_of(marks_, &csv::DecimalMarks::comma);
-}
+bool CsvFile::has_decimal_commas() const { return std::ranges::any_of(marks_, &csv::DecimalMarks::comma); }
 
 /// "1.250" in a column that shows decimal commas may be 1250, and "1,250" in one that shows points. Which, nobody says.
-/// Between tabs "1,250" may be either where no column shows a decimal comma.
+/// So may "1.250" in a column that shows neither, of a table with decimal commas: forces "800" and "1.250" beside
+/// "0,5". Between tabs "1,250" may be either where no column shows a decimal comma.
 void CsvFile::refuse_thousands(const CsvRow& row, std::size_t column) const {
   const std::string& cell = row.cells[column];
   const std::size_t at = cell.find_first_of(".,");
@@ -300,7 +299,8 @@ void CsvFile::refuse_thousands(const CsvRow& row, std::size_t column) const {
   const csv::DecimalMarks own = csv::decimal_marks({cell}, separator_);
   if (own.comma || own.point) return;
   const std::string place = where(row.line) + ": column \"" + columns_[column].title + "\": ";
-  if (cell[at] == ',' ? marks_[column].point : marks_[column].comma)
+  const csv::DecimalMarks& shown = marks_[column];
+  if (cell[at] == ',' ? shown.point : shown.comma || (!shown.point && has_decimal_commas()))
     throw InputError(place + "\"" + cell +
                      "\" may have a sign between thousands, as other numbers have another decimal mark: write numbers "
                      "with one mark, e.g. 1234.5");

@@ -80,7 +80,8 @@ class CsvFile {
   [[nodiscard]] const std::vector<CsvRow>& rows() const { return rows_; }
   [[nodiscard]] int header_line() const { return header_line_; }
   [[nodiscard]] char separator() const { return separator_; }
-  /// Whether a table with tabs has a decimal comma for certain ("0,5"): then "1,016" is 1.016 in it too.
+  /// Whether a table with ";" or tabs has a decimal comma for certain ("0,5"): then "1,016" is 1.016 in it too, and
+  /// "1.250" may be 1250.
   [[nodiscard]] bool has_decimal_commas() const;
   /// "file:line".
   [[nodiscard]] std::string where(int line) const { return path_ + ":" + std::to_string(line); }

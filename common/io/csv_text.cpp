@@ -82,6 +82,15 @@ std::string without(std::string text, char mark) {
   return text;
 }
 
+/// "1,250E+03": no thousands are separated in such numbers.
+bool has_exponent(const std::string& cell) {
+  for (std::size_t at = 1; at + 1 < cell.size(); ++at)
+    if ((cell[at] == 'e' || cell[at] == 'E') && is_digit_at(cell, at - 1) &&
+        is_digit_at(cell, cell[at + 1] == '+' || cell[at + 1] == '-' ? at + 2 : at + 1))
+      return true;
+  return false;
+}
+
 std::string with_point(std::string text) {
   std::ranges::replace(text, ',', '.');
   return text;
@@ -147,7 +156,8 @@ DecimalMarks decimal_marks(const std::vector<std::string>& cells, char separator
       const std::size_t last = number.find_last_of(".,");
       if (last == std::string::npos) return number;
       const bool both = number.find(number[last] == ',' ? '.' : ',') != std::string::npos;
-      if (both || !in_thousands(number, number[last])) (number[last] == ',' ? marks.comma : marks.point) = true;
+      if (both || has_exponent(cell) || !in_thousands(number, number[last]))
+        (number[last] == ',' ? marks.comma : marks.point) = true;
       return number;
     });
   return marks;

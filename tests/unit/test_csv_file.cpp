@@ -72,6 +72,17 @@ TEST(CsvFile, CommasOfThousandsOrDecimalsAreRefusedInTablesWithTabs) {
   EXPECT_NE(refusal_of_number(both, 1).find("\"-2,032\" may be -2.032 or -2032"), std::string::npos);
   EXPECT_EQ(refusal_of_number(both + "0,5\t3\n", 0), "");
   EXPECT_EQ(refusal_of_number(replaced(both, "\t", ";"), 0), "");
+  EXPECT_EQ(refusal_of_number(replaced(both, "1,016", "1,016E+03"), 0), "") << "no thousands have an exponent";
+}
+
+/// Forces of 800 N and 1500 N were 800 and 1.5: only another column told that commas are the decimal marks.
+TEST(CsvFile, PointsOfThousandsAreRefusedWhereAnotherColumnHasDecimalCommas) {
+  for (const std::string mark : {";", "\t"}) {
+    const std::string table = "hn [mm]" + mark + "Fn [N]\n0,5" + mark + "800\n1,0" + mark + "1.500\n";
+    EXPECT_EQ(refusal_of_number(table, 0), "");
+    EXPECT_NE(refusal_of_number(table, 1).find("\"1.500\" may have a sign between thousands"), std::string::npos);
+    EXPECT_EQ(refusal_of_number(replaced(table, "800", "0.800"), 1), "") << "the column has decimal points";
+  }
 }
 
 /// A row does not become a comment because its first cell could not be computed.

@@ -144,6 +144,16 @@ TEST(SieveFiles, OneDecimalCommaTellsTheOthersOfATableWithTabs) {
   EXPECT_EQ(complaint_of(table + "0,5\t1,125\n"), "");
 }
 
+/// 1.250 g were 1.25 g, as the column of the masses showed no decimal comma.
+TEST(SieveFiles, PointsOfATableWithDecimalCommasSeparateThousands) {
+  const test::TemporaryDirectory directory;
+  const auto read = [&](const std::string& mass) {
+    write_text_atomic(directory.file("s.csv"), "opening [mm];mass retained [g]\n4;0\n2;" + mass + "\n0,5;800\n");
+    return read_sieve_file(directory.file("s.csv"), {}, 3);
+  };
+  EXPECT_EQ(read("1.250").grading, read("1250").grading);
+}
+
 TEST(SieveFiles, EveryFileIsInTheTable) {
   std::set<std::string> known;
   for (const SieveSample& s : kSieveSamples) known.insert(s.file);
