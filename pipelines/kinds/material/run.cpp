@@ -313,9 +313,9 @@ std::string equation_text(const EquationSummary& s) {
   for (const KnownOnset& k : s.known)
     text += fmt::format("  span {:g}, measured elsewhere: phi_J = {}\n", k.span, with_error(k.value, k.standard_error));
   if (s.onsets.size() > 1)
-    text +=
-        fmt::format("  K of variants scatters by {:.2g} %; as much or more with a probability of {:.2g} if it is one\n",
-                    100.0 * s.modulus_scatter, s.collapse_probability);
+    text += fmt::format(
+        "  K of variants scatters by {:.2g} %; as much or more has a probability of {:.2g} if there is one K\n",
+        100.0 * s.modulus_scatter, s.collapse_probability);
   for (const ExtrapolationSummary& e : s.extrapolations)
     text += fmt::format("  {}, span {:g}: {}{}\n", e.family, e.span,
                         e.onset ? "phi_J = " + interval_text(*e.onset) : "not extrapolated: " + e.message,
