@@ -266,9 +266,9 @@ std::string missing_factor_text(const CellCard& card, const std::string& prepara
   for (std::size_t k = 0; k < card.preparations.size(); ++k)
     has += fmt::format("{} '{}'", k == 0 ? ", has a factor for" : ",", card.preparations[k].preparation);
   return fmt::format(
-      "{}{} none for '{}': kind \"material-law\" measures one for every way of preparing but LAMMPS ([law] "
+      "{}{} for '{}': kind \"material-law\" measures one for every way of preparing but LAMMPS ([law] "
       "preparations)",
-      has, card.preparations.empty() ? " and has" : " and", preparation);
+      has, card.preparations.empty() ? " and has no factor on void ratios" : " and none", preparation);
 }
 
 std::vector<CellCardNumber> numbers_of(const CellCard& card) {

@@ -137,7 +137,8 @@ TEST(CellCardFile, KnowsTheFactorsOfThePreparationsThatItNames) {
   EXPECT_EQ(void_ratio_factor(card, "slow"), 0.9753);
   EXPECT_EQ(void_ratio_factor(card, "rodded"), std::nullopt);
   const std::string text = missing_factor_text(card, "rodded");
-  EXPECT_NE(missing_factor_text(old, "slow").find("'fast' and has none for 'slow'"), std::string::npos);
+  EXPECT_NE(missing_factor_text(old, "slow").find("'fast' and has no factor on void ratios for 'slow'"),
+            std::string::npos);
   for (const char* word : {"'fast', has a factor for 'slow', 'dense' and none for 'rodded'", "[law] preparations"})
     EXPECT_NE(text.find(word), std::string::npos) << text;
 }

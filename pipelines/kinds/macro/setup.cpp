@@ -14,6 +14,7 @@
 #include "common/packing/grading_scene.h"
 #include "macrosim/preparation.h"
 #include "pipelines/kinds/macro/stages.h"
+#include "pipelines/law/law_draws.h"
 
 namespace softgrain {
 
@@ -437,7 +438,7 @@ void require_known_contents(const SceneTable& macro, const MacroSetup& setup, co
 
 std::string assumed_text(const MacroSetup& setup) {
   if (setup.assumed.empty()) return "";
-  return "the law does not say all of the grains' material; of solid grains this is taken: " + join_text(setup.assumed);
+  return "the law does not state every property of the grains; taken for solid grains: " + join_text(setup.assumed);
 }
 
 MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
