@@ -189,7 +189,7 @@ TEST_F(LawTableUse, TheMainEntryIsTakenAndTheLawIsNamedEverywhere) {
   EXPECT_EQ(summary("between")["law"]["solid_fraction"], 0.68);
   const LawIdentity kept = load_macro(file("named") + "/macro.h5").at(0).law;
   EXPECT_EQ(kept.solid_fraction, 0.65);
-  EXPECT_EQ(kept.hash, summary("named")["law"]["hash"]);
+  EXPECT_EQ(kept.hash, summary("named")["law"]["hash"].get<std::string>());
   const std::string report = read_text(file("named") + "/report.html");
   EXPECT_NE(report.find("directional law at solid fraction 0.6500"), std::string::npos);
   EXPECT_NE(report.find(kept.hash), std::string::npos);

@@ -90,7 +90,8 @@ TEST_F(RunSet, ASweepHasADirectoryTableAndReportForEveryChoice) {
     const std::string directory = file("out") + "/" + run["directory"].get<std::string>();
     for (const char* name : {"summary.json", "report.html", "macro.h5", "log.txt"})
       EXPECT_TRUE(fs::exists(directory + "/" + name)) << directory << " " << name;
-    EXPECT_EQ(std::to_string(summary_of(directory)["macro"]["bodies"].get<int>()), run["values"]["macro.bodies"]);
+    EXPECT_EQ(std::to_string(summary_of(directory)["macro"]["bodies"].get<int>()),
+              run["values"]["macro.bodies"].get<std::string>());
   }
   const std::string table = read_text(file("out") + "/table.csv");
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 5);
