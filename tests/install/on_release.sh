@@ -1,13 +1,16 @@
 #!/usr/bin/env bash
-# The first command of the README on a release of Debian or Ubuntu, from its base system and the last commit of this tree.
-# By hand: it needs root, debootstrap, the network, 3 GB and a quarter of an hour.
+# A command of the README on a release of Debian or Ubuntu, from its base system and the last commit of this tree: the
+# first one, or `./softgrain` with the arguments behind FOLDER.
+# By hand: it needs root, debootstrap, the network, 3 GB and a quarter of an hour; `test` takes 6 GB and an hour.
 #   on_release.sh bookworm http://deb.debian.org/debian FOLDER
-#   on_release.sh noble http://archive.ubuntu.com/ubuntu FOLDER
+#   on_release.sh noble http://archive.ubuntu.com/ubuntu FOLDER test
 set -euo pipefail
 
 suite=$1 mirror=$2
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 mkdir -p "$3" && folder=$(readlink -f "$3")
+shift 3
+(($#)) || set -- run pipelines/quickstart.toml
 [[ $folder != / ]]
 components=main
 [[ $mirror == *ubuntu* ]] && components=main,universe
@@ -19,4 +22,4 @@ rm -rf "$folder/root/softgrain"
 git clone -q "$root" "$folder/root/softgrain"
 for of in proc dev; do mount --bind "/$of" "$folder/$of"; done
 trap 'umount "$folder/proc" "$folder/dev"' EXIT
-chroot "$folder" bash -c 'cd /root/softgrain && time ./softgrain run pipelines/quickstart.toml </dev/null'
+chroot "$folder" bash -c 'cd /root/softgrain && time ./softgrain "$@" </dev/null' _ "$@"
