@@ -114,7 +114,7 @@ TEST_F(RunSet, ADesignRunsPointsOfRangesAndSaysWhatMatters) {
   EXPECT_EQ(summary["design"]["seed"], 1);
   for (const json& run : summary["runs"]) {
     const json member = summary_of(file("out") + "/" + run["name"].get<std::string>());
-    EXPECT_EQ(std::to_string(member["macro"]["bodies"].get<int>()), run["values"]["macro.bodies"]);
+    EXPECT_EQ(std::to_string(member["macro"]["bodies"].get<int>()), run["values"]["macro.bodies"].get<std::string>());
     EXPECT_EQ(member["provenance"]["seed"], 1);
   }
   EXPECT_EQ(summary["sensitivity"][0]["key"], "macro.wall_mu");
