@@ -304,7 +304,8 @@ inline std::vector<KindScene> every_kind() {
                                {"grain-box", "", kTinyGrainBox, 0}};
   std::set<std::string> found;
   for (KindScene& k : kinds) {
-    const SceneKind& kind = kind_of(Scene::parse(k.text, k.name));
+    const Scene scene = Scene::parse(k.text, k.name);
+    const SceneKind& kind = kind_of(scene);
     k.command = kind.command;
     found.insert(kind.name);
   }

@@ -66,7 +66,7 @@ TEST(ExploredKeys, SayWhatHoldsWithoutThem) {
 
 TEST(ExploredKeys, CarryWhatTheReaderSays) {
   const auto keys = explore_keys({""}, read_sample);
-  const ExploredKey& length = key_at(keys, "test.stage.length");
+  const ExploredKey length = key_at(keys, "test.stage.length");
   EXPECT_EQ(length.asked.meaning, "how far");
   EXPECT_EQ(length.asked.unit, Unit::length);
   EXPECT_EQ(range_text(length.asked.range), "above 0");
