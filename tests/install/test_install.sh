@@ -45,7 +45,7 @@ for command in "${commands[@]}"; do
 done
 
 # The consumer sees the package and no part of this tree.
-"$cmake" -S "$here" -B consumer -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Debug \
+"$cmake" -G Ninja -S "$here" -B consumer -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Debug \
   -DCMAKE_CXX_FLAGS="-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror" >configure.log || fail "$(cat configure.log)"
 "$cmake" --build consumer >build.log || fail "$(cat build.log)"
 # Worked out apart from the code: E R^2 a (0.2^b - delta^b), and 4/3 E/(2 (1 - nu^2)) sqrt(R/2) h^1.5.
@@ -59,5 +59,5 @@ close "${forces[1]}" 1.086977489062398 || fail "force of the glass beads: ${forc
 # Another minor version is not what was asked for.
 mkdir other && sed 's/find_package(softgrain 0.2/find_package(softgrain 0.99/' "$here/CMakeLists.txt" >other/CMakeLists.txt
 cp "$here/consumer.cpp" other/
-! "$cmake" -S other -B other/build -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" >other.log 2>&1 ||
+! "$cmake" -G Ninja -S other -B other/build -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" >other.log 2>&1 ||
   fail "version 0.99 was found"
