@@ -152,6 +152,33 @@ TEST_F(KeysThatCount, SizesOfBodiesThatAreNotThereAreRefused) {
   refused(no_soft, "goes with soft_share above 0");
 }
 
+/// A mistake elsewhere hid them until it was mended.
+TEST_F(KeysThatCount, StressesAboveEAreSaidBesideOtherMistakes) {
+  const std::string stage = "[[stage]]\nkind = \"oedometric\"\nstress = \"5 MPa\"\n";
+  const std::string macro = "[macro]\nbodies = 0\n";
+  const std::string cells = "kind = \"macro\"\nlaw = \"cells.toml\"\n[fines]\nshare = 0.3\n[material]\nE = \"1 MPa\"\n";
+  const std::string pipeline = std::string(kTinyPipeline).substr(0, std::string(kTinyPipeline).find("[macro]"));
+  const std::string comparison =
+      "kind = \"macro-comparison\"\n[material]\nE = \"1 MPa\"\n[law]\ncard = \"law.toml\"\n[[scene]]\nstpes = 3\n";
+  for (const std::string& text : {cells, pipeline, comparison}) {
+    refused(text + macro + stage, "bodies = 0");
+    refused(text + macro + stage, text == pipeline ? "is 10 times E = 500 kPa" : "is 5 times E = 1 MPa");
+    // Where E was refused there is none to compare with.
+    std::string no_modulus = text + "[macro]\n" + stage;
+    no_modulus.replace(no_modulus.find(" MPa\""), 5, " MPaa\"");
+    const Scene s = scene(no_modulus);
+    try {
+      kind_of(s).read(s);
+      ADD_FAILURE() << no_modulus;
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find("MPaa"), std::string::npos) << e.what();
+      EXPECT_EQ(std::string(e.what()).find("times E"), std::string::npos) << e.what();
+    }
+  }
+  EXPECT_NO_THROW((void)read_macro_scene_alone(scene("kind = \"macro\"\n[macro]\nresolved = false\n" + stage)))
+      << "E is that of the law, which is not there";
+}
+
 TEST_F(KeysThatCount, ALawTableHasOneTangentialStiffness) {
   const std::string table =
       std::string("table = \"") + SOFTGRAIN_SOURCE_DIR + "/tests/reference/law/two_fractions.toml\"\n";

@@ -46,6 +46,11 @@ void read_cell_material(const SceneTable& root, SoftParticleSpec& spec) {
                       Unit::density, Range::positive(), spec.density);
 }
 
+/// Whether E is said, by the law or for cells by [material]: not by a scene that is read without its law.
+bool says_modulus(const SceneTable& root, const std::string& law_file) {
+  return !law_file.empty() || (root.has("fines") && root.table_or_empty("material").has("E"));
+}
+
 /// A stress in Pa says nothing where nobody says the E that stresses of the law are over.
 void require_known_modulus(const SceneTable& root, const std::string& law_file) {
   const auto refuse = [&](const SceneTable& table, const char* key) {
@@ -147,9 +152,10 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   else if (root.has("material"))
     root.add_error("material",
                    "goes without: the materials of all bodies are those of the law, which was measured with them");
+  const bool modulus_is_known = !root.has_errors() && says_modulus(root, law_file);
   const SceneTable macro = root.table({"macro", "solid grains and soft particles, their preparation and their test"});
   out.setup = read_macro_setup(macro, out.spec);
-  read_stages(root, macro, out.setup.spec, !root.has_errors());
+  read_stages(root, macro, out.setup.spec, modulus_is_known);
   refuse_idle_test_keys(macro, root, {&out.setup.spec});
   if (cells != nullptr) {
     read_cells(root, macro, *cells, out.setup);

@@ -32,10 +32,10 @@ bool valid_name(const std::string& name) {
 
 ComparisonScene read_scene(const SceneTable& root, const SceneTable& t, const MacroSetup& base,
                            const SoftParticleSpec& content, const std::vector<ComparisonScene>& before,
-                           std::uint64_t seed, bool valid) {
+                           std::uint64_t seed, bool valid, bool modulus_is_known) {
   ComparisonScene scene;
   scene.setup = read_macro_setup(t, base);
-  read_part_stages(root, t, scene.setup.spec, !root.has_errors());
+  read_part_stages(root, t, scene.setup.spec, modulus_is_known);
   refuse_idle_test_keys(t, t.has("stage") ? t : root, {&scene.setup.spec});
   refuse_idle_keys(t, !scene.setup.twins.empty(), scene.setup.bands > 0);
   refuse_idle_sizes(t, {&scene.setup});
@@ -81,14 +81,16 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
         {"count", "number of different packings inside the soft particles"}, 1, 100000, setup.contents);
     const SceneTable macro = root.table({"macro", "particles, preparation, test and twins that all scenes share"});
     MacroSetup base = read_macro_setup(macro, setup.spec);
-    read_stages(root, macro, base.spec, !root.has_errors());
+    const bool modulus_is_known = !root.table_or_empty("material").has_errors();
+    read_stages(root, macro, base.spec, modulus_is_known);
     require_own_preparation(macro, base);
     if (!macro.has("resolved")) base.twins = {Twin::shelled, Twin::free};
     base.kept_states = read_kept_states(root);
     for (const SceneTable& t : root.tables({"scene",
                                             "one scene to compare on, with the keys of `[macro]` that differ; at least "
                                             "one table, which may be empty"}))
-      setup.scenes.push_back(read_scene(root, t, base, setup.spec, setup.scenes, setup.seed, !root.has_errors()));
+      setup.scenes.push_back(
+          read_scene(root, t, base, setup.spec, setup.scenes, setup.seed, !root.has_errors(), modulus_is_known));
     refuse_idle_stages(root, "scene", root.tables("scene"));
     std::vector<const MacroSpec*> tests;
     std::vector<const MacroSetup*> setups;

@@ -170,11 +170,11 @@ class Loadings {
 
   [[nodiscard]] bool empty() const { return tables_.empty(); }
 
-  /// Requires stresses of all loadings to be below E of `base`.
-  void require_below_modulus(const MacroSpec& base) const {
-    for (const SceneTable& t : tables_) {
+  /// Requires stresses of the loadings of these numbers to be below E of `base`.
+  void require_below_modulus(const MacroSpec& base, const std::vector<std::size_t>& numbers) const {
+    for (const std::size_t k : numbers) {
       MacroSpec spec = base;
-      t.section([&] { read(t, spec, true); });
+      tables_[k].section([&] { read(tables_[k], spec, true); });
     }
   }
 
@@ -282,8 +282,13 @@ struct CommonTables {
   bool valid = false;             ///< nothing was found wrong in them
 };
 
+struct VariantRead {
+  MaterialVariant variant;
+  bool modulus_is_known = false;  ///< see read_stages()
+};
+
 /// Keys of all tables of the scene, in one.
-MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const CommonTables& common, bool alone) {
+VariantRead read_variant(const SceneTable& root, const SceneTable& t, const CommonTables& common, bool alone) {
   MaterialVariant v{read_variant_name(t), common.setup};
   MacroSpec& spec = v.setup.spec;
   if (alone && !root.tables("constituent").empty())
@@ -302,7 +307,7 @@ MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const 
   read_part_stages(root, t, spec, modulus_is_known);
   v.setup.samples = t.count(kSamplesKey, 1, 10000, v.setup.samples);
   if (common.valid && !t.has_errors()) require_material_memory(t, v.setup);
-  return v;
+  return {std::move(v), modulus_is_known};
 }
 
 /// Requires room in all variants from `first` on, which are the loadings of the same packings.
@@ -387,17 +392,19 @@ MaterialScene read_material(const SceneTable& root, bool alone) {
                    "table names, and `[[variant.stage]]` for its stages"});
   std::vector<std::vector<std::size_t>> under;
   for (const SceneTable& t : variants) {
-    const MaterialVariant v = read_variant(root, t, common, alone);
+    const VariantRead read = read_variant(root, t, common, alone);
+    const MaterialVariant& v = read.variant;
     if (!names.insert(v.name).second) t.add_error("name", "is used twice");
     const std::size_t first = out.variants.size();
     under.push_back(loadings.of_variant(t));
+    if (read.modulus_is_known) loadings.require_below_modulus(v.setup.spec, under.back());
     add(v, under.back(), false);
     if (!root.has_errors()) require_room(t, out, first);
   }
   if (variants.empty()) {
     if (modulus_is_known) {  // that of all packings
       read_stages(root, root.table_or_empty("test"), base.spec, true);
-      loadings.require_below_modulus(base.spec);
+      loadings.require_below_modulus(base.spec, loadings.all());
     }
     require_density(packing, base);
     if (!root.has_errors()) require_material_memory(grains, base);

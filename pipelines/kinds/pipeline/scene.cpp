@@ -67,7 +67,7 @@ PipelineSetup read_pipeline_setup(const Scene& scene) {
     if (!root.has("macro")) return setup;
     const SceneTable macro = root.table({"macro", "macro scene that uses the law, and its resolved twin"});
     setup.macro = read_macro_setup(macro, setup.measure.spec);
-    read_stages(root, macro, setup.macro->spec, !root.has_errors());
+    read_stages(root, macro, setup.macro->spec, !root.table_or_empty("material").has_errors());
     refuse_idle_test_keys(macro, root, {&setup.macro->spec});
     refuse_idle_keys(macro, !setup.macro->twins.empty(), setup.macro->bands > 0);
     refuse_idle_sizes(macro, {&*setup.macro});

@@ -11,7 +11,8 @@
 
 namespace softgrain {
 
-/// Reads [[stage]] of a recipe: oedometric stages to stresses, unloading, reloading and cycles. Throws InputError.
+/// Reads [[stage]] of a recipe: oedometric stages to stresses, unloading, reloading and cycles. `modulus_is_known`: as
+/// of read_stages() of macro/stages.h. Throws InputError.
 void read_recipe_stages(const SceneTable& root, MacroSpec& spec, bool modulus_is_known);
 
 /// Isotropic compression to the mean stress that stages reach at K0 = 1/2, then shear at constant volume to a
