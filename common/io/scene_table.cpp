@@ -190,9 +190,10 @@ SceneTable SceneTable::table(const Key& key) const {
       [&] {
         if (impl_->find(key.name) != nullptr) return true;
         if (impl_->missing) throw BadScene(impl_->document->name, {});
+        const std::string why = key.meaning.empty() ? "" : ": " + key.meaning;
         throw BadScene(
             impl_->document->name,
-            {{.line = impl_->line, .text = impl_->place + ": missing table [" + impl_->dotted(key.name) + "]"}});
+            {{.line = impl_->line, .text = impl_->place + ": missing table [" + impl_->dotted(key.name) + "]" + why}});
       },
       false);
   SceneTable table = table_or_empty(key);

@@ -172,6 +172,10 @@ TEST(Scene, MissingKeyNamesTableAndLikelyTypo) {
   EXPECT_EQ(message_of([&] { (void)packing.number("radius", Unit::length); }),
             "scene.toml:2: missing key 'radius' in [packing]; did 'raddius' at scene.toml:3 mean it?");
   EXPECT_EQ(message_of([&] { (void)scene.root().table("macro"); }), "scene.toml:1: missing table [macro]");
+  EXPECT_EQ(message_of([&] {
+              (void)scene.root().table({"fines", "what fills the voids"});
+            }),
+            "scene.toml:1: missing table [fines]: what fills the voids");
   EXPECT_EQ(scene.root().table_or_empty("macro").count("samples", 1, 9, 4), 4);
 }
 
