@@ -141,12 +141,14 @@ CsvFile CsvFile::parse(const std::string& bytes, const std::string& path, const 
   return file;
 }
 
-std::optional<CsvFile> CsvFile::find(const std::string& bytes, const std::string& path, const CsvIsHeader& is_header) {
+std::optional<CsvFile> CsvFile::find(const std::string& bytes, const std::string& path, const CsvIsHeader& is_header,
+                                     const CsvIsValue& is_value) {
   CsvFile file;
   file.path_ = path;
   file.is_header_ = is_header;
   file.read_lines(bytes);
   if (file.columns_.empty()) return std::nullopt;
+  file.refuse_rows_above(is_value);
   return file;
 }
 
@@ -218,23 +220,26 @@ void CsvFile::find_header(const std::string& line, int number) {
     separator_ = c;
     header_line_ = number;
     columns_ = std::move(columns);
-    return refuse_rows_above();
+    return;
   }
   above_.emplace_back(number, line);
 }
 
 /// Rows that were put above their header would else be taken for titles and be missing.
-void CsvFile::refuse_rows_above() const {
-  const auto is_number = [](const std::string& cell) {
+void CsvFile::refuse_rows_above(const CsvIsValue& is_value) const {
+  const auto is_number = [](std::string cell) {
     const auto is_mark = [](char c) { return c == '.' || c == ','; };
-    return cell.find_first_not_of("0123456789.,") == std::string::npos && !is_mark(cell.front()) &&
+    if (cell.ends_with('%')) cell = trimmed(cell.substr(0, cell.size() - 1));
+    if (cell.starts_with('-')) cell.erase(0, 1);
+    return !cell.empty() && cell.find_first_not_of("0123456789.,") == std::string::npos && !is_mark(cell.front()) &&
            std::ranges::count_if(cell, is_mark) <= 1;  // a date has two
   };
+  const auto belongs = [&](const std::string& cell) { return is_number(cell) || is_value(cell); };
   for (const auto& [number, line] : above_) {
     std::vector<std::string> cells = split_with_inches(line, separator_);
     std::erase(cells, "");
-    if (cells.size() > 1 && std::ranges::all_of(cells, is_number))
-      throw InputError(where(number) + ": a row of numbers above the header (line " + std::to_string(header_line_) +
+    if (cells.size() > 1 && std::ranges::all_of(cells, belongs))
+      throw InputError(where(number) + ": a row of the table above the header (line " + std::to_string(header_line_) +
                        "): put it below, or \"#\" before it");
   }
 }

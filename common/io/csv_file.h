@@ -41,6 +41,9 @@ using CsvNames = std::vector<std::string>;
 /// Tells the line of the header from lines of text above it.
 using CsvIsHeader = std::function<bool(const std::vector<CsvColumn>&)>;
 
+/// Tells cells of a row that are more than a number ("No. 4", "150 g") from words of a title.
+using CsvIsValue = std::function<bool(const std::string&)>;
+
 namespace csv {
 
 /// Which decimal marks the numbers of a column show. A mark with three digits behind it may separate thousands.
@@ -67,8 +70,9 @@ class CsvFile {
   /// Reads a table as laboratories write it; none when no line is a header. Lines above the header are titles; a line
   /// of words right below it goes on with the titles of the columns ("mm; g; %"); columns may have no title, or one
   /// that is there twice; rows may be short. A double quote within a cell is a character (3/8"). Throws InputError for
-  /// a row that is too long or above the header.
-  static std::optional<CsvFile> find(const std::string& bytes, const std::string& path, const CsvIsHeader& is_header);
+  /// a row that is too long or above the header: two or more cells there, all numbers or values.
+  static std::optional<CsvFile> find(const std::string& bytes, const std::string& path, const CsvIsHeader& is_header,
+                                     const CsvIsValue& is_value);
 
   /// Takes units apart that stand behind a name without brackets: "force_N", "Force N", "F/N", "displacement_in_mm".
   /// `unit_of` says which quantity a name has, nothing for an unknown one. Names that it knows as they are stay
@@ -117,7 +121,7 @@ class CsvFile {
   void read_lines(const std::string& bytes);
   void read_line(const std::string& line, int number);
   void find_header(const std::string& line, int number);
-  void refuse_rows_above() const;
+  void refuse_rows_above(const CsvIsValue& is_value) const;
   [[nodiscard]] bool names_a_sieve(const std::string& line) const;
   bool read_more_titles(const std::string& line, int number);
   void read_header(const std::string& line, int number);

@@ -212,6 +212,18 @@ SieveSize sieve_size(const std::string& cell) {
   return size;
 }
 
+bool is_sieve_or_mass(std::string cell) {
+  std::ranges::replace(cell, ',', '.');
+  if (csv::folded(cell).starts_with("test")) return false;
+  const SieveSize size = sieve_size(cell);
+  if (size.kind == SieveSize::Kind::sieve && !size.unit.empty()) return true;
+  try {
+    return parse_quantity(cell, Unit::mass) >= 0.0;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 double sieve_diameter(const std::string& number, const std::string& unit, bool nominal) {
   const bool fraction = number.find('/') != std::string::npos;
   if (unit == kAstmNumbers || unit == kMesh) {

@@ -27,6 +27,10 @@ inline constexpr const char* kPhi = "phi";  ///< -log2 of millimetres
 /// Reads a cell with plain numbers (csv::plain_numbers). Kind::none for what is no size: a line below the table.
 SieveSize sieve_size(const std::string& cell);
 
+/// Whether a cell as written is a size with its unit or a mass: "No. 4", "3/8 in.", "4,75 mm", "150 g"; not "Test No.
+/// 3", a title, nor "12/2026" or "EN 933", which have no unit.
+bool is_sieve_or_mass(std::string cell);
+
 /// Diameter [m] of `number` in this unit. Inches that are a fraction, or `nominal`, are names of ASTM E11: 3/8 in. is
 /// the sieve of 9.5 mm; phi is -log2 of mm. Throws InputError.
 double sieve_diameter(const std::string& number, const std::string& unit, bool nominal = false);

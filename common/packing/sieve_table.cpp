@@ -64,12 +64,26 @@ class SieveReader {
   [[nodiscard]] std::string head() const { return csv_.where(csv_.header_line()) + ": "; }
   [[nodiscard]] bool passes() const { return choice_.meaning == SieveColumn::passing; }
 
-  [[nodiscard]] csv::DecimalMarks marks_of(std::size_t column) const {
+  /// `thousands`: whether numbers of the column may be so large; else "4.000" beside "0,5" of another column is 4.
+  [[nodiscard]] csv::DecimalMarks marks_of(std::size_t column, bool thousands) const {
     std::vector<std::string> cells;
     for (const CsvRow& row : csv_.rows()) cells.push_back(row.cells[column]);
     csv::DecimalMarks marks = csv::decimal_marks(cells, csv_.separator());
-    marks.comma = marks.comma || csv_.has_decimal_commas();
+    if (marks.comma || !csv_.has_decimal_commas()) return marks;
+    marks.comma = true;
+    marks.point = marks.point || !thousands;
     return marks;
+  }
+
+  /// Sieves of metres are none.
+  [[nodiscard]] bool may_have_thousands_of_sizes() const {
+    const std::string& unit = size_title().unit.empty() ? options_.unit : size_title().unit;
+    return unit != "mm" && unit != "cm" && unit != "m" && unit != kInches;
+  }
+
+  [[nodiscard]] bool may_have_thousands_of_values() const {
+    const SieveMeasure measure = value_title().measure;
+    return measure != SieveMeasure::percent && measure != SieveMeasure::share;
   }
 
   [[nodiscard]] std::string plain(const CsvRow& row, std::size_t column, const csv::DecimalMarks& marks) const {
@@ -82,8 +96,8 @@ class SieveReader {
 
   /// Sorts the rows of sizes from a total and from text below the table.
   void read_lines() {
-    const csv::DecimalMarks sizes = marks_of(choice_.size);
-    const csv::DecimalMarks values = marks_of(choice_.value);
+    const csv::DecimalMarks sizes = marks_of(choice_.size, may_have_thousands_of_sizes());
+    const csv::DecimalMarks values = marks_of(choice_.value, may_have_thousands_of_values());
     bool below = false;              // the table seems to have ended
     const CsvRow* unread = nullptr;  // a row below that end which is no size: only where sizes go on, it had not ended
     int before = csv_.header_line();
@@ -370,7 +384,7 @@ class SieveReader {
 };
 
 std::optional<CsvFile> laboratory_table(const std::string& bytes, const std::string& path) {
-  return CsvFile::find(bytes, path, are_sieve_columns);
+  return CsvFile::find(bytes, path, are_sieve_columns, is_sieve_or_mass);
 }
 
 }  // namespace

@@ -132,9 +132,14 @@ TEST(SieveFiles, WithoutAHeaderAreToldOneOfTheirOwn) {
 /// They were taken for titles of the laboratory, and the curve had lost a sieve.
 TEST(SieveFiles, RowsAboveTheHeaderAreRefused) {
   const std::string table = "opening [mm];passing [%]\n4;100\n2;50\n1;0\n";
-  EXPECT_NE(complaint_of("8;100\n" + table).find("s.csv:1: a row of numbers above the header (line 2)"),
-            std::string::npos);
-  EXPECT_EQ(complaint_of("Sample;12\n30.11.2026;12\n\n" + table), "") << "a date and the number of a sample";
+  for (const char* row : {"8;100", "-3;100", "8;100 %", "3/8\";100", "3/8 in.;100", "No. 4;100", "No. 4;4,75 mm;100",
+                          "4,75 mm;150 g", "0.5 - 1 mm;12"})
+    EXPECT_NE(complaint_of(row + ("\n" + table)).find("s.csv:1: a row of the table above the header (line 2)"),
+              std::string::npos)
+        << row;
+  for (const char* title : {"Sample;12", "30.11.2026;12", "2026-11-30;12", "11/2026;12", "Test No. 3;12", "EN 933;2012",
+                            "ASTM E11;2022", "No.;12", "No. 4;30.11.2026", "Mass;150 g", "3/8 in. gravel;12", "No. 4"})
+    EXPECT_EQ(complaint_of(title + ("\n" + table)), "") << title;
 }
 
 /// The openings show the mark of the masses.
@@ -144,14 +149,21 @@ TEST(SieveFiles, OneDecimalCommaTellsTheOthersOfATableWithTabs) {
   EXPECT_EQ(complaint_of(table + "0,5\t1,125\n"), "");
 }
 
-/// 1.250 g were 1.25 g, as the column of the masses showed no decimal comma.
+/// 1.250 g were 1.25 g, as the column of the masses showed no decimal comma. Openings in mm, percents and shares are
+/// below a thousand.
 TEST(SieveFiles, PointsOfATableWithDecimalCommasSeparateThousands) {
   const test::TemporaryDirectory directory;
-  const auto read = [&](const std::string& mass) {
-    write_text_atomic(directory.file("s.csv"), "opening [mm];mass retained [g]\n4;0\n2;" + mass + "\n0,5;800\n");
-    return read_sieve_file(directory.file("s.csv"), {}, 3);
+  const auto read = [&](const std::string& table) {
+    write_text_atomic(directory.file("s.csv"), table);
+    return read_sieve_file(directory.file("s.csv"), {}, 3).grading;
   };
-  EXPECT_EQ(read("1.250").grading, read("1250").grading);
+  const std::string masses = "opening [mm];mass retained [g]\n";
+  const auto of_mass = [&](const std::string& mass) { return read(masses + "4;0\n2;" + mass + "\n0,5;800\n"); };
+  EXPECT_EQ(of_mass("1.250"), of_mass("1250"));
+  EXPECT_EQ(read(masses + "4.000;0\n2.000;10,5\n1.000;5,2\n"), read(masses + "4;0\n2;10,5\n1;5,2\n"));
+  EXPECT_EQ(read("opening [um];mass retained [g]\n4.000;0\n2.000;10,5\n1.000;5,2\n"),
+            read(masses + "4;0\n2;10,5\n1;5,2\n"));
+  EXPECT_EQ(read("opening [mm];passing [-]\n4;1.000\n0,5;0\n"), read("opening [mm];passing [%]\n4;100\n0,5;0\n"));
 }
 
 TEST(SieveFiles, EveryFileIsInTheTable) {
