@@ -189,7 +189,9 @@ SceneTable SceneTable::table(const Key& key) const {
   const bool there = impl_->value(
       [&] {
         if (impl_->find(key.name) != nullptr) return true;
-        if (impl_->missing) throw BadScene(impl_->document->name, {});
+        const auto before = impl_->children.find(key.name);
+        const bool said = before != impl_->children.end() && !before->second.empty() && before->second.front()->missing;
+        if (impl_->missing || said) throw BadScene(impl_->document->name, {});
         const std::string why = key.meaning.empty() ? "" : ": " + key.meaning;
         throw BadScene(
             impl_->document->name,

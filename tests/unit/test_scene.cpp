@@ -230,11 +230,12 @@ TEST(SceneErrors, ThatFollowFromOthersAreNotTold) {
                         (void)a.number("width", Unit::none);  // missing, but a round one has a radius instead
                         a.add_error("low", "must be below high");
                         root.check([&] { a.throw_error("low", "must be below high"); });
-                        const SceneTable b = root.table("b");
+                        const SceneTable b = root.table({"b", "what else there is"});
                         (void)b.number("x", Unit::none);
                         (void)b.table("c").text("y");
+                        (void)root.table("b");
                       }),
-            "scene.toml:1: missing table [b]\n"
+            "scene.toml:1: missing table [b]: what else there is\n"
             "scene.toml:2: form = \"rond\": must be \"flat\" or \"round\"; nearest is \"round\"");
 }
 
