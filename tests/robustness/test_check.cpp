@@ -421,6 +421,27 @@ name = "hasty"
 preparation_passes = 10
 )";
 
+/// What makes the law of a recipe poor is said with the key that makes it better.
+TEST_F(Check, WarningsOfARecipeNameTheKeysToChange) {
+  const json found = scene_facts(R"(kind = "recipe"
+samples = 1
+[material]
+E = 70e9
+nu = 0.2
+mu = 0.5
+[grains]
+count = 2000
+radius_max = 2e-3
+ratio = 8
+[check]
+grains = 0
+[levels]
+ratio = 3
+)");
+  EXPECT_TRUE(warned(found, "its onset will scatter; take more grains ([grains] count)")) << found["warnings"];
+  EXPECT_TRUE(warned(found, "[check] grains = 0 is too few")) << found["warnings"];
+}
+
 /// One packing of a material fails: it is named, with what to do, and the others are there.
 TEST_F(Check, AFailedPackingCostsNoOther) {
   write_text_atomic(directory_.file("scene.toml"), kHastyMaterial);
