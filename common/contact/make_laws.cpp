@@ -27,7 +27,8 @@ void require_valid(const ThresholdPowerLaw& law, PairKind kind, const char* part
 
 const PairLaw& usable_law(const LawCard& card, PairKind kind) {
   const PairLaw* law = card.find(kind);
-  if (law == nullptr) unusable(kind, "the card has none");
+  if (law == nullptr)
+    unusable(kind, "the card has none; softgrain calibrate --set mirror=true derives it from the other kind");
   if (!has_numbers(law->status))
     unusable(kind, "its status is \"" + to_string(law->status) + "\"" +
                        (law->reason.empty() ? "" : " (" + law->reason + ")"));

@@ -39,7 +39,7 @@ std::vector<std::string> implausible_forces(const std::vector<double>& delta, co
       4.0 / 3.0 * youngs_modulus * shell_radius * shell_radius * std::pow(std::max(delta[most], 0.0), 1.5);
   const double share = std::abs(force[most]) / solid;
   const std::string what =
-      fmt::format("{:.4g} N at Delta = {:.3g} is {:.2g} of what a solid sphere with this E and Rs bears", force[most],
+      fmt::format("{:.4g} N at Delta = {:.3g} is {:.2g} times that of a solid sphere with this E and Rs", force[most],
                   delta[most], share);
   const char* const hint = ": check the units of force, E and radius";
   if (solid > 0.0 && share > 1.0) out.push_back(what + ", more than any soft particle" + hint);

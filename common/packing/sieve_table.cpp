@@ -49,11 +49,15 @@ class SieveReader {
     std::ranges::stable_sort(rows, {}, &SieveRow::opening);
     const bool low = rows.empty() || rows.front().passing > 0.0;
     const bool one = rows.size() < 2 && !pan_row;
-    Grading grading =
-        sieve_grading(rows, dimension,
-                      one ? ""
-                          : fmt::format(", or give {0} = \"... mm\" {1} (softgrain check FILE --set '{0}=\"... mm\"')",
-                                        low ? "smallest" : "largest", kInScene));
+    const bool shares = passes() && data_.measure == SieveMeasure::percent && !rows.empty() &&
+                        std::abs(rows.back().passing - 0.01) < 0.01 * kSieveRounding;
+    Grading grading = sieve_grading(
+        rows, dimension,
+        one ? ""
+            : fmt::format(
+                  ", or give {0} = \"... mm\" {1} (softgrain check FILE --set '{0}=\"... mm\"'){2}",
+                  low ? "smallest" : "largest", kInScene,
+                  shares ? "; if these are shares, with 1 for all, leave percent out of the title of the column" : ""));
     return {std::move(grading), columns_text(), std::move(rows), std::move(remarks_)};
   }
 

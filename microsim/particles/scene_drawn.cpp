@@ -199,17 +199,15 @@ void require_room(const SceneTable& t, const Region<D>& region, const std::vecto
   double volume = 0.0;
   for (const double r : radii) volume += D == 3 ? kSphereVolume * cube(r) : std::numbers::pi * r * r;
   if (volume > kDensest * box)
-    t.throw_error(
-        "count",
-        fmt::format("so many particles of these sizes have {:.3g} of the volume of the box of places", volume / box));
+    t.throw_error("count", fmt::format("the particles would fill {:.3g} of the box; at most {:g} is possible",
+                                       volume / box, kDensest));
   for (int k = 0; k < D; ++k)
     if (region.high[k] - region.low[k] < 2.0 * largest)
-      t.throw_error("sizes",
-                    fmt::format("the largest particle, of radius {:g} m, is wider than the box of places", largest));
+      t.throw_error("sizes", fmt::format("the largest particle, of radius {:g} m, is wider than the box", largest));
   for (int k = 0; k < D; ++k)
     if (region.period[k] > 0.0 && region.high[k] - region.low[k] > region.period[k] * (1.0 + 1e-9))
       t.throw_error("high",
-                    fmt::format("the box of places is wider than the cell, which is periodic along {}; allowed: "
+                    fmt::format("the box from low to high is wider than the cell, which is periodic along {}; allowed: "
                                 "at most {:g} m above low",
                                 "xyz"[k], region.period[k]));
 }

@@ -14,6 +14,7 @@
 #include <new>
 #include <span>
 #include <sstream>
+#include <string_view>
 #include <system_error>
 
 #include "common/core/enum_names.h"
@@ -362,6 +363,9 @@ int end_of_parsing(const CLI::App& app, const CLI::ParseError& e, bool as_json) 
   std::string message = e.what();
   if (const std::string missing = missing_value_text(app, message); !missing.empty()) message = missing;
   if (const std::string unknown = unknown_word_text(app); !unknown.empty()) message = unknown;
+  constexpr std::string_view kNoConversion = "Could not convert: ";  // of CLI11, of a number: "--delta = 0,1"
+  if (message.starts_with(kNoConversion))
+    message = message.substr(kNoConversion.size()) + ": not a value that this option takes";
   // CLI11 puts "--threads: " before the message of a validator, which names the option itself.
   if (const std::size_t colon = message.find(": ");
       message.starts_with("--") && colon != std::string::npos &&

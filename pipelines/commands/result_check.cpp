@@ -12,6 +12,7 @@
 #include "common/io/hdf5_file.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
+#include "pipelines/report/run_data.h"
 #include "pipelines/results/kind_results.h"
 #include "pipelines/results/summary.h"
 #include "pipelines/run/run_context.h"
@@ -146,7 +147,7 @@ void check_directory(const std::string& path, Findings& out) {
       if (check == check_data) require_own_content(path + "/" + name);
       check_one(path, name, check, out);
     }
-  if (!any) throw InputError(path + ": no run directory: neither summary.json nor a file of results is in it");
+  if (!any) throw InputError(report::why_without_results(path));
   if (!has("summary.json"))
     out.warn("no summary.json: the run has not ended; go on with --resume, or see log.txt for what stopped it");
   else

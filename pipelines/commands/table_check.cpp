@@ -28,13 +28,14 @@ bool has_column(const CsvFile& table, std::initializer_list<const char*> begins)
 ForceCurveOptions assumed_values(const CsvFile& table, Findings& out) {
   ForceCurveOptions options;
   const SaidByFile said = said_by_comments(table);
-  const auto missing = [&](bool is_said, const char* option) {
-    if (!is_said) out.warn(fmt::format("the file does not say it: softgrain calibrate needs {}", option));
+  const auto missing = [&](bool is_said, const char* comment, const char* option) {
+    if (!is_said)
+      out.warn(fmt::format("the file has no comment `# {} = ...`: softgrain calibrate needs {}", comment, option));
     return !is_said;
   };
-  if (missing(said.kind, "--kind soft-solid or soft-soft")) options.kind = PairKind::soft_solid;
-  if (missing(said.shell_radius, "--radius \"16 mm\"")) options.shell_radius = 1.0;
-  if (missing(said.youngs_modulus, "--modulus \"0.5 MPa\"")) options.youngs_modulus = 1.0;
+  if (missing(said.kind, "kind", "--kind soft-solid or soft-soft")) options.kind = PairKind::soft_solid;
+  if (missing(said.shell_radius, "Rs", "--radius \"16 mm\"")) options.shell_radius = 1.0;
+  if (missing(said.youngs_modulus, "E", "--modulus \"0.5 MPa\"")) options.youngs_modulus = 1.0;
   return options;
 }
 
@@ -65,6 +66,8 @@ void check_force_curves(const CsvFile& table, Findings& out) {
   if (!options.shell_radius)
     out.add("largest_delta", largest_delta,
             fmt::format("Rs = {:g} m: overlaps up to Delta = {:.3g}", curves.spec.shell_radius, largest_delta));
+  if (!options.youngs_modulus)
+    out.add("youngs_modulus", curves.spec.youngs_modulus, fmt::format("E = {:g} Pa", curves.spec.youngs_modulus));
   out.add("largest_force", largest_force, fmt::format("forces up to {:.4g} N", largest_force));
   if (const std::string doubt = touch_doubt(curves); !doubt.empty()) out.warn(doubt);
   if (!options.shell_radius && !options.youngs_modulus)

@@ -81,6 +81,12 @@ bool is_unfinished(const std::string& directory) {
   return !exists("summary.json") && (exists(".run") || exists(".runs") || exists("work") || exists("checkpoint.h5"));
 }
 
+std::string why_without_results(const std::string& directory) {
+  return directory + (is_unfinished(directory)
+                          ? ": this run has not come to its end and has no results yet: --resume goes on with it"
+                          : ": no run directory: neither summary.json nor a file of results is in it");
+}
+
 RunData load_run(const std::string& directory) {
   if (!fs::is_directory(directory)) throw IoError(directory + ": no such run directory");
   RunData run;
@@ -100,9 +106,7 @@ RunData load_run(const std::string& directory) {
   if (exists("comparison.json")) run.macro_scenes = load_scenes(directory), any = true;
   any = any || std::any_of(fs::directory_iterator(directory), fs::directory_iterator(),
                            [](const fs::directory_entry& entry) { return is_result_file(entry.path()); });
-  if (!any && run.unfinished)
-    throw IoError(directory + ": this run has not come to its end and has no results yet: --resume goes on with it");
-  if (!any) throw IoError(directory + ": no run directory: neither summary.json nor a file of results is in it");
+  if (!any) throw IoError(why_without_results(directory));
   return run;
 }
 

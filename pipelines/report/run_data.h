@@ -77,6 +77,9 @@ struct RunData {
 /// Whether a directory is that of a run that has not come to its end.
 bool is_unfinished(const std::string& directory);
 
+/// The message on a directory that holds no results: of a run that has not come to its end, or of no run.
+std::string why_without_results(const std::string& directory);
+
 /// Reads what exists among summary.json, measurements.h5, law.toml, multi_contact.h5, law_table.toml, macro.h5 and
 /// comparison.json (with the curves that it names). Throws IoError when the directory is missing, holds no results
 /// of any kind, or one of these files is damaged.

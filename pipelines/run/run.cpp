@@ -114,8 +114,9 @@ std::string fewer_threads_text() {
   constexpr double kMost = 0.5;
   const ThreadUse use = thread_use();
   if (use.fewer < std::max(kLong, kMost * use.seconds)) return "";
-  return fmt::format("fewer threads had {:.0f} % of the motion: all were no faster (small scene, or busy cores)\n",
-                     100.0 * use.fewer / use.seconds);
+  return fmt::format(
+      "{:.0f} % of the integration time used fewer threads: more were not faster (small scene or busy cores)\n",
+      100.0 * use.fewer / use.seconds);
 }
 
 }  // namespace

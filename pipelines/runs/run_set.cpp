@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <sstream>
 #include <utility>
 
@@ -60,7 +61,7 @@ CommonOptions options_of(const CommonOptions& all, const RunPlan& plan, const Pl
   return options;
 }
 
-/// Mistakes of many scenes: each once, with the runs that have it where others do not.
+/// Mistakes of many scenes: each once, with the runs that have it where others do not. The first kMostShown of them.
 class AllErrors {
  public:
   void add(const std::string& message, const std::string& run) {
@@ -72,14 +73,16 @@ class AllErrors {
   }
   void throw_if_any(std::size_t all) const {
     if (order_.empty()) return;
+    constexpr std::size_t kMostShown = 20;
     std::string text;
-    for (const std::string& one : order_) {
+    for (const std::string& one : std::span(order_).first(std::min(order_.size(), kMostShown))) {
       const std::set<std::string>& runs = runs_.at(one);
       append_part(text, one, "\n");
       if (runs.size() == all) continue;
       text += fmt::format(" (in the run {}{})", *runs.begin(),
                           runs.size() > 1 ? fmt::format(" and {} more", runs.size() - 1) : "");
     }
+    if (order_.size() > kMostShown) append_part(text, counted(order_.size() - kMostShown, "more error"), "\n");
     throw InputError(text);
   }
 

@@ -299,6 +299,7 @@ TEST_F(Check, TablesOfDataSayWhatTheyAre) {
   EXPECT_EQ(press["kind"], "force curves");
   EXPECT_EQ(press["samples"], 3);
   EXPECT_EQ(press["points"], 45);
+  EXPECT_EQ(press["youngs_modulus"], 5e5);
   EXPECT_TRUE(press["warnings"].empty()) << press["warnings"];
   const std::string data = directory_.file("data.csv");
   const auto written = [&](const std::string& text) {
@@ -308,7 +309,9 @@ TEST_F(Check, TablesOfDataSayWhatTheyAre) {
   const std::string head = "# kind = soft-solid\n# Rs = 16 mm\n# E = 0.5 MPa\nhn [mm], Fn [N]\n";
   EXPECT_TRUE(warned(written(head + "1, 10\n2, 100\n3, 500\n4, 1000\n5, 2600\n"), "check the units"));
   EXPECT_TRUE(warned(written(head + "1, -.01\n2, -.1\n3, -.5\n4, -1\n5, -2\n"), "compression counts positive"));
-  EXPECT_TRUE(warned(written("hn [mm], Fn [N]\n1, 1\n2, 2\n3, 3\n4, 4\n5, 5\n"), "--radius"));
+  const json bare = written("hn [mm], Fn [N]\n1, 1\n2, 2\n3, 3\n4, 4\n5, 5\n");
+  EXPECT_TRUE(warned(bare, "the file has no comment `# Rs = ...`: softgrain calibrate needs --radius"));
+  EXPECT_FALSE(bare.contains("youngs_modulus")) << "the one that was assumed is none of the file";
   EXPECT_EQ(written("opening [mm], passing [%]\n1, 0\n2, 40\n4, 100\n")["kind"], "a sieve curve");
   EXPECT_EQ(written("radius [mm]\n1\n2\n")["kind"], "radii of grains");
   EXPECT_EQ(written("opening [mm], percent passing\n1, 0\n2, 40\n4, 100\n")["kind"], "a sieve curve");
@@ -381,7 +384,10 @@ TEST_F(Check, ACardWithoutAUsableLawIsRefusedFirst) {
         run_the_program(command + " '" + directory_.file("scene.toml") + "'" +
                         (command == "run" ? " --quiet --out '" + directory_.file("out") + "'" : ""));
     EXPECT_EQ(said.status, 2) << said.output;
-    EXPECT_NE(said.output.find("law.toml: law card: no usable soft-soft law: the card has none"), std::string::npos)
+    EXPECT_NE(
+        said.output.find("law.toml: law card: no usable soft-soft law: the card has none; softgrain calibrate --set "
+                         "mirror=true derives it"),
+        std::string::npos)
         << said.output;
   }
   EXPECT_FALSE(fs::exists(directory_.file("out")));
@@ -414,6 +420,27 @@ name = "sound"
 name = "hasty"
 preparation_passes = 10
 )";
+
+/// What makes the law of a recipe poor is said with the key that makes it better.
+TEST_F(Check, WarningsOfARecipeNameTheKeysToChange) {
+  const json found = scene_facts(R"(kind = "recipe"
+samples = 1
+[material]
+E = 70e9
+nu = 0.2
+mu = 0.5
+[grains]
+count = 2000
+radius_max = 2e-3
+ratio = 8
+[check]
+grains = 0
+[levels]
+ratio = 3
+)");
+  EXPECT_TRUE(warned(found, "its onset will scatter; take more grains ([grains] count)")) << found["warnings"];
+  EXPECT_TRUE(warned(found, "[check] grains = 0 is too few")) << found["warnings"];
+}
 
 /// One packing of a material fails: it is named, with what to do, and the others are there.
 TEST_F(Check, AFailedPackingCostsNoOther) {

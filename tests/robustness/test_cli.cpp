@@ -123,6 +123,7 @@ TEST(CommandLine, BadOptionsAreBadInput) {
   expect("check absent.csv --bands 50", 2, "--bands: absent.csv is no scene");
   expect("check absent.csv --set unloading=drop", 2, "--set: absent.csv is no scene");
   expect("microsim x.toml --law l.toml", 2, "--law: microsim has no such option; commands with it are run,");
+  expect("law eval l.toml --delta 0,1", 2, "softgrain: --delta = 0,1: not a value that this option takes");
 }
 
 TEST(CommandLine, AnOptionWithoutItsValueSaysWhatItTakes) {

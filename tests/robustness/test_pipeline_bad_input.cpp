@@ -111,7 +111,7 @@ TEST_F(PipelineBadInput, Measurements) {
   expect("deltas = [0.1, 0.2,", "deltas = [nan, 0.2,", {"scene.toml:19: deltas", "finite"});
   expect("deltas = [0.1, 0.2, 0.3, 0.35, 0.4, 0.45]", "deltas = []", {"scene.toml:19: deltas", "at least one"});
   expect("tangential_deltas = [0.35,", "tangential_deltas = [0.34,",
-         {"scene.toml:20: tangential_deltas", "0.34", "not among deltas"});
+         {"scene.toml:20: tangential_deltas", ": 0.34 is not among deltas"});
   expect("angles_deg = [-0.05, 0.05]", "angles_deg = [-0.05, 0.0]",
          {"scene.toml:21: angles_deg", "0 is recorded anyway"});
   expect("angles_deg = [-0.05, 0.05]", "angles_deg = [-91.0]", {"scene.toml:21: angles_deg", "-90"});

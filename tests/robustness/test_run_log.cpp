@@ -159,6 +159,9 @@ TEST(UnfinishedRun, TheReportSaysSo) {
   const ProgramOutcome nothing = run_the_program(report);
   EXPECT_EQ(nothing.status, 4);
   EXPECT_TRUE(has(nothing.output, "has not come to its end and has no results yet")) << nothing.output;
+  const ProgramOutcome check = run_the_program("check '" + runs.out("out") + "'");
+  EXPECT_EQ(check.status, 2);
+  EXPECT_TRUE(has(check.output, "has not come to its end and has no results yet")) << check.output;
 }
 
 }  // namespace

@@ -146,6 +146,11 @@ TEST_F(RunSet, EverythingThatIsWrongIsSaidBeforeAnyRun) {
   EXPECT_EQ(outcome.output.find("(in the run", outcome.output.find("stepps' in")),
             outcome.output.find("(in the run", outcome.output.find("strain = 0.9")))
       << "what is wrong with all is said once, and of none in particular";
+  std::string values = "-1";
+  for (int k = 2; k <= 25; ++k) values += "," + std::to_string(-k);
+  const ProgramOutcome many = program("sweep", "--over macro.bodies=" + values + " " + out);
+  expect(many, 2, {"bodies = -20: must be", "5 more errors"});
+  EXPECT_EQ(many.output.find("bodies = -21"), std::string::npos) << "of hundreds of errors the first are enough";
   EXPECT_FALSE(fs::exists(file("out")));
   expect(program("sweep", "--over law=law.toml,nowhere.toml " + out), 4, {"nowhere.toml: no such file"});
   EXPECT_FALSE(fs::exists(file("out") + "/law=law.toml"));

@@ -189,6 +189,13 @@ TEST(DrawnSizes, ParticlesStandClearOfImagesInEveryBoxOfPlaces) {
     EXPECT_NE(std::string(e.what()).find("wider than the cell, which is periodic along x"), std::string::npos)
         << e.what();
   }
+  const std::string full = "count = 1000\nlow = [0.0, 0.0, 0.0]\nhigh = [3.0, 3.0, 3.0]\n";
+  try {
+    (void)read_particles_scene<3>(Scene::parse(drawn_scene(full, cell), "s"));
+    ADD_FAILURE();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("of the box; at most 0.74 is possible"), std::string::npos) << e.what();
+  }
 }
 
 /// Spheres beside each other, each filled.

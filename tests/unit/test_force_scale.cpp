@@ -30,7 +30,7 @@ TEST(ForceScale, RightForcesAreNotMinded) { EXPECT_TRUE(implausible_forces(kDelt
 
 /// N for mN, and the other way round; a solid sphere bears 4/3 E Rs^2 Delta^1.5 = 28 N at Delta = 0.3.
 TEST(ForceScale, AFactorOfAThousandShowsBothWays) {
-  EXPECT_TRUE(says(implausible_forces(kDelta, times(1e3), kRs, kE), "is 93 of what a solid sphere"));
+  EXPECT_TRUE(says(implausible_forces(kDelta, times(1e3), kRs, kE), "is 93 times that of a solid sphere"));
   EXPECT_TRUE(says(implausible_forces(kDelta, times(1e3), kRs, kE), "more than any soft particle"));
   EXPECT_TRUE(says(implausible_forces(kDelta, times(1e-3), kRs, kE), "check the units"));
   EXPECT_TRUE(says(implausible_forces(kDelta, kForce, kRs, 1e3 * kE), "check the units")) << "E in MPa read as GPa";

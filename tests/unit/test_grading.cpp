@@ -216,6 +216,7 @@ TEST_F(GradingFile, WhatIsNoSieveCurveIsSaid) {
       {head + "1,0\n2,60\n4,50\n8,100\n", "curve.csv:4: passing falls to 50 % on a wider sieve ("},
       {head + "1,5\n4,100\n", "the curve goes from 5 % to 100 %; it must go from 0 to 100 %"},
       {head + "1,0\n4,95\n", "add the size that is above all grains"},
+      {head + "1,0\n2,0.3\n4,1\n", "shares, with 1 for all, leave percent out of the title"},
       {head + "1,0\n2,40\n2,50\n4,100\n", "the sieve of 2 mm is there twice ("},
       {head + "1,100\n2,40\n4,0\n", "looks like what is retained in all"},
       {head + "0.5,5\n1,15\n2,50\n4,20\n8,10\n", "looks like what each sieve retains"},

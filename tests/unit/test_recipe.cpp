@@ -234,6 +234,26 @@ sizes = { form = "power-law", exponent = 3.5, radius_min = "0.3 mm", radius_max 
   EXPECT_NE(text.find("the mass shares add up to 0.9; they must add up to 1"), std::string::npos) << text;
 }
 
+/// Nearly all of the volume would be cement; the message was one on levels that are too far apart.
+TEST(RecipeScene, RefusesADensityInAnotherUnitThanTheOthers) {
+  const std::string text = refusal(R"(
+[[constituent]]
+name = "sand"
+mass_share = 0.6
+density = 2650
+sizes = { form = "power-law", exponent = 3.5, radius_min = "1 mm", radius_max = "3 mm" }
+[[constituent]]
+name = "cement"
+mass_share = 0.4
+density = 3.15
+sizes = { form = "power-law", exponent = 3.5, radius_min = "0.3 mm", radius_max = "1 mm" }
+)",
+                                   "count = 900");
+  EXPECT_NE(text.find("another constituent has 2650 kg/m^3: is a unit missing, such as density = \"3.15 g/cm^3\"?"),
+            std::string::npos)
+      << text;
+}
+
 TEST(RecipeScene, RefusesLevelsThatNoPackingHolds) {
   EXPECT_NE(refusal("", "count = 600\nratio = 2").find("the sizes make one level"), std::string::npos);
   EXPECT_NE(refusal("", "count = 100\nratio = 60").find("are too far apart for a packing of 100 grains"),

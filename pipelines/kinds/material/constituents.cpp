@@ -53,6 +53,18 @@ Constituent read_constituent(const SceneTable& t, const MacroSpec& common) {
   return c;
 }
 
+/// A density in g/cm^3 beside others in kg/m^3.
+void refuse_other_units(const std::vector<SceneTable>& tables, const std::vector<Constituent>& constituents) {
+  constexpr double kLightest = 10.0;  // [kg/m^3] no solid grain is lighter, and most have a smaller number of g/cm^3
+  constexpr double kFarApart = 100.0;
+  const double densest = std::ranges::max(constituents, {}, &Constituent::density).density;
+  for (std::size_t k = 0; k < tables.size(); ++k)
+    if (const double density = constituents[k].density; density < kLightest && densest > kFarApart * density)
+      tables[k].add_error("density", fmt::format("another constituent has {:g} kg/m^3: is a unit missing, such as "
+                                                 "density = \"{:g} g/cm^3\"?",
+                                                 densest, density));
+}
+
 }  // namespace
 
 void refuse_idle_material(const SceneTable& root) {
@@ -67,8 +79,9 @@ std::vector<Constituent> read_constituents(const SceneTable& root, const MacroSp
   std::vector<Constituent> out;
   double sum = 0.0;
   std::size_t by_mass = 0;
-  for (const SceneTable& t :
-       root.tables({"constituent", "one of the constituents, instead of one size distribution in `[grains]`"})) {
+  const std::vector<SceneTable> tables =
+      root.tables({"constituent", "one of the constituents, instead of one size distribution in `[grains]`"});
+  for (const SceneTable& t : tables) {
     out.push_back(read_constituent(t, common));
     sum += out.back().mass_share;
     by_mass += t.has("mass") ? 1 : 0;
@@ -76,6 +89,8 @@ std::vector<Constituent> read_constituents(const SceneTable& root, const MacroSp
       t.add_error("name", "is used twice");
   }
   if (out.empty() || root.has_errors()) return out;
+  refuse_other_units(tables, out);
+  if (root.has_errors()) return out;
   if (by_mass > 0 && by_mass < out.size()) {
     root.add_error("constituent", "either all of them give mass, or all give mass_share");
     return out;

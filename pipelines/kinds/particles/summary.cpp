@@ -98,13 +98,13 @@ std::vector<std::string> guard_remarks(const GuardSpec& spec, const GuardReport&
   std::vector<std::string> out;
   const auto counted = [&](const GuardRecord& r, double limit, const char* what) {
     if (r.count > 0)
-      out.push_back(fmt::format("{} above the limit of {:.3g} at {} of {} looks (first at {:.4g} s, largest {:.3g})",
+      out.push_back(fmt::format("{} above the limit of {:.3g} at {} of {} checks (first at {:.4g} s, largest {:.3g})",
                                 what, limit, r.count, g.looks, r.first_time, r.worst));
   };
   counted(g.overlap, spec.overlap.limit, "overlap over the smaller radius");
   counted(g.energy, spec.energy.limit, "growth of energy in a scene that nothing drives");
   counted(g.escape, spec.escape.limit, "grains outside");
-  counted(g.wall_travel, g.wall_travel_limit, "way of a wall that its load moves [m]");
+  counted(g.wall_travel, g.wall_travel_limit, "travel of a wall that its load moves [m]");
   if (s.neighbours.short_lived > 0)
     out.push_back(fmt::format("{} of {} neighbour lists lasted one step only: bodies move far in a step",
                               s.neighbours.short_lived, s.neighbours.rebuilds));

@@ -60,7 +60,7 @@ void judge_mixtures(const RecipeScene& recipe, Findings& out) {
   if (few > 0)
     out.warn(
         fmt::format("{} of {} pairs of levels: a mixture has fewer than {:g} coarse grains (the least about {:.0f}): "
-                    "its onset will scatter",
+                    "its onset will scatter; take more grains ([grains] count)",
                     few, recipe.levels.size() - 1, kFewGrains, fewest));
 }
 
@@ -97,7 +97,9 @@ void check_recipe(const RecipeScene& recipe, Findings& out) {
     out.warn(recipe.checked && recipe.check.samples > 1
                  ? "one sample of each packing: all errors of the law come from the scatter of the check alone"
                  : "one sample: the law will have no errors");
-  if (recipe.checked_levels < 2) out.warn("nothing is checked with all its grains: more of them ([check] grains)");
+  if (recipe.checked_levels < 2)
+    out.warn(fmt::format("no packing with all grains of two levels checks the law: [check] grains = {} is too few",
+                         recipe.check.grains));
   if (recipe.checked && !tells_ways(recipe)) out.warn(kTwoLevelsTellNothing);
   out.spend("packings", packing_seconds(recipe));
   out.spend("friction of cells", friction_seconds(recipe.cells));

@@ -185,7 +185,7 @@ void require_ascending(const SceneTable& t, const std::string& key, const std::v
 void require_subset(const SceneTable& t, const std::vector<double>& some, const std::vector<double>& all) {
   for (const double x : some)
     if (std::none_of(all.begin(), all.end(), [x](double y) { return std::abs(x - y) < 1e-9; }))
-      t.add_error("tangential_deltas", std::to_string(x) + " is not among deltas");
+      t.add_error("tangential_deltas", fmt::format("{:g} is not among deltas", x));
 }
 
 /// Largest overlap that makes sense: at 1 the plane would have reached the centre of the shell.
