@@ -70,6 +70,7 @@ const std::map<std::string, std::string> kNotInResults{
     {"macro-table rolling", "its table has no rolling resistance"},
     {"material packing.balance", kNarrow},
     {"material-variants packing.balance", kNarrow},
+    {"material-variants variant.0.balance", kNarrow},
     {"material-law packing.balance", kNarrow},
     {"material-law-memory packing.balance", kNarrow},
     {"recipe packing.balance", kNarrow},
